@@ -1,0 +1,31 @@
+/** Nearest point on a mesh, by a hierarchy of bounding boxes. */
+#ifndef MS_CLOSEST_H
+#define MS_CLOSEST_H
+
+#include "ms_mesh.h"
+
+/** Opaque; read-only after building, so that threads may share one. */
+typedef struct ms_closest ms_closest;
+
+/**
+ * @param[out] out  freed by ms_closest_free; NULL on failure
+ * @param      mesh borrowed: must outlive *out and not change
+ * @return MS_OK; MS_ERR_ARG if the mesh is empty; MS_ERR_NOMEM
+ * Cost: O(triangles log triangles).
+ */
+ms_status ms_closest_build(ms_closest **out, const ms_mesh *mesh, ms_error *err);
+
+/**
+ * Distance from a point to the nearest face, edge or vertex, in the mesh's unit.
+ *
+ * @param[out] nearest the point on the mesh; may be NULL
+ * @param      at_most points farther than this are of no interest: then at_most is returned
+ *             and nearest is left alone; INFINITY for no bound
+ * Source: nearest point of a triangle, Ericson, Real-Time Collision Detection (2005), 5.1.5.
+ * Cost: O(log triangles) typical.
+ */
+double ms_closest_distance(double nearest[3], const ms_closest *closest, const double point[3], double at_most);
+
+void ms_closest_free(ms_closest *closest);
+
+#endif

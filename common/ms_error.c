@@ -1,0 +1,27 @@
+#include "ms_error.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+const char *ms_status_text(ms_status status)
+{
+    switch (status) {
+#define MS_STATUS_CASE(code, text) \
+    case code:                     \
+        return text;
+        MS_STATUS_LIST(MS_STATUS_CASE)
+#undef MS_STATUS_CASE
+    }
+    return "unknown status";
+}
+
+ms_status ms_fail(ms_error *err, ms_status status, const char *format, ...)
+{
+    if (err) {
+        va_list args;
+        va_start(args, format);
+        vsnprintf(err->text, sizeof err->text, format, args);
+        va_end(args);
+    }
+    return status;
+}

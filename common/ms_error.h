@@ -1,0 +1,44 @@
+/** Status codes and the one-sentence message that goes with a failure. */
+#ifndef MS_ERROR_H
+#define MS_ERROR_H
+
+/* The one list from which the codes and their texts are made. */
+#define MS_STATUS_LIST(X)                                  \
+    X(MS_OK, "success")                                    \
+    X(MS_ERR_ARG, "invalid argument")                      \
+    X(MS_ERR_NOMEM, "out of memory")                       \
+    X(MS_ERR_IO, "cannot read or write")                   \
+    X(MS_ERR_FORMAT, "malformed file")                     \
+    X(MS_ERR_SHAPE, "the shape cannot be used")            \
+    X(MS_ERR_LIMIT, "a limit would be exceeded")
+
+#define MS_STATUS_ENUM(code, text) code,
+typedef enum ms_status { MS_STATUS_LIST(MS_STATUS_ENUM) } ms_status;
+#undef MS_STATUS_ENUM
+
+/** The message of a failure: one sentence that names the file, the place and what to do. */
+typedef struct ms_error {
+    char text[512];
+} ms_error;
+
+/** The general text of a status code; never NULL. */
+const char *ms_status_text(ms_status status);
+
+#if defined(__GNUC__)
+#define MS_PRINTF(format_at, first_at) __attribute__((format(printf, format_at, first_at)))
+#else
+#define MS_PRINTF(format_at, first_at)
+#endif
+
+/**
+ * Writes a message and returns the status, so that a failure is one line:
+ * `return ms_fail(err, MS_ERR_ARG, "extent %d is 0", axis);`
+ * Who detects an error writes the message; who calls only hands it on.
+ *
+ * @param[out] err    may be NULL
+ * @param      status what is returned
+ * @param      format as printf; cut at the size of the message
+ */
+ms_status ms_fail(ms_error *err, ms_status status, const char *format, ...) MS_PRINTF(3, 4);
+
+#endif

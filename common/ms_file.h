@@ -1,0 +1,49 @@
+/** Whole files: read at once, written under a temporary name and renamed. */
+#ifndef MS_FILE_H
+#define MS_FILE_H
+
+#include <stdint.h>
+#include <stdio.h>
+
+#include "ms_error.h"
+
+/** The bytes of a file, with a 0 byte behind the last so that text can be scanned. */
+typedef struct ms_bytes {
+    uint8_t *data;
+    size_t size; /* without the 0 byte */
+} ms_bytes;
+
+/**
+ * Reads a regular file whole (a folder, a device or a pipe is refused).
+ *
+ * @param[out] bytes the caller frees it with ms_bytes_free; empty on failure
+ * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM
+ */
+ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err);
+void ms_bytes_free(ms_bytes *bytes);
+
+/** FNV-1a, 64 bits: names an input in a result so that a run can be repeated. */
+uint64_t ms_bytes_checksum(const ms_bytes *bytes);
+
+/** A file being written. "-" is standard output. */
+typedef struct ms_output {
+    FILE *stream;
+    char *path;      /* where it will stand */
+    char *temporary; /* where it is written; NULL for standard output */
+} ms_output;
+
+/** Opens a temporary file in the folder of `path`. @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM */
+ms_status ms_output_open(ms_output *output, const char *path, ms_error *err);
+
+/**
+ * Ends a file: if `status` is MS_OK and every byte reached the disk it is renamed to its
+ * path, else it is removed. Frees the struct in any case.
+ *
+ * @return `status` if that is not MS_OK; MS_OK; MS_ERR_IO
+ */
+ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err);
+
+/** The ending of a path after its last dot, in lower case; "" if none or too long for `out`. */
+void ms_file_ending(char out[16], const char *path);
+
+#endif

@@ -1,0 +1,53 @@
+/** Triangle meshes: what one is, whether it bounds a body, and how it is mended. */
+#ifndef MS_MESH_H
+#define MS_MESH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "ms_error.h"
+
+/** Indexed triangles. A zeroed struct is an empty mesh. */
+typedef struct ms_mesh {
+    size_t n_vertices;
+    size_t n_triangles;
+    double (*vertex)[3];      /* n_vertices, in the file's unit of length */
+    uint32_t (*triangle)[3];  /* n_triangles, counter-clockwise seen from outside */
+} ms_mesh;
+
+/** What ms_mesh_repair found and what it changed. */
+typedef struct ms_mesh_report {
+    size_t dropped_degenerate; /* triangles with two equal corners or no area, removed */
+    size_t dropped_duplicate;  /* triangles on the same three corners as another, removed */
+    size_t flipped;            /* triangles whose winding was reversed */
+    size_t open_edges;         /* edges of one triangle */
+    size_t nonmanifold_edges;  /* edges of more than two triangles */
+    size_t odd_edges;          /* edges of an odd number of triangles: with any, the mesh bounds no body */
+    size_t shells;             /* pieces joined by edges */
+    size_t cavities;           /* shells that lie inside an odd number of others */
+    size_t bodies;             /* shells - cavities */
+    int closed;                /* no odd edges, every shell could be oriented */
+} ms_mesh_report;
+
+/** Axis-aligned box: lo[3], hi[3] in the mesh's unit. The mesh is not empty. */
+void ms_mesh_box(double lo[3], double hi[3], const ms_mesh *mesh);
+
+/**
+ * Drops degenerate and duplicate triangles and, where the mesh is closed, winds every shell
+ * so that it encloses matter: outer shells outward, cavities inward. An open mesh keeps its
+ * windings and is reported, not refused: the caller decides.
+ *
+ * @param[in,out] mesh    vertices already welded (ms_mesh_read does); triangles change
+ * @param[out]    report  what was found and done
+ * @param[out]    err     message; may be NULL
+ * @return MS_OK; MS_ERR_SHAPE if no triangle is left or a closed shell cannot be
+ *         oriented (one-sided); MS_ERR_NOMEM
+ *
+ * Cost: O(triangles log triangles).
+ */
+ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err);
+
+/** Frees the arrays and empties the struct; NULL is allowed. */
+void ms_mesh_free(ms_mesh *mesh);
+
+#endif

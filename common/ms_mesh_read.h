@@ -1,0 +1,25 @@
+/** Reads triangle meshes: STL (ASCII, binary), OBJ, PLY (ASCII, binary), OFF. */
+#ifndef MS_MESH_READ_H
+#define MS_MESH_READ_H
+
+#include "ms_mesh.h"
+
+/**
+ * Reads a mesh, in double precision, strictly: a file that does not say exactly one mesh is
+ * refused. The format comes from the ending (.stl .obj .ply .off). Polygons are cut into
+ * fans; vertices with equal coordinates are welded. What an untrusted header claims is
+ * checked against the file's size before anything is allocated.
+ *
+ * @param[out] mesh the caller frees it; empty on failure
+ * @param      path the file
+ * @param[out] err  names the file and the line or byte; may be NULL
+ * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_LIMIT over 2^31 triangles; MS_ERR_NOMEM
+ *
+ * Cost: O(file size).
+ */
+ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err);
+
+/** Nonzero if the path ends like a mesh that ms_mesh_read takes. */
+int ms_mesh_is_mesh_path(const char *path);
+
+#endif

@@ -1,0 +1,16 @@
+/** Writes triangle meshes: binary STL, OBJ, PLY, OFF, by the ending of the path. */
+#ifndef MS_MESH_WRITE_H
+#define MS_MESH_WRITE_H
+
+#include "ms_mesh.h"
+
+/**
+ * Writes a mesh to a temporary name beside `path` and renames it there when it is whole.
+ * STL holds single precision; the text formats restore the doubles.
+ *
+ * @param path the file; "-" writes OFF to standard output
+ * @return MS_OK; MS_ERR_ARG for an unknown ending; MS_ERR_IO
+ */
+ms_status ms_mesh_write(const ms_mesh *mesh, const char *path, ms_error *err);
+
+#endif

@@ -1,0 +1,39 @@
+/** Analytic and test bodies as closed meshes, for examples, tests and comparisons. */
+#ifndef MS_SHAPE_H
+#define MS_SHAPE_H
+
+#include "ms_mesh.h"
+
+/** One parameter of a kind of shape: the name that the user writes, its range, a help text. */
+typedef struct ms_shape_parameter {
+    const char *name;
+    double fallback, min, max;
+    const char *help;
+} ms_shape_parameter;
+
+/** A kind of shape; the table of kinds ends with a NULL name. */
+typedef struct ms_shape_kind {
+    const char *name;
+    const char *summary;
+    const ms_shape_parameter *parameters; /* ends with a NULL name */
+    ms_status (*make)(ms_mesh *mesh, const double *value, ms_error *err); /* one value per parameter */
+    double (*volume)(const double *value); /* exact volume; NULL where there is no formula */
+} ms_shape_kind;
+
+extern const ms_shape_kind ms_shape_kinds[];
+
+/** The kind of that name, or NULL with a message that lists the names. */
+const ms_shape_kind *ms_shape_find(const char *name, ms_error *err);
+
+/**
+ * Makes a mesh of a kind. Curved bodies are fine enough (parameter `fineness`) that their volume is right to
+ * 0.1 % at the default; the mesh is closed, wound outward, centred on the origin, and has
+ * the mirror symmetries of the body to the last bit.
+ *
+ * @param[out] mesh  the caller frees it; empty on failure
+ * @param      value one per parameter of the kind, in the kind's order
+ * @return MS_OK; MS_ERR_ARG if a value is out of range or two contradict; MS_ERR_NOMEM
+ */
+ms_status ms_shape_make(ms_mesh *mesh, const ms_shape_kind *kind, const double *value, ms_error *err);
+
+#endif

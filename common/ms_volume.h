@@ -1,0 +1,34 @@
+/** Reads labelled voxel volumes: NumPy .npy, MetaImage .mhd/.mha, NRRD .nrrd/.nhdr. */
+#ifndef MS_VOLUME_H
+#define MS_VOLUME_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "ms_error.h"
+
+/** Labels on a regular grid of cubic voxels; 0 is background. */
+typedef struct ms_volume {
+    int n[3];          /* extents x, y, z; x fastest in memory */
+    double spacing;    /* edge of a voxel; 1 where the file does not say */
+    double origin[3];  /* centre of voxel (0, 0, 0); 0 where the file does not say */
+    uint32_t *label;   /* n[0]*n[1]*n[2] */
+} ms_volume;
+
+/**
+ * Reads a volume of labels, strictly. Integers of 1 to 4 bytes, bools, and floats whose values are all whole
+ * numbers; negative values, fractions and NaN are grey values, not labels, and are refused,
+ * as are a volume without any label, voxels that are not cubes and axes that are not
+ * aligned. NumPy arrays are indexed [z][y][x] (C order) or [x][y][z] (Fortran order).
+ *
+ * @param[out] volume the caller frees it; empty on failure
+ * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_SHAPE without a label; MS_ERR_LIMIT; MS_ERR_NOMEM
+ */
+ms_status ms_volume_read(ms_volume *volume, const char *path, ms_error *err);
+
+/** Nonzero if the path ends like a volume that ms_volume_read takes. */
+int ms_volume_is_volume_path(const char *path);
+
+void ms_volume_free(ms_volume *volume);
+
+#endif
