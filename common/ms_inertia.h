@@ -21,19 +21,33 @@ typedef struct ms_principal {
  * Exact integrals over a closed, outward-wound mesh by the divergence theorem. Summed about
  * the centre of the box, so that a mesh far from the origin keeps its precision.
  *
- * @return MS_OK; MS_ERR_SHAPE if the volume is not above zero (or drowns in rounding)
- * Source: Eberly, Polyhedral Mass Properties (2002). Cost: O(triangles), one pass.
+ * @param[out] body zeros on failure
+ * @param      mesh closed and outward-wound (ms_mesh_repair sees to it); may be empty
+ * @return MS_OK; MS_ERR_SHAPE if the volume is not above zero or drowns in rounding, or if a
+ *         coordinate is not finite
+ *
+ * Source: signed tetrahedra from the centre to the triangles, Tonon, Explicit exact formulas
+ * for the 3-D tetrahedron inertia tensor, J. Math. Stat. 1 (2005) 8; the same integrals as
+ * Eberly, Polyhedral Mass Properties (2002). Cost: O(triangles), one pass.
  */
 ms_status ms_inertia_mesh(ms_body *body, const ms_mesh *mesh, ms_error *err);
 
-/** Surface area of the mesh. */
+/** Surface area of the mesh; 0 for an empty one. */
 double ms_mesh_area(const ms_mesh *mesh);
 
 /**
- * Principal moments and axes by GSL. Sign rule: the component of largest magnitude of the
- * first two axes is positive (the first such where equal within 1e-9), the third axis is
- * their cross product.
+ * Principal moments and axes of body->inertia by GSL, by rules that leave nothing to chance:
+ * - Sign: the component of largest magnitude of the first two axes is positive (the first
+ *   such where equal within 1e-9), the third axis is their cross product.
+ * - Equal moments: where two agree within 1e-9 of the largest, any axes of their plane would
+ *   do. The first of the pair is then along the projection onto that plane of the input's x
+ *   axis, or of y where that of x is shorter than 1/2. Three equal moments: the input's axes.
+ *   So a ball yields x, y, z; a body of revolution about x yields x, y, z or y, z, x.
+ *
+ * @param[out] principal zeros on failure
+ * @param      body      only its inertia is read; of its two triangles the mean
+ * @return MS_OK; MS_ERR_ARG if an element is not finite
  */
-ms_status ms_inertia_principal(ms_principal *principal, const double inertia[3][3], ms_error *err);
+ms_status ms_inertia_principal(ms_principal *principal, const ms_body *body, ms_error *err);
 
 #endif

@@ -29,6 +29,14 @@ typedef struct ms_mesh_report {
     int closed;                /* no odd edges, every shell could be oriented */
 } ms_mesh_report;
 
+/**
+ * Arrays for that many vertices and triangles, their contents undefined.
+ *
+ * @param[out] mesh freed by ms_mesh_free; empty on failure
+ * @return MS_OK; MS_ERR_ARG if a number is 0; MS_ERR_NOMEM
+ */
+ms_status ms_mesh_alloc(ms_mesh *mesh, size_t n_vertices, size_t n_triangles, ms_error *err);
+
 /** Axis-aligned box: lo[3], hi[3] in the mesh's unit. The mesh is not empty. */
 void ms_mesh_box(double lo[3], double hi[3], const ms_mesh *mesh);
 

@@ -9,7 +9,11 @@ typedef struct ms_shape_parameter {
     const char *name;
     double fallback, min, max;
     const char *help;
+    int whole; /* nonzero: whole numbers only */
 } ms_shape_parameter;
+
+/** No kind has more parameters than this. */
+#define MS_SHAPE_MAX_PARAMETERS 8
 
 /** A kind of shape; the table of kinds ends with a NULL name. */
 typedef struct ms_shape_kind {
@@ -26,9 +30,13 @@ extern const ms_shape_kind ms_shape_kinds[];
 const ms_shape_kind *ms_shape_find(const char *name, ms_error *err);
 
 /**
- * Makes a mesh of a kind. Curved bodies are fine enough (parameter `fineness`) that their volume is right to
- * 0.1 % at the default; the mesh is closed, wound outward, centred on the origin, and has
- * the mirror symmetries of the body to the last bit.
+ * Makes a mesh of a kind: closed, wound outward, its centre of mass at the origin, with the
+ * mirror symmetries of the body to the last bit.
+ *
+ * Parameter `fineness`: segments along a quarter turn of a curved body, along the longest
+ * edge of a flat-faced one. The vertices of a curved body lie on its surface, so that its
+ * mesh is a little small: volume errors fall as 1 / fineness^2 and are below 0.1 % at the
+ * default. A grain is scaled to its volume instead.
  *
  * @param[out] mesh  the caller frees it; empty on failure
  * @param      value one per parameter of the kind, in the kind's order

@@ -1,0 +1,273 @@
+#include "ms_closest.h"
+
+#include <gsl/gsl_math.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "ms_bvh.h"
+
+struct ms_closest {
+    ms_bvh bvh;
+};
+
+ms_status ms_closest_build(ms_closest **out, const ms_mesh *mesh, ms_error *err)
+{
+    *out = NULL;
+    ms_closest *closest = malloc(sizeof *closest);
+    if (!closest) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for a search structure");
+    }
+    ms_status status = ms_bvh_build(&closest->bvh, mesh, err);
+    if (status != MS_OK) {
+        free(closest);
+        return status;
+    }
+    *out = closest;
+    return MS_OK;
+}
+
+void ms_closest_free(ms_closest *closest)
+{
+    if (closest) {
+        ms_bvh_free(&closest->bvh);
+        free(closest);
+    }
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Where on a triangle: at a corner, on an edge, or within. */
+typedef enum region { CORNER_A, CORNER_B, CORNER_C, EDGE, FACE } region;
+
+/* A point as a + v ab + w ac. */
+typedef struct place {
+    double v, w;
+    region at;
+} place;
+
+/* Ericson 5.1.5: the region of the triangle's plane (corner, edge or face) in which the
+   point's projection lies. ap, bp, cp run from the corners to the point. */
+static place nearest_place(const ms_bvh_triangle *t, const double ap[3])
+{
+    double d1 = dot(t->ab, ap);
+    double d2 = dot(t->ac, ap);
+    if (d1 <= 0 && d2 <= 0) {
+        return (place){0, 0, CORNER_A};
+    }
+    double bp[3], cp[3];
+    for (int k = 0; k < 3; k++) {
+        bp[k] = ap[k] - t->ab[k];
+        cp[k] = ap[k] - t->ac[k];
+    }
+    double d3 = dot(t->ab, bp);
+    double d4 = dot(t->ac, bp);
+    if (d3 >= 0 && d4 <= d3) {
+        return (place){1, 0, CORNER_B};
+    }
+    double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+        return (place){d1 / (d1 - d3), 0, EDGE};
+    }
+    double d5 = dot(t->ab, cp);
+    double d6 = dot(t->ac, cp);
+    if (d6 >= 0 && d5 <= d6) {
+        return (place){0, 1, CORNER_C};
+    }
+    double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+        return (place){0, d2 / (d2 - d6), EDGE};
+    }
+    double va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return (place){1 - w, w, EDGE};
+    }
+    double sum = va + vb + vc;
+    return (place){vb / sum, vc / sum, FACE};
+}
+
+/* Squared distance to a place; `offset` is from the triangle's corner a to the place. */
+static double distance_to(double offset[3], const ms_bvh_triangle *t, const double ap[3], place at)
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        offset[k] = at.v * t->ab[k] + at.w * t->ac[k];
+        square += (ap[k] - offset[k]) * (ap[k] - offset[k]);
+    }
+    return square;
+}
+
+static double clamp_to_unit(double x)
+{
+    return x > 0 ? (x < 1 ? x : 1) : 0; /* 0 for NaN, of a segment without length */
+}
+
+/* In a sliver the regions drown in rounding: its three edges are tried one by one. */
+static place nearest_on_edges(const ms_bvh_triangle *t, const double ap[3])
+{
+    double bc[3], bp[3], offset[3];
+    for (int k = 0; k < 3; k++) {
+        bc[k] = t->ac[k] - t->ab[k];
+        bp[k] = ap[k] - t->ab[k];
+    }
+    double along_bc = clamp_to_unit(dot(bc, bp) / dot(bc, bc));
+    const place tried[4] = {{clamp_to_unit(dot(t->ab, ap) / dot(t->ab, t->ab)), 0, EDGE},
+                            {0, clamp_to_unit(dot(t->ac, ap) / dot(t->ac, t->ac)), EDGE},
+                            {1 - along_bc, along_bc, EDGE},
+                            nearest_place(t, ap)};
+    int best = 0;
+    double least = HUGE_VAL;
+    for (int k = 0; k < 4; k++) {
+        double square = distance_to(offset, t, ap, tried[k]);
+        if (square < least) {
+            least = square;
+            best = k;
+        }
+    }
+    return tried[best];
+}
+
+/* Squared distances from a point to the two boxes of a node. */
+static void distances_to_boxes(double square[2], const ms_bvh_node *node, const double p[3])
+{
+    square[0] = square[1] = 0;
+    for (int k = 0; k < 3; k++) {
+        for (int c = 0; c < 2; c++) {
+            double below = node->lo[k][c] - p[k];
+            double above = p[k] - node->hi[k][c];
+            double out = below > above ? below : above;
+            out = out > 0 ? out : 0;
+            square[c] += out * out;
+        }
+    }
+}
+
+typedef struct search {
+    const ms_bvh *bvh;
+    double point[3]; /* relative to the centre */
+    double best;     /* squared: what is farther is of no interest */
+    double nearest[3];
+    int found;
+    int side_wanted; /* the second pass: `best` stays, `side` is summed */
+    double side;     /* above 0 outside */
+} search;
+
+/* The angle-weighted pseudonormal tells inside from outside at corners and edges too; where
+   several places are equally near, each says the same. Source: Baerentzen & Aanaes, Signed
+   distance computation using the angle weighted pseudonormal, IEEE TVCG 11 (2005) 243. */
+static double side_by_triangle(const ms_bvh_triangle *t, const double ap[3], const double offset[3], region at)
+{
+    double normal[3], from[3], bc[3];
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3;
+        int j = (k + 2) % 3;
+        normal[k] = t->ab[i] * t->ac[j] - t->ab[j] * t->ac[i];
+        from[k] = ap[k] - offset[k];
+        bc[k] = t->ac[k] - t->ab[k];
+    }
+    double twice_area = sqrt(dot(normal, normal));
+    if (t->sliver || !(twice_area > 0)) {
+        return 0;
+    }
+    double cosine = at == CORNER_A ? dot(t->ab, t->ac) : at == CORNER_B ? -dot(t->ab, bc) : dot(t->ac, bc);
+    double angle = at == FACE ? 2 * M_PI : at == EDGE ? M_PI : atan2(twice_area, cosine);
+    return angle * dot(normal, from) / twice_area;
+}
+
+static void search_leaf(search *s, uint32_t first, uint32_t count)
+{
+    for (uint32_t k = first; k < first + count; k++) {
+        const ms_bvh_triangle *t = &s->bvh->triangle[k];
+        double ap[3], offset[3];
+        for (int i = 0; i < 3; i++) {
+            ap[i] = s->point[i] - t->a[i];
+        }
+        place at = t->sliver ? nearest_on_edges(t, ap) : nearest_place(t, ap);
+        double square = distance_to(offset, t, ap, at);
+        if (square < s->best && s->side_wanted) {
+            s->side += side_by_triangle(t, ap, offset, at.at);
+        } else if (square < s->best) {
+            s->best = square;
+            s->found = 1;
+            for (int i = 0; i < 3; i++) {
+                s->nearest[i] = t->a[i] + offset[i];
+            }
+        }
+    }
+}
+
+/* The nearer box is searched first; the other waits and is dropped if a point nearer than it
+   turns up. */
+static void search_tree(search *s)
+{
+    struct {
+        double square;
+        uint32_t first, count;
+    } stack[MS_BVH_STACK];
+    int waiting = 0;
+    uint32_t at = 0;
+    for (;;) {
+        const ms_bvh_node *node = &s->bvh->node[at];
+        double square[2];
+        distances_to_boxes(square, node, s->point);
+        int near = square[1] < square[0];
+        for (int turn = 0; turn < 2; turn++) {
+            int c = turn == 0 ? !near : near;
+            if (square[c] < s->best) {
+                stack[waiting].square = square[c];
+                stack[waiting].first = node->first[c];
+                stack[waiting++].count = node->count[c];
+            }
+        }
+        uint32_t count;
+        do {
+            do {
+                if (waiting == 0) {
+                    return;
+                }
+                waiting--;
+            } while (!(stack[waiting].square < s->best));
+            at = stack[waiting].first;
+            count = stack[waiting].count;
+            search_leaf(s, at, count);
+        } while (count > 0);
+    }
+}
+
+static void begin(search *s, const ms_closest *closest, const double point[3], double at_most)
+{
+    *s = (search){.bvh = &closest->bvh, .best = at_most > 0 ? at_most * at_most : 0};
+    for (int k = 0; k < 3; k++) {
+        s->point[k] = point[k] - closest->bvh.centre[k];
+    }
+}
+
+double ms_closest_distance(double nearest[3], const ms_closest *closest, const double point[3], double at_most)
+{
+    search s;
+    begin(&s, closest, point, at_most);
+    search_tree(&s);
+    if (!s.found) {
+        return at_most;
+    }
+    for (int k = 0; nearest && k < 3; k++) {
+        nearest[k] = s.nearest[k] + closest->bvh.centre[k];
+    }
+    return fmin(sqrt(s.best), at_most);
+}
+
+double ms_closest_signed_distance(const ms_closest *closest, const double point[3])
+{
+    search s;
+    begin(&s, closest, point, HUGE_VAL);
+    search_tree(&s);
+    double distance = sqrt(s.best);
+    /* All triangles as near as that, but for rounding. */
+    begin(&s, closest, point, distance + 1e-12 * (distance + closest->bvh.size));
+    s.side_wanted = 1;
+    search_tree(&s);
+    return s.side < 0 ? -distance : distance;
+}

@@ -1,0 +1,91 @@
+#include "ms_clump.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err)
+{
+    if (clump->n_spheres == MS_CLUMP_MAX_SPHERES) {
+        return ms_fail(err, MS_ERR_LIMIT, "a clump cannot have more than %d spheres", MS_CLUMP_MAX_SPHERES);
+    }
+    if (clump->n_spheres == clump->capacity) {
+        const size_t capacity = 2 * clump->capacity + 16;
+        ms_sphere *grown = realloc(clump->sphere, capacity * sizeof *grown);
+        if (!grown) {
+            return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", capacity);
+        }
+        clump->sphere = grown;
+        clump->capacity = capacity;
+    }
+    clump->sphere[clump->n_spheres++] = *sphere;
+    return MS_OK;
+}
+
+static int overlap(const ms_sphere *a, const ms_sphere *b)
+{
+    const double x = a->centre[0] - b->centre[0], y = a->centre[1] - b->centre[1], z = a->centre[2] - b->centre[2];
+    const double reach = a->radius + b->radius;
+    return x * x + y * y + z * z < reach * reach;
+}
+
+ms_status ms_clump_pieces(size_t *pieces, const ms_clump *clump, ms_error *err)
+{
+    /* Flood: the spheres before `done` have met all others, those before `reached` are in a
+     * piece already met. */
+    const size_t n = clump->n_spheres;
+    size_t done = 0, reached = 0;
+    size_t *order = malloc((n + 1) * sizeof *order);
+    *pieces = 0;
+    if (!order) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to connect %zu spheres", n);
+    }
+    for (size_t i = 0; i < n; i++) {
+        order[i] = i;
+    }
+    while (done < n) {
+        if (done == reached) {
+            reached++;
+            ++*pieces;
+        }
+        for (size_t at = reached; at < n; at++) {
+            if (overlap(&clump->sphere[order[done]], &clump->sphere[order[at]])) {
+                const size_t swap = order[at];
+                order[at] = order[reached];
+                order[reached++] = swap;
+            }
+        }
+        done++;
+    }
+    free(order);
+    return MS_OK;
+}
+
+void ms_clump_box(double lo[3], double hi[3], const ms_clump *clump)
+{
+    for (int a = 0; a < 3; a++) {
+        lo[a] = INFINITY;
+        hi[a] = -INFINITY;
+        for (size_t s = 0; s < clump->n_spheres; s++) {
+            lo[a] = fmin(lo[a], clump->sphere[s].centre[a] - clump->sphere[s].radius);
+            hi[a] = fmax(hi[a], clump->sphere[s].centre[a] + clump->sphere[s].radius);
+        }
+    }
+}
+
+double ms_clump_smallest_radius(const ms_clump *clump)
+{
+    double least = INFINITY;
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        least = fmin(least, clump->sphere[s].radius);
+    }
+    return least;
+}
+
+void ms_clump_free(ms_clump *clump)
+{
+    if (clump) {
+        free(clump->sphere);
+        memset(clump, 0, sizeof *clump);
+    }
+}

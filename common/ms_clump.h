@@ -1,0 +1,51 @@
+/** Clumps: ordered sets of overlapping spheres that stand for one particle. */
+#ifndef MS_CLUMP_H
+#define MS_CLUMP_H
+
+#include <stddef.h>
+
+#include "ms_error.h"
+
+/* First-cover indices are 16 bits wide, and 65535 says "none". */
+enum { MS_CLUMP_MAX_SPHERES = 65534 };
+
+typedef struct ms_sphere {
+    double centre[3];
+    double radius;
+} ms_sphere;
+
+/** Spheres in the order in which they matter, in the unit and frame of the input shape. A
+ * zeroed struct is an empty clump. */
+typedef struct ms_clump {
+    size_t n_spheres, capacity;
+    ms_sphere *sphere;
+} ms_clump;
+
+/**
+ * Appends a sphere.
+ * @return MS_OK; MS_ERR_LIMIT above MS_CLUMP_MAX_SPHERES; MS_ERR_NOMEM
+ */
+ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err);
+
+/** Number of pieces: spheres that overlap belong together. Cost: O(n^2). */
+ms_status ms_clump_pieces(size_t *pieces, const ms_clump *clump, ms_error *err);
+
+/** Box around the spheres; the clump is not empty. */
+void ms_clump_box(double lo[3], double hi[3], const ms_clump *clump);
+
+/** Smallest radius; the clump is not empty. */
+double ms_clump_smallest_radius(const ms_clump *clump);
+
+/**
+ * Reads spheres from a text file: four numbers a line, x y z r, separated by commas,
+ * semicolons or blanks; further columns are ignored. Empty lines, '#' comments and one
+ * header line before the first sphere are skipped; any other line is an error.
+ *
+ * @param[out] clump the caller frees it; empty on failure
+ * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line; MS_ERR_LIMIT; MS_ERR_NOMEM
+ */
+ms_status ms_clump_read(ms_clump *clump, const char *path, ms_error *err);
+
+void ms_clump_free(ms_clump *clump);
+
+#endif

@@ -1,0 +1,232 @@
+#include "ms_file.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static ms_status read_all(ms_bytes *bytes, int fd, size_t size, const char *path, ms_error *err)
+{
+    if (size > SIZE_MAX - 1 || !(bytes->data = malloc(size + 1))) {
+        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory for its %zu bytes", path, size);
+    }
+    while (bytes->size < size) {
+        ssize_t got = read(fd, bytes->data + bytes->size, size - bytes->size);
+        if (got < 0 && errno == EINTR) {
+            continue;
+        }
+        if (got < 0) {
+            return ms_fail(err, MS_ERR_IO, "%s: cannot be read at byte %zu: %s", path, bytes->size, strerror(errno));
+        }
+        if (got == 0) {
+            return ms_fail(err, MS_ERR_IO,
+                "%s: became shorter while it was read (%zu of %zu bytes); try again when it is no longer written",
+                path, bytes->size, size);
+        }
+        bytes->size += (size_t)got;
+    }
+    bytes->data[size] = 0;
+    return MS_OK;
+}
+
+ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err)
+{
+    ms_status status = MS_OK;
+    struct stat info;
+    *bytes = (ms_bytes){0};
+    /* Not to wait here for the writer of a pipe: it is refused below. */
+    int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (fd < 0 || fstat(fd, &info) != 0) {
+        status = ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s; check the path", path, strerror(errno));
+        goto cleanup;
+    }
+    if (S_ISDIR(info.st_mode)) {
+        status = ms_fail(err, MS_ERR_IO, "%s: is a folder; name a file in it", path);
+        goto cleanup;
+    }
+    if (!S_ISREG(info.st_mode)) {
+        status = ms_fail(err, MS_ERR_IO, "%s: is a device or a pipe; name a regular file", path);
+        goto cleanup;
+    }
+    if ((uintmax_t)info.st_size > SIZE_MAX - 1) {
+        status = ms_fail(err, MS_ERR_NOMEM, "%s: is larger than the memory of this machine", path);
+        goto cleanup;
+    }
+    status = read_all(bytes, fd, (size_t)info.st_size, path, err);
+cleanup:
+    if (fd >= 0) {
+        close(fd);
+    }
+    if (status) {
+        ms_bytes_free(bytes);
+    }
+    return status;
+}
+
+void ms_bytes_free(ms_bytes *bytes)
+{
+    if (bytes) {
+        free(bytes->data);
+        *bytes = (ms_bytes){0};
+    }
+}
+
+uint64_t ms_bytes_checksum(const ms_bytes *bytes)
+{
+    uint64_t hash = UINT64_C(14695981039346656037);
+    for (size_t i = 0; i < bytes->size; i++) {
+        hash = (hash ^ bytes->data[i]) * UINT64_C(1099511628211);
+    }
+    return hash;
+}
+
+static void free_output(ms_output *output)
+{
+    free(output->path);
+    free(output->temporary);
+    *output = (ms_output){0};
+}
+
+/* A link is followed, so that the file it names is replaced and not the link. */
+static char *resolve(const char *path)
+{
+    struct stat info;
+    char *target = NULL;
+    if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode)) {
+        target = realpath(path, NULL);
+    }
+    return target ? target : strdup(path);
+}
+
+static ms_status open_temporary(ms_output *output, ms_error *err)
+{
+    size_t room = strlen(output->path) + 48;
+    int fd = -1;
+    output->temporary = malloc(room);
+    if (!output->temporary) {
+        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to write it", output->path);
+    }
+    /* The counter tells apart two writers in one process. */
+    for (int attempt = 0; attempt < 100 && fd < 0; attempt++) {
+        snprintf(output->temporary, room, "%s.%ld-%d.tmp", output->path, (long)getpid(), attempt);
+        fd = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd < 0 && errno != EEXIST) {
+            break;
+        }
+    }
+    output->stream = fd < 0 ? NULL : fdopen(fd, "w");
+    if (output->stream) {
+        return MS_OK;
+    }
+    ms_status status = ms_fail(err, MS_ERR_IO,
+        "%s: cannot be written: %s; check that its folder exists and may be written to", output->path, strerror(errno));
+    if (fd >= 0) {
+        close(fd);
+        unlink(output->temporary);
+    }
+    return status;
+}
+
+/* A device or a pipe cannot be replaced by a file: it is written to directly. */
+static ms_status open_special(ms_output *output, ms_error *err)
+{
+    output->stream = fopen(output->path, "w");
+    if (!output->stream) {
+        return ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s", output->path, strerror(errno));
+    }
+    return MS_OK;
+}
+
+static ms_status open_path(ms_output *output, const char *path, ms_error *err)
+{
+    struct stat info;
+    if (path[0] == '\0') {
+        return ms_fail(err, MS_ERR_IO, "the name of the file to write is empty; name a file, or - for standard output");
+    }
+    output->path = resolve(path);
+    if (!output->path) {
+        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to write it", path);
+    }
+    if (stat(output->path, &info) != 0) {
+        return open_temporary(output, err);
+    }
+    if (S_ISDIR(info.st_mode)) {
+        return ms_fail(err, MS_ERR_IO, "%s: is a folder; name a file in it", path);
+    }
+    if (!S_ISREG(info.st_mode)) {
+        return open_special(output, err);
+    }
+    if (access(output->path, W_OK) != 0) {
+        return ms_fail(err, MS_ERR_IO, "%s: cannot be written over: %s; choose another name", path, strerror(errno));
+    }
+    return open_temporary(output, err);
+}
+
+ms_status ms_output_open(ms_output *output, const char *path, ms_error *err)
+{
+    *output = (ms_output){0};
+    if (strcmp(path, "-") == 0) {
+        output->stream = stdout;
+        return MS_OK;
+    }
+    ms_status status = open_path(output, path, err);
+    if (status) {
+        free_output(output);
+    }
+    return status;
+}
+
+/* Nonzero if every byte has left the stream and, of a file, reached the disk; errno says why not. */
+static int flush_stream(const ms_output *output)
+{
+    if (fflush(output->stream) != 0 || ferror(output->stream)) {
+        return 0;
+    }
+    return !output->temporary || fsync(fileno(output->stream)) == 0;
+}
+
+ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err)
+{
+    if (!output->stream) {
+        free_output(output);
+        return status;
+    }
+    errno = 0;
+    int written = flush_stream(output);
+    int why = errno;
+    if (output->stream != stdout && fclose(output->stream) != 0 && written) {
+        written = 0;
+        why = errno;
+    }
+    if (!status && written && output->temporary && rename(output->temporary, output->path) != 0) {
+        written = 0;
+        why = errno;
+    }
+    if (output->temporary && (status || !written)) {
+        unlink(output->temporary);
+    }
+    if (!status && !written) {
+        status = ms_fail(err, MS_ERR_IO, "%s: could not be written: %s; is the disk full?",
+            output->path ? output->path : "standard output", why ? strerror(why) : "a write failed");
+    }
+    free_output(output);
+    return status;
+}
+
+void ms_file_ending(char out[16], const char *path)
+{
+    const char *name = strrchr(path, '/');
+    const char *dot = strrchr(name ? name : path, '.');
+    out[0] = '\0';
+    if (!dot || strlen(dot + 1) >= 16) {
+        return;
+    }
+    size_t i = 0;
+    for (; dot[i + 1]; i++) {
+        out[i] = (char)tolower((unsigned char)dot[i + 1]);
+    }
+    out[i] = '\0';
+}

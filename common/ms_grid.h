@@ -1,0 +1,59 @@
+/** Binary voxel grids: S_ijk of MSS eq. 5, one byte a voxel. */
+#ifndef MS_GRID_H
+#define MS_GRID_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "ms_error.h"
+
+/* Layers of background around the shape (MSS eq. 6). */
+enum { MS_GRID_HULL = 2 };
+
+/* The most voxels along an axis: squared distances then fit 32 bits. */
+enum { MS_GRID_MAX_EXTENT = 32767 };
+
+/** A regular grid. Voxel (i, j, k) is at index i + n[0]*(j + n[1]*k); x is fastest. */
+typedef struct ms_grid {
+    int n[3];         /* extents */
+    double h;         /* lattice constant, in the mesh's unit of length */
+    double origin[3]; /* centre of voxel (0, 0, 0), in the mesh's frame */
+    uint8_t *inside;  /* 1 inside the shape, 0 background */
+} ms_grid;
+
+/** Number of voxels. */
+static inline size_t ms_grid_voxels(const ms_grid *grid)
+{
+    return (size_t)grid->n[0] * (size_t)grid->n[1] * (size_t)grid->n[2];
+}
+
+static inline size_t ms_grid_index(const ms_grid *grid, int i, int j, int k)
+{
+    return (size_t)i + (size_t)grid->n[0] * ((size_t)j + (size_t)grid->n[1] * (size_t)k);
+}
+
+/**
+ * An empty grid (all background).
+ *
+ * @param[out] grid the caller frees it; empty on failure
+ * @param      n    extents, each from 1 to MS_GRID_MAX_EXTENT
+ * @return MS_OK; MS_ERR_ARG; MS_ERR_LIMIT for an extent above the maximum; MS_ERR_NOMEM
+ */
+ms_status ms_grid_alloc(ms_grid *grid, const int n[3], double h, const double origin[3], ms_error *err);
+
+/**
+ * A copy on a larger lattice that also holds the box lo..hi (mesh frame); voxels keep their
+ * places, and what is new is background.
+ *
+ * @param[out] out  the caller frees it; empty on failure
+ * @return as ms_grid_alloc
+ */
+ms_status ms_grid_enlarge(ms_grid *out, const ms_grid *grid, const double lo[3], const double hi[3],
+                          size_t max_voxels, ms_error *err);
+
+/** Number of voxels inside the shape. Cost: one pass. */
+size_t ms_grid_count(const ms_grid *grid);
+
+void ms_grid_free(ms_grid *grid);
+
+#endif

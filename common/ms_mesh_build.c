@@ -1,0 +1,272 @@
+/* A mesh as the readers build it: fans, checks and welding. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_mesh_formats.h"
+
+#define MAX_TRIANGLES (UINT64_C(1) << 31)
+#define MAX_VERTICES ((uint64_t)UINT32_MAX)
+
+static ms_status grow(void **array, size_t *room, size_t wanted, size_t item_size, const char *name, ms_error *err)
+{
+    if (wanted <= *room) {
+        return MS_OK;
+    }
+    void *larger = wanted > SIZE_MAX / item_size ? NULL : realloc(*array, wanted * item_size);
+    if (!larger) {
+        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory for its mesh", name);
+    }
+    *array = larger;
+    *room = wanted;
+    return MS_OK;
+}
+
+static ms_status grow_vertices(ms_mesh_builder *builder, size_t wanted, ms_error *err)
+{
+    void *array = builder->mesh.vertex;
+    if (wanted > MAX_VERTICES) {
+        return ms_fail(err, MS_ERR_LIMIT, "%s: has more than %llu vertices; make the mesh coarser", builder->name,
+            (unsigned long long)MAX_VERTICES);
+    }
+    ms_status status =
+        grow(&array, &builder->vertex_room, wanted, sizeof *builder->mesh.vertex, builder->name, err);
+    builder->mesh.vertex = array;
+    return status;
+}
+
+static ms_status grow_triangles(ms_mesh_builder *builder, size_t wanted, ms_error *err)
+{
+    void *array = builder->mesh.triangle;
+    if (wanted > MAX_TRIANGLES) {
+        return ms_fail(err, MS_ERR_LIMIT, "%s: has more than %llu triangles; make the mesh coarser", builder->name,
+            (unsigned long long)MAX_TRIANGLES);
+    }
+    ms_status status =
+        grow(&array, &builder->triangle_room, wanted, sizeof *builder->mesh.triangle, builder->name, err);
+    builder->mesh.triangle = array;
+    return status;
+}
+
+ms_status ms_build_reserve(ms_mesh_builder *builder, size_t n_vertices, size_t n_triangles, ms_error *err)
+{
+    ms_status status = grow_vertices(builder, n_vertices, err);
+    return status ? status : grow_triangles(builder, n_triangles, err);
+}
+
+/* Doubled, so that appending n items moves O(n) of them; up to the limit. */
+static size_t next_room(size_t room, uint64_t limit)
+{
+    uint64_t doubled = room < 512 ? 1024 : 2 * (uint64_t)room;
+    return (size_t)(doubled <= limit || room >= limit ? doubled : limit);
+}
+
+ms_status ms_build_vertex(ms_mesh_builder *builder, const double position[3], size_t place, ms_error *err)
+{
+    ms_mesh *mesh = &builder->mesh;
+    if (mesh->n_vertices == builder->vertex_room) {
+        ms_status status = grow_vertices(builder, next_room(builder->vertex_room, MAX_VERTICES), err);
+        if (status) {
+            return status;
+        }
+    }
+    if (!isfinite(position[0]) || !isfinite(position[1]) || !isfinite(position[2])) {
+        if (builder->n_not_finite++ == 0) {
+            builder->first_not_finite = place;
+        }
+    }
+    memcpy(mesh->vertex[mesh->n_vertices++], position, sizeof mesh->vertex[0]);
+    return MS_OK;
+}
+
+void ms_build_face_begin(ms_mesh_builder *builder, size_t place)
+{
+    builder->n_corners = 0;
+    builder->place = place;
+}
+
+static ms_status append_triangle(ms_mesh_builder *builder, uint32_t third, ms_error *err)
+{
+    ms_mesh *mesh = &builder->mesh;
+    if (mesh->n_triangles == builder->triangle_room) {
+        ms_status status = grow_triangles(builder, next_room(builder->triangle_room, MAX_TRIANGLES), err);
+        if (status) {
+            return status;
+        }
+    }
+    uint32_t *corner = mesh->triangle[mesh->n_triangles++];
+    corner[0] = builder->fan[0];
+    corner[1] = builder->fan[1];
+    corner[2] = third;
+    return MS_OK;
+}
+
+static ms_status fail_index(ms_mesh_builder *builder, int64_t index, size_t place, ms_error *err)
+{
+    return ms_fail(err, MS_ERR_FORMAT,
+        "%s: %s %zu: the face names vertex %lld but the file has vertices %lld to %lld; export the mesh again",
+        builder->name, builder->place_word, place, (long long)(index + builder->first_index),
+        (long long)builder->first_index, (long long)builder->mesh.n_vertices - 1 + builder->first_index);
+}
+
+ms_status ms_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_error *err)
+{
+    ms_status status = MS_OK;
+    if (index < 0 || index >= (int64_t)MAX_VERTICES) {
+        return fail_index(builder, index, builder->place, err);
+    }
+    uint32_t corner = (uint32_t)index;
+    if (corner > builder->largest || builder->largest_place == 0) {
+        builder->largest = corner;
+        builder->largest_place = builder->place;
+    }
+    if (builder->n_corners >= 2) {
+        status = append_triangle(builder, corner, err);
+    }
+    builder->fan[builder->n_corners > 0] = corner;
+    builder->n_corners++;
+    return status;
+}
+
+ms_status ms_build_face_end(ms_mesh_builder *builder, ms_error *err)
+{
+    if (builder->n_corners < 3) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: %s %zu: a face has %zu corners and needs at least 3; remove it",
+            builder->name, builder->place_word, builder->place, builder->n_corners);
+    }
+    return MS_OK;
+}
+
+static size_t count_not_finite_triangles(const ms_mesh *mesh)
+{
+    size_t n = 0;
+    for (size_t t = 0; t < mesh->n_triangles; t++) {
+        int finite = 1;
+        for (int k = 0; k < 3; k++) {
+            const double *p = mesh->vertex[mesh->triangle[t][k]];
+            finite = finite && isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
+        }
+        n += !finite;
+    }
+    return n;
+}
+
+static ms_status check_mesh(ms_mesh_builder *builder, ms_error *err)
+{
+    const ms_mesh *mesh = &builder->mesh;
+    if (mesh->n_triangles == 0) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: has no triangles (and %zu vertices); export the surface of the body",
+            builder->name, mesh->n_vertices);
+    }
+    if (builder->largest >= mesh->n_vertices) {
+        return fail_index(builder, builder->largest, builder->largest_place, err);
+    }
+    if (builder->n_not_finite > 0) {
+        return ms_fail(err, MS_ERR_FORMAT,
+            "%s: %zu of %zu triangles have a corner that is not finite (inf or nan), %s %zu is the first; "
+            "export the mesh again",
+            builder->name, count_not_finite_triangles(mesh), mesh->n_triangles, builder->place_word,
+            builder->first_not_finite);
+    }
+    return MS_OK;
+}
+
+static uint64_t hash_position(const double position[3])
+{
+    uint64_t bits[3];
+    uint64_t hash = UINT64_C(0x9E3779B97F4A7C15);
+    memcpy(bits, position, sizeof bits);
+    for (int k = 0; k < 3; k++) {
+        hash = (hash ^ bits[k]) * UINT64_C(0xFF51AFD7ED558CCD);
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+/* A slot of the hash table holds 1 + the index of a vertex, or 0. */
+static uint32_t find_or_add(ms_mesh *welded, const double position[3], uint32_t *table, size_t mask)
+{
+    size_t slot = (size_t)hash_position(position) & mask;
+    while (table[slot] != 0) {
+        if (memcmp(welded->vertex[table[slot] - 1], position, 3 * sizeof(double)) == 0) {
+            return table[slot] - 1;
+        }
+        slot = (slot + 1) & mask;
+    }
+    /* Never behind the vertex that is being read: the array is packed in place. */
+    memmove(welded->vertex[welded->n_vertices], position, 3 * sizeof(double));
+    table[slot] = (uint32_t)++welded->n_vertices;
+    return table[slot] - 1;
+}
+
+/* `new_index` has one item per vertex of the file; it comes in nonzero where a triangle uses the vertex. */
+static void weld_vertices(ms_mesh *mesh, uint32_t *new_index, uint32_t *table, size_t mask)
+{
+    size_t n = mesh->n_vertices;
+    mesh->n_vertices = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (new_index[i]) {
+            /* Adding 0 turns -0 into 0, so that equal numbers have equal bits. */
+            double position[3] = {mesh->vertex[i][0] + 0.0, mesh->vertex[i][1] + 0.0, mesh->vertex[i][2] + 0.0};
+            new_index[i] = find_or_add(mesh, position, table, mask);
+        }
+    }
+    for (size_t t = 0; t < mesh->n_triangles; t++) {
+        for (int k = 0; k < 3; k++) {
+            mesh->triangle[t][k] = new_index[mesh->triangle[t][k]];
+        }
+    }
+}
+
+static ms_status weld(ms_mesh *mesh, const char *name, ms_error *err)
+{
+    ms_status status = MS_OK;
+    size_t slots = 64;
+    while (slots < SIZE_MAX / 8 && slots / 2 < mesh->n_vertices) {
+        slots *= 2;
+    }
+    uint32_t *table = calloc(slots, sizeof *table);
+    uint32_t *new_index = calloc(mesh->n_vertices, sizeof *new_index);
+    if (!table || !new_index) {
+        status = ms_fail(err, MS_ERR_NOMEM, "%s: no memory to weld its %zu vertices", name, mesh->n_vertices);
+        goto cleanup;
+    }
+    for (size_t t = 0; t < mesh->n_triangles; t++) {
+        for (int k = 0; k < 3; k++) {
+            new_index[mesh->triangle[t][k]] = 1;
+        }
+    }
+    weld_vertices(mesh, new_index, table, slots - 1);
+cleanup:
+    free(table);
+    free(new_index);
+    return status;
+}
+
+/* Gives back what the arrays have too much; a failure to do so loses nothing. */
+static void trim(ms_mesh *mesh)
+{
+    void *vertex = realloc(mesh->vertex, mesh->n_vertices * sizeof *mesh->vertex);
+    void *triangle = realloc(mesh->triangle, mesh->n_triangles * sizeof *mesh->triangle);
+    mesh->vertex = vertex ? vertex : mesh->vertex;
+    mesh->triangle = triangle ? triangle : mesh->triangle;
+}
+
+ms_status ms_build_finish(ms_mesh *mesh, ms_mesh_builder *builder, ms_status status, ms_error *err)
+{
+    *mesh = (ms_mesh){0};
+    if (!status) {
+        status = check_mesh(builder, err);
+    }
+    if (!status) {
+        status = weld(&builder->mesh, builder->name, err);
+    }
+    if (status) {
+        ms_mesh_free(&builder->mesh);
+    } else {
+        trim(&builder->mesh);
+        *mesh = builder->mesh;
+    }
+    *builder = (ms_mesh_builder){0};
+    return status;
+}

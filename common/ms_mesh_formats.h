@@ -1,0 +1,59 @@
+/** What the readers of mesh formats share: one parser per format, and the mesh as it grows. Private. */
+#ifndef MS_MESH_FORMATS_H
+#define MS_MESH_FORMATS_H
+
+#include "ms_file.h"
+#include "ms_mesh.h"
+
+/**
+ * One parser per format, from memory, so that tests and fuzzers need no files.
+ *
+ * @param[out] mesh  the caller frees it; empty on failure
+ * @param      bytes of the file, with the 0 byte behind them
+ * @param      name  of the file, for messages
+ * @return MS_OK; MS_ERR_FORMAT; MS_ERR_LIMIT; MS_ERR_NOMEM
+ */
+ms_status ms_mesh_parse_stl(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
+ms_status ms_mesh_parse_obj(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
+ms_status ms_mesh_parse_ply(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
+ms_status ms_mesh_parse_off(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
+
+/** A mesh under construction. Places are line numbers in text and byte offsets in binary files. */
+typedef struct ms_mesh_builder {
+    const char *name;        /* of the file */
+    const char *place_word;  /* "line" or "byte" */
+    int64_t first_index;     /* what the format calls its first vertex: 0 or 1 */
+    ms_mesh mesh;            /* vertices as in the file, not yet welded */
+    size_t vertex_room;
+    size_t triangle_room;
+    size_t place;            /* of the face under way */
+    size_t n_corners;        /* of the face under way */
+    uint32_t fan[2];         /* its first corner and its latest */
+    uint32_t largest;        /* index of a vertex that any face names, from 0 */
+    size_t largest_place;
+    size_t n_not_finite;     /* vertices */
+    size_t first_not_finite; /* its place */
+} ms_mesh_builder;
+
+/** Room for what a header announces; the caller has checked that the file is long enough to hold it. */
+ms_status ms_build_reserve(ms_mesh_builder *builder, size_t n_vertices, size_t n_triangles, ms_error *err);
+
+ms_status ms_build_vertex(ms_mesh_builder *builder, const double position[3], size_t place, ms_error *err);
+
+/** A polygon: begin, its corners in turn, end. It is cut into a fan around its first corner. */
+void ms_build_face_begin(ms_mesh_builder *builder, size_t place);
+
+/** A vertex, counted from 0, that may come later in the file: whether it exists is checked at the end. */
+ms_status ms_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_error *err);
+ms_status ms_build_face_end(ms_mesh_builder *builder, ms_error *err);
+
+/**
+ * Checks the mesh, welds vertices with equal coordinates (-0 equals 0) and drops those that
+ * no triangle uses; the others keep the order of the file. Frees the builder in any case.
+ *
+ * @param      status of the parsing; nothing is built unless it is MS_OK
+ * @return `status` if that is not MS_OK; MS_OK; MS_ERR_FORMAT; MS_ERR_NOMEM. Cost: O(vertices + triangles)
+ */
+ms_status ms_build_finish(ms_mesh *mesh, ms_mesh_builder *builder, ms_status status, ms_error *err);
+
+#endif

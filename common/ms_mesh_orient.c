@@ -1,0 +1,200 @@
+#include "ms_mesh_orient.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Six times the signed volume of the tetrahedron from `origin` to triangle t. */
+static double signed_volume(const ms_mesh *mesh, uint32_t t, const double origin[3])
+{
+    double p[3][3];
+    for (int corner = 0; corner < 3; corner++) {
+        for (int k = 0; k < 3; k++) {
+            p[corner][k] = mesh->vertex[mesh->triangle[t][corner]][k] - origin[k];
+        }
+    }
+    return p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) + p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
+           p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+}
+
+static int is_inside_out(const ms_mesh *mesh)
+{
+    double sum = 0;
+    for (uint32_t t = 0; t < mesh->n_triangles; t++) {
+        sum += signed_volume(mesh, t, mesh->vertex[0]);
+    }
+    return sum < 0;
+}
+
+/* The walk over the surface, from triangle to triangle across their sides. */
+typedef struct walk {
+    const ms_mesh *mesh;
+    const uint32_t *across;
+    uint8_t *flip;   /* relative to the shell's first triangle, then to the input */
+    ms_shells shells;
+    uint32_t queued; /* in shells.order */
+    uint32_t twisted; /* a triangle whose two ways round disagree */
+    int is_twisted;
+} walk;
+
+#define UNSEEN UINT32_MAX
+
+static void visit(walk *w, uint32_t t)
+{
+    for (uint32_t side = 3 * t; side < 3 * t + 3; side++) {
+        uint32_t next_side = w->across[side];
+        uint32_t next = next_side / 3;
+        /* Neighbours agree if they run along their common edge in opposite directions. */
+        int same_way = ms_side_rises(w->mesh, side) == ms_side_rises(w->mesh, next_side);
+        uint8_t flip = (uint8_t)(w->flip[t] ^ same_way);
+        if (w->shells.shell_of[next] == UNSEEN) {
+            w->shells.shell_of[next] = w->shells.shell_of[t];
+            w->shells.order[w->queued++] = next;
+            w->flip[next] = flip;
+        } else if (next != t && w->flip[next] != flip) {
+            w->twisted = t;
+            w->is_twisted = 1;
+        }
+    }
+}
+
+/* Numbers the shells and lists their triangles; w->flip makes each agree with itself. */
+static ms_status walk_all(walk *w, ms_error *err)
+{
+    uint32_t n = (uint32_t)w->mesh->n_triangles;
+    ms_shells *shells = &w->shells;
+    memset(shells->shell_of, 0xff, n * sizeof *shells->shell_of);
+    size_t capacity = 0;
+    for (uint32_t seed = 0; seed < n; seed++) {
+        if (shells->shell_of[seed] != UNSEEN) {
+            continue;
+        }
+        if (shells->n == capacity) {
+            capacity = 2 * capacity + 16;
+            ms_shell *more = realloc(shells->shell, capacity * sizeof *more);
+            if (!more) {
+                return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu pieces of surface", capacity);
+            }
+            shells->shell = more;
+        }
+        uint32_t first = w->queued;
+        shells->shell_of[seed] = (uint32_t)shells->n;
+        shells->order[w->queued++] = seed;
+        for (uint32_t k = first; k < w->queued; k++) {
+            visit(w, shells->order[k]);
+        }
+        shells->shell[shells->n++] = (ms_shell){.first = first, .n = w->queued - first};
+    }
+    return MS_OK;
+}
+
+static void measure_shell(ms_shell *shell, const walk *w)
+{
+    const ms_mesh *mesh = w->mesh;
+    const uint32_t *list = w->shells.order + shell->first;
+    /* Any origin gives the same sum; one on the shell keeps it precise. */
+    const double *origin = mesh->vertex[mesh->triangle[list[0]][0]];
+    for (int k = 0; k < 3; k++) {
+        shell->lo[k] = shell->hi[k] = origin[k];
+    }
+    for (uint32_t i = 0; i < shell->n; i++) {
+        double volume = signed_volume(mesh, list[i], origin) / 6;
+        shell->volume += w->flip[list[i]] ? -volume : volume;
+        for (int corner = 0; corner < 3; corner++) {
+            const double *v = mesh->vertex[mesh->triangle[list[i]][corner]];
+            for (int k = 0; k < 3; k++) {
+                shell->lo[k] = fmin(shell->lo[k], v[k]);
+                shell->hi[k] = fmax(shell->hi[k], v[k]);
+            }
+        }
+    }
+}
+
+/* Every shell outward first, for only its size matters to the nesting. */
+static ms_status settle(walk *w, ms_mesh_report *report, ms_error *err)
+{
+    ms_shells *shells = &w->shells;
+    for (size_t s = 0; s < shells->n; s++) {
+        ms_shell *shell = &shells->shell[s];
+        measure_shell(shell, w);
+        for (uint32_t i = 0; shell->volume < 0 && i < shell->n; i++) {
+            w->flip[shells->order[shell->first + i]] ^= 1;
+        }
+        shell->volume = fabs(shell->volume);
+    }
+    ms_status status = ms_mesh_nest(shells, w->mesh, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    for (size_t s = 0; s < shells->n; s++) {
+        const ms_shell *shell = &shells->shell[s];
+        report->cavities += shell->depth % 2;
+        for (uint32_t i = 0; i < shell->n; i++) {
+            w->flip[shells->order[shell->first + i]] ^= shell->depth % 2;
+        }
+    }
+    return MS_OK;
+}
+
+static void apply_flips(ms_mesh *mesh, const uint8_t *flip, ms_mesh_report *report)
+{
+    for (size_t t = 0; t < mesh->n_triangles; t++) {
+        if (flip[t]) {
+            uint32_t swap = mesh->triangle[t][1];
+            mesh->triangle[t][1] = mesh->triangle[t][2];
+            mesh->triangle[t][2] = swap;
+            report->flipped++;
+        }
+    }
+}
+
+static ms_status orient(ms_mesh *mesh, walk *w, ms_mesh_report *report, ms_error *err)
+{
+    ms_status status = walk_all(w, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    report->shells = report->bodies = w->shells.n;
+    if (report->odd_edges > 0) {
+        return MS_OK;
+    }
+    if (w->is_twisted) {
+        const double *v = mesh->vertex[mesh->triangle[w->twisted][0]];
+        return ms_fail(err, MS_ERR_SHAPE,
+                       "the surface is one-sided, like a Klein bottle (near %g, %g, %g): it has no inside; mend it in "
+                       "a mesh editor",
+                       v[0], v[1], v[2]);
+    }
+    status = settle(w, report, err);
+    if (status == MS_OK) {
+        apply_flips(mesh, w->flip, report);
+        report->bodies = report->shells - report->cavities;
+        report->closed = 1;
+    }
+    return status;
+}
+
+ms_status ms_mesh_orient(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report *report, ms_error *err)
+{
+    size_t n = mesh->n_triangles;
+    uint32_t *across = malloc(3 * n * sizeof *across);
+    walk w = {.mesh = mesh, .across = across, .flip = calloc(n, 1)};
+    w.shells.order = malloc(n * sizeof *w.shells.order);
+    w.shells.shell_of = malloc(n * sizeof *w.shells.shell_of);
+    ms_status status = MS_OK;
+    if (!across || !w.flip || !w.shells.order || !w.shells.shell_of) {
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory to orient %zu triangles", n);
+        goto cleanup;
+    }
+    status = ms_mesh_link(across, mesh, edges, is_inside_out(mesh), err);
+    if (status == MS_OK) {
+        status = orient(mesh, &w, report, err);
+    }
+cleanup:
+    free(across);
+    free(w.flip);
+    free(w.shells.order);
+    free(w.shells.shell_of);
+    free(w.shells.shell);
+    return status;
+}

@@ -1,0 +1,55 @@
+#include "ms_mesh_read.h"
+
+#include <string.h>
+
+#include "ms_mesh_formats.h"
+
+typedef struct format {
+    const char *ending;
+    ms_status (*parse)(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
+} format;
+
+static const format *find_format(const char *path)
+{
+    static const format formats[] = {
+        {"stl", ms_mesh_parse_stl},
+        {"obj", ms_mesh_parse_obj},
+        {"ply", ms_mesh_parse_ply},
+        {"off", ms_mesh_parse_off},
+    };
+    char ending[16];
+    ms_file_ending(ending, path);
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
+        if (strcmp(ending, formats[i].ending) == 0) {
+            return &formats[i];
+        }
+    }
+    return NULL;
+}
+
+int ms_mesh_is_mesh_path(const char *path)
+{
+    return find_format(path) != NULL;
+}
+
+ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err)
+{
+    ms_bytes bytes;
+    const format *found = find_format(path);
+    *mesh = (ms_mesh){0};
+    if (!found) {
+        return ms_fail(err, MS_ERR_FORMAT,
+            "%s: its ending names no mesh format; meshes are read from .stl, .obj, .ply and .off", path);
+    }
+    ms_status status = ms_file_read(&bytes, path, err);
+    if (status) {
+        return status;
+    }
+    if (bytes.size == 0) {
+        status = ms_fail(err, MS_ERR_FORMAT, "%s: is empty (0 bytes); export the mesh again", path);
+    } else {
+        status = found->parse(mesh, &bytes, path, err);
+    }
+    ms_bytes_free(&bytes);
+    return status;
+}

@@ -1,0 +1,164 @@
+#include "ms_metrics.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_surface.h"
+
+ms_score ms_score_of(const ms_tally *sum, size_t target_voxels)
+{
+    const double target = (double)target_voxels, inside = (double)sum->inside, outside = (double)sum->outside;
+    return (ms_score){
+        .eta = (target - inside + outside) / target,
+        .dice = 1 - 2 * inside / (target + inside + outside),
+        .coverage = inside / target,
+        .overshoot = outside / target,
+        .off_volume = (inside + outside) / target,
+    };
+}
+
+static const double DEGREES = 57.295779513082321;
+
+/* Is the principal moment of this rank far enough from the others for its axis to mean something? */
+static int axis_is_determined(const double moment[3], int rank)
+{
+    for (int other = 0; other < 3; other++) {
+        if (other != rank && fabs(moment[other] - moment[rank]) <= 0.01 * moment[2]) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static double axis_angle(const double a[3], const double b[3])
+{
+    const double cosine = fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+    return DEGREES * acos(fmin(1, cosine));
+}
+
+ms_status ms_inertia_compare(ms_inertia_error *error, const ms_body *body, const ms_body *target, ms_error *err)
+{
+    ms_principal p, q;
+    double difference = 0, total = 0, away = 0;
+    memset(error, 0, sizeof *error);
+    if (!(body->volume > 0) || !(target->volume > 0)) {
+        return ms_fail(err, MS_ERR_SHAPE, "a body without volume has no inertia to compare");
+    }
+    ms_status status = ms_inertia_principal(&p, body, err);
+    if (status == MS_OK) {
+        status = ms_inertia_principal(&q, target, err);
+    }
+    if (status != MS_OK) {
+        return status;
+    }
+    for (int m = 0; m < 3; m++) {
+        error->moment[m] = p.moment[m] / q.moment[m] - 1;
+        difference += fabs(p.moment[m] - q.moment[m]);
+        total += q.moment[m];
+        if (axis_is_determined(p.moment, m) && axis_is_determined(q.moment, m)) {
+            error->angle = fmax(error->angle, axis_angle(p.axis[m], q.axis[m]));
+        }
+        away += (body->centroid[m] - target->centroid[m]) * (body->centroid[m] - target->centroid[m]);
+    }
+    error->weighted = difference / total;
+    error->centre = sqrt(away) / cbrt(target->volume * 3 / (4 * acos(-1.0)));
+    return MS_OK;
+}
+
+/* Does the clump fit into the grid? */
+static int within_grid(const ms_grid *grid, const double lo[3], const double hi[3])
+{
+    for (int a = 0; a < 3; a++) {
+        if (lo[a] < grid->origin[a] || hi[a] > grid->origin[a] + grid->h * (grid->n[a] - 1)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static ms_status count_union(ms_metrics *metrics, ms_score *curve, const ms_grid *grid, const ms_target *target,
+                             const ms_clump *clump, ms_error *err)
+{
+    ms_raster raster;
+    ms_tally sum = {0};
+    ms_ball *balls = malloc(clump->n_spheres * sizeof *balls);
+    if (!balls) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", clump->n_spheres);
+    }
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        ms_target_to_voxels(balls[s].centre, &balls[s].radius, grid, clump->sphere[s].centre,
+                            clump->sphere[s].radius);
+    }
+    ms_status status = ms_raster_alloc(&raster, grid, target->rule, err);
+    if (status == MS_OK) {
+        status = ms_raster_add(&raster, balls, clump->n_spheres, err);
+    }
+    for (size_t s = 0; status == MS_OK && s < clump->n_spheres; s++) {
+        ms_tally_add(&sum, &raster.tally[s]);
+        if (curve) {
+            curve[s] = ms_score_of(&sum, target->voxels);
+        }
+    }
+    metrics->score = ms_score_of(&sum, target->voxels);
+    ms_tally_body(&metrics->body, &sum, grid);
+    ms_raster_free(&raster);
+    free(balls);
+    return status;
+}
+
+static ms_status count_on_fitting_grid(ms_metrics *metrics, ms_score *curve, const ms_target *target,
+                                       const ms_clump *clump, size_t max_voxels, ms_error *err)
+{
+    double lo[3], hi[3];
+    ms_clump_box(lo, hi, clump);
+    if (within_grid(&target->grid, lo, hi)) {
+        return count_union(metrics, curve, &target->grid, target, clump, err);
+    }
+    ms_grid larger;
+    ms_status status = ms_grid_enlarge(&larger, &target->grid, lo, hi, max_voxels, err);
+    if (status == MS_OK) {
+        status = count_union(metrics, curve, &larger, target, clump, err);
+    }
+    ms_grid_free(&larger);
+    return status;
+}
+
+static ms_status measure_surface(ms_metrics *metrics, const ms_target *target, const ms_clump *clump, ms_error *err)
+{
+    ms_standout protrusion = {NAN, NAN}, gap = {NAN, NAN};
+    ms_status status = MS_OK;
+    if (target->mesh && target->closed) {
+        status = ms_surface_protrusion(&protrusion, target, clump, err);
+    }
+    if (target->mesh && status == MS_OK) {
+        status = ms_surface_gap(&gap, target, clump, err);
+    }
+    metrics->protrusion_max = protrusion.max;
+    metrics->protrusion_rms = protrusion.rms;
+    metrics->gap_max = gap.max;
+    metrics->gap_rms = gap.rms;
+    return status;
+}
+
+ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
+                             size_t max_voxels, ms_error *err)
+{
+    memset(metrics, 0, sizeof *metrics);
+    if (clump->n_spheres == 0) {
+        return ms_fail(err, MS_ERR_ARG, "a clump without spheres cannot be measured");
+    }
+    metrics->spheres = clump->n_spheres;
+    metrics->smallest_radius_ratio = ms_clump_smallest_radius(clump) / ms_target_equivalent_radius(target);
+    ms_status status = count_on_fitting_grid(metrics, curve, target, clump, max_voxels, err);
+    if (status == MS_OK) {
+        status = ms_clump_pieces(&metrics->pieces, clump, err);
+    }
+    if (status == MS_OK) {
+        status = measure_surface(metrics, target, clump, err);
+    }
+    if (status == MS_OK && metrics->body.volume > 0) {
+        status = ms_inertia_compare(&metrics->inertia, &metrics->body, &target->body, err);
+    }
+    return status;
+}

@@ -1,0 +1,334 @@
+#include "ms_raster.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_clump.h"
+
+/* Half the diagonal of a voxel: a ball's surface farther from the centre misses the voxel. */
+static const double HALF_DIAGONAL = 0.86602540378443871;
+
+/* Sample points per voxel and axis, at -3/8, -1/8, 1/8, 3/8 from the centre: 64 bits in all. */
+enum { SAMPLES = 4, HALF_OF_SAMPLES = 32 };
+
+ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule rule, ms_error *err)
+{
+    const size_t voxels = ms_grid_voxels(grid);
+    memset(raster, 0, sizeof *raster);
+    raster->grid = grid;
+    raster->rule = rule;
+    raster->first = malloc(voxels * sizeof *raster->first);
+    if (!raster->first) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
+    }
+    memset(raster->first, 0xff, voxels * sizeof *raster->first);
+    return MS_OK;
+}
+
+void ms_raster_free(ms_raster *raster)
+{
+    if (raster) {
+        free(raster->first);
+        free(raster->ball);
+        free(raster->tally);
+        memset(raster, 0, sizeof *raster);
+    }
+}
+
+/* What one thread has to know and to count while it works through planes. */
+typedef struct worker {
+    ms_raster *raster;
+    size_t from;                    /* the first new ball */
+    const size_t *neighbour_start;  /* of each new ball, into neighbour */
+    const uint16_t *neighbour;      /* earlier balls whose border voxels it may share */
+    ms_tally *tally;                /* of the new balls */
+    int lo[3], hi[3];               /* box of what was covered */
+} worker;
+
+/* Which of the voxel's sample points lie in the ball; (dx, dy, dz) from the ball's centre to
+ * the voxel's. */
+static uint64_t sample_mask(double dx, double dy, double dz, double radius_squared)
+{
+    uint64_t mask = 0;
+    int bit = 0;
+    for (int c = 0; c < SAMPLES; c++) {
+        const double z = dz + 0.25 * c - 0.375;
+        for (int b = 0; b < SAMPLES; b++) {
+            const double y = dy + 0.25 * b - 0.375, rest = radius_squared - z * z - y * y;
+            for (int a = 0; a < SAMPLES; a++) {
+                const double x = dx + 0.25 * a - 0.375;
+                mask |= (uint64_t)(x * x <= rest) << bit++;
+            }
+        }
+    }
+    return mask;
+}
+
+static uint64_t ball_mask(const ms_ball *ball, int i, int j, int k)
+{
+    const double dx = i - ball->centre[0], dy = j - ball->centre[1], dz = k - ball->centre[2];
+    const double reach = ball->radius + HALF_DIAGONAL;
+    if (dx * dx + dy * dy + dz * dz > reach * reach) {
+        return 0;
+    }
+    return sample_mask(dx, dy, dz, ball->radius * ball->radius);
+}
+
+/* Does the union of ball b and those before it cover more than half of the voxel? */
+static int covers_half(const worker *w, size_t b, int i, int j, int k)
+{
+    uint64_t mask = ball_mask(&w->raster->ball[b], i, j, k);
+    if (mask == 0) {
+        return 0; /* nothing new in this voxel */
+    }
+    const size_t *range = w->neighbour_start + (b - w->from);
+    for (size_t at = range[0]; at < range[1] && __builtin_popcountll(mask) <= HALF_OF_SAMPLES; at++) {
+        mask |= ball_mask(&w->raster->ball[w->neighbour[at]], i, j, k);
+    }
+    return __builtin_popcountll(mask) > HALF_OF_SAMPLES;
+}
+
+/* Sums over the voxels of one row that a ball covers first. */
+typedef struct row_sums {
+    int64_t count, inside, i, ii;
+    int lo, hi;
+} row_sums;
+
+static void cover_voxel(row_sums *sums, uint16_t *first, const uint8_t *inside, int i, size_t b)
+{
+    first[i] = (uint16_t)b;
+    sums->count++;
+    sums->inside += inside[i];
+    sums->i += i;
+    sums->ii += (int64_t)i * i;
+    sums->lo = i < sums->lo ? i : sums->lo;
+    sums->hi = i >= sums->hi ? i + 1 : sums->hi;
+}
+
+static void add_row(worker *w, size_t b, const row_sums *s, int j, int k)
+{
+    ms_tally *t = &w->tally[b - w->from];
+    const int64_t row[6] = {s->ii, s->count * j * j, s->count * k * k, s->count * j * k, s->i * k, s->i * j};
+    const int lo[3] = {s->lo, j, k}, hi[3] = {s->hi, j + 1, k + 1};
+    t->inside += s->inside;
+    t->outside += s->count - s->inside;
+    t->first[0] += s->i;
+    t->first[1] += s->count * j;
+    t->first[2] += s->count * k;
+    for (int m = 0; m < 6; m++) {
+        t->second[m] += row[m];
+    }
+    for (int a = 0; a < 3; a++) {
+        w->lo[a] = lo[a] < w->lo[a] ? lo[a] : w->lo[a];
+        w->hi[a] = hi[a] > w->hi[a] ? hi[a] : w->hi[a];
+    }
+}
+
+/* Half the chord of a ball of this radius at a squared distance from its centre; -1 if none. */
+static double half_chord(double radius, double distance_squared)
+{
+    const double square = radius * radius - distance_squared;
+    return radius > 0 && square >= 0 ? sqrt(square) : -1;
+}
+
+static int clamp(double value, int lo, int hi)
+{
+    return value < lo ? lo : value > hi ? hi : (int)value;
+}
+
+/* One row of voxels: those between first[outer] are looked at, those within `inner` of the
+ * centre are covered without looking. */
+static void cover_row(worker *w, size_t b, int j, int k, double outer, double inner)
+{
+    ms_raster *raster = w->raster;
+    const int n = raster->grid->n[0];
+    const double x = raster->ball[b].centre[0];
+    const size_t start = ms_grid_index(raster->grid, 0, j, k);
+    uint16_t *first = raster->first + start;
+    const uint8_t *inside = raster->grid->inside + start;
+    row_sums sums = {.lo = INT_MAX, .hi = INT_MIN};
+    const int from = clamp(ceil(x - outer), 0, n), to = clamp(floor(x + outer) + 1, 0, n);
+    const int full_from = inner < 0 ? to : clamp(ceil(x - inner), from, to);
+    const int full_to = inner < 0 ? to : clamp(floor(x + inner) + 1, full_from, to);
+    for (int i = from; i < to; i++) {
+        const int full = i >= full_from && i < full_to;
+        if (first[i] == MS_RASTER_NONE && (full || covers_half(w, b, i, j, k))) {
+            cover_voxel(&sums, first, inside, i, b);
+        }
+    }
+    if (sums.count) {
+        add_row(w, b, &sums, j, k);
+    }
+}
+
+static void cover_plane(worker *w, size_t b, int k)
+{
+    const ms_ball *ball = &w->raster->ball[b];
+    const int half = w->raster->rule == MS_VOXEL_HALF;
+    const double outer = ball->radius + (half ? HALF_DIAGONAL : 0);
+    const double inner = ball->radius - (half ? HALF_DIAGONAL : 0);
+    const double dz = k - ball->centre[2], reach = half_chord(outer, dz * dz);
+    if (reach < 0) {
+        return;
+    }
+    const int n = w->raster->grid->n[1];
+    const int from = clamp(ceil(ball->centre[1] - reach), 0, n);
+    const int to = clamp(floor(ball->centre[1] + reach) + 1, 0, n);
+    for (int j = from; j < to; j++) {
+        const double dy = j - ball->centre[1], away = dy * dy + dz * dz;
+        const double chord = half_chord(outer, away);
+        if (chord >= 0) {
+            cover_row(w, b, j, k, chord, half_chord(inner, away));
+        }
+    }
+}
+
+/* For each new ball, the earlier ones that may share a border voxel with it. */
+static ms_status find_neighbours(size_t **start, uint16_t **neighbour, const ms_raster *raster, size_t from,
+                                 ms_error *err)
+{
+    const size_t count = raster->n_balls - from;
+    size_t capacity = 16 * count + 16, used = 0;
+    *start = malloc((count + 1) * sizeof **start);
+    *neighbour = malloc(capacity * sizeof **neighbour);
+    for (size_t b = from; *start && *neighbour && b < raster->n_balls; b++) {
+        const ms_ball *ball = &raster->ball[b];
+        (*start)[b - from] = used;
+        for (size_t other = 0; other < b; other++) {
+            const ms_ball *o = &raster->ball[other];
+            const double dx = o->centre[0] - ball->centre[0], dy = o->centre[1] - ball->centre[1];
+            const double dz = o->centre[2] - ball->centre[2];
+            const double reach = o->radius + ball->radius + 2 * HALF_DIAGONAL;
+            if (dx * dx + dy * dy + dz * dz > reach * reach) {
+                continue;
+            }
+            if (used == capacity) {
+                uint16_t *grown = realloc(*neighbour, (capacity *= 2) * sizeof *grown);
+                if (!grown) {
+                    free(*neighbour);
+                }
+                *neighbour = grown;
+                if (!grown) {
+                    break;
+                }
+            }
+            (*neighbour)[used++] = (uint16_t)other;
+        }
+    }
+    if (!*start || !*neighbour) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the neighbours of %zu spheres", count);
+    }
+    (*start)[count] = used;
+    return MS_OK;
+}
+
+static ms_status append(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err)
+{
+    if (count > MS_CLUMP_MAX_SPHERES - raster->n_balls) {
+        return ms_fail(err, MS_ERR_LIMIT, "more than %d spheres in a clump", MS_CLUMP_MAX_SPHERES);
+    }
+    for (size_t b = 0; b < count; b++) {
+        const double *c = balls[b].centre;
+        if (!isfinite(c[0]) || !isfinite(c[1]) || !isfinite(c[2]) || !isfinite(balls[b].radius)) {
+            return ms_fail(err, MS_ERR_ARG, "sphere %zu has a centre or radius that is not a finite number", b + 1);
+        }
+    }
+    const size_t needed = raster->n_balls + count;
+    if (needed > raster->capacity) {
+        const size_t capacity = needed + needed / 2 + 16;
+        ms_ball *ball = realloc(raster->ball, capacity * sizeof *ball);
+        raster->ball = ball ? ball : raster->ball;
+        ms_tally *tally = ball ? realloc(raster->tally, capacity * sizeof *tally) : NULL;
+        raster->tally = tally ? tally : raster->tally;
+        if (!ball || !tally) {
+            return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", needed);
+        }
+        raster->capacity = capacity;
+    }
+    memcpy(raster->ball + raster->n_balls, balls, count * sizeof *balls);
+    memset(raster->tally + raster->n_balls, 0, count * sizeof *raster->tally);
+    raster->n_balls = needed;
+    return MS_OK;
+}
+
+/* The planes that any new ball touches. */
+static void plane_range(int *from, int *to, const ms_raster *raster, size_t first_new)
+{
+    double lo = INFINITY, hi = -INFINITY;
+    for (size_t b = first_new; b < raster->n_balls; b++) {
+        lo = fmin(lo, raster->ball[b].centre[2] - raster->ball[b].radius - 1);
+        hi = fmax(hi, raster->ball[b].centre[2] + raster->ball[b].radius + 1);
+    }
+    *from = clamp(floor(lo), 0, raster->grid->n[2]);
+    *to = clamp(ceil(hi) + 1, *from, raster->grid->n[2]);
+}
+
+/* Sums are of integers, so that their order does not matter. */
+static void merge(ms_raster *raster, const worker *w)
+{
+    for (size_t b = w->from; b < raster->n_balls; b++) {
+        ms_tally_add(&raster->tally[b], &w->tally[b - w->from]);
+    }
+    for (int a = 0; a < 3; a++) {
+        raster->lo[a] = w->lo[a] < raster->lo[a] ? w->lo[a] : raster->lo[a];
+        raster->hi[a] = w->hi[a] > raster->hi[a] ? w->hi[a] : raster->hi[a];
+    }
+}
+
+static ms_status cover(ms_raster *raster, size_t first_new, const size_t *start, const uint16_t *neighbour,
+                       ms_error *err)
+{
+    int from, to, out_of_memory = 0;
+    plane_range(&from, &to, raster, first_new);
+    for (int a = 0; a < 3; a++) {
+        raster->lo[a] = INT_MAX;
+        raster->hi[a] = INT_MIN;
+    }
+#pragma omp parallel reduction(| : out_of_memory)
+    {
+        worker w = {.raster = raster, .from = first_new, .neighbour_start = start, .neighbour = neighbour,
+                    .lo = {INT_MAX, INT_MAX, INT_MAX}, .hi = {INT_MIN, INT_MIN, INT_MIN}};
+        w.tally = calloc(raster->n_balls - first_new, sizeof *w.tally);
+        out_of_memory = !w.tally;
+#pragma omp for schedule(dynamic, 1)
+        for (int k = from; k < to; k++) {
+            for (size_t b = first_new; w.tally && b < raster->n_balls; b++) {
+                cover_plane(&w, b, k);
+            }
+        }
+        if (w.tally) {
+#pragma omp critical(ms_raster_merge)
+            merge(raster, &w);
+        }
+        free(w.tally);
+    }
+    if (raster->hi[0] < raster->lo[0]) {
+        memset(raster->lo, 0, sizeof raster->lo);
+        memset(raster->hi, 0, sizeof raster->hi);
+    }
+    return out_of_memory ? ms_fail(err, MS_ERR_NOMEM, "no memory to sum up %zu spheres", raster->n_balls) : MS_OK;
+}
+
+ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err)
+{
+    const size_t first_new = raster->n_balls;
+    size_t *start = NULL;
+    uint16_t *neighbour = NULL;
+    memset(raster->lo, 0, sizeof raster->lo);
+    memset(raster->hi, 0, sizeof raster->hi);
+    if (count == 0) {
+        return MS_OK;
+    }
+    ms_status status = append(raster, balls, count, err);
+    if (status == MS_OK) {
+        status = find_neighbours(&start, &neighbour, raster, first_new, err);
+    }
+    if (status == MS_OK) {
+        status = cover(raster, first_new, start, neighbour, err);
+    }
+    free(start);
+    free(neighbour);
+    return status;
+}

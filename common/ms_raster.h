@@ -1,0 +1,60 @@
+/** The union of spheres on a grid: which voxels it covers, and which sphere covers each first. */
+#ifndef MS_RASTER_H
+#define MS_RASTER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "ms_grid.h"
+#include "ms_tally.h"
+#include "ms_voxelize.h"
+
+/* First-cover index of a voxel that no sphere covers. */
+#define MS_RASTER_NONE UINT16_MAX
+
+/** A sphere in voxels: centre in voxel indices (fractions allowed), radius. */
+typedef struct ms_ball {
+    double centre[3];
+    double radius;
+} ms_ball;
+
+/**
+ * Union of spheres on a grid. The first-cover index makes every prefix of the spheres a
+ * union too: prefix k covers the voxels with first < k.
+ */
+typedef struct ms_raster {
+    const ms_grid *grid; /* borrowed: the target */
+    ms_voxel_rule rule;
+    uint16_t *first; /* one per voxel of the grid */
+    size_t n_balls, capacity;
+    ms_ball *ball;
+    ms_tally *tally; /* one per ball: sums over the voxels that it is the first to cover */
+    int lo[3], hi[3]; /* box lo <= (i,j,k) < hi of the voxels that the last ms_raster_add covered; empty: lo = hi */
+} ms_raster;
+
+/**
+ * Starts with nothing covered.
+ *
+ * @param[out] raster the caller frees it; empty on failure
+ * @param      grid   the target; borrowed until ms_raster_free
+ * @return MS_OK; MS_ERR_NOMEM. Two bytes a voxel.
+ */
+ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule rule, ms_error *err);
+
+/**
+ * Adds spheres, in order. By the rule MS_VOXEL_HALF a voxel is covered once more than half
+ * of its 4x4x4 sample points lie in the union of the spheres so far (MSS eq. 5 for the
+ * union), by MS_VOXEL_CENTRE once its centre does.
+ *
+ * Parts of spheres beyond the grid are not counted: use a grid that holds them
+ * (ms_grid_enlarge).
+ *
+ * @return MS_OK; MS_ERR_ARG for a radius or place that is not finite; MS_ERR_LIMIT above
+ *         MS_CLUMP_MAX_SPHERES; MS_ERR_NOMEM
+ * Cost: O(voxels in the spheres' boxes); all cores, the same bits at any number of threads.
+ */
+ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err);
+
+void ms_raster_free(ms_raster *raster);
+
+#endif

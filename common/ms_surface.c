@@ -1,0 +1,193 @@
+#include "ms_surface.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Triangles are taken in chunks of this size, whatever the number of threads, so that sums
+ * are always made in the same order. */
+enum { CHUNK = 512 };
+
+static const double PI = 3.14159265358979323846;
+
+/* Sums over a piece of surface. */
+typedef struct part {
+    double area, square, max;
+} part;
+
+static void part_add(part *sum, double area, double distance)
+{
+    sum->area += area;
+    sum->square += area * distance * distance;
+    sum->max = fmax(sum->max, distance);
+}
+
+static void join_parts(ms_standout *out, const part *parts, size_t count)
+{
+    part sum = {0};
+    for (size_t p = 0; p < count; p++) {
+        sum.area += parts[p].area;
+        sum.square += parts[p].square;
+        sum.max = fmax(sum.max, parts[p].max);
+    }
+    out->max = sum.max;
+    out->rms = sum.area > 0 ? sqrt(sum.square / sum.area) : 0;
+}
+
+static double squared_distance(const double a[3], const double b[3])
+{
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
+/* The spheres that may hide a part of sphere s, as indices; all others, if one holds it whole. */
+static size_t find_neighbours(uint32_t *neighbour, const ms_clump *clump, size_t s)
+{
+    const ms_sphere *sphere = &clump->sphere[s];
+    size_t count = 0;
+    for (size_t o = 0; o < clump->n_spheres; o++) {
+        const ms_sphere *other = &clump->sphere[o];
+        const double reach = sphere->radius + other->radius;
+        if (o != s && squared_distance(sphere->centre, other->centre) < reach * reach) {
+            neighbour[count++] = (uint32_t)o;
+        }
+    }
+    return count;
+}
+
+/* Of equal spheres the first counts as exposed. */
+static int hidden(const double point[3], const ms_clump *clump, size_t s, const uint32_t *neighbour, size_t count)
+{
+    for (size_t at = 0; at < count; at++) {
+        const ms_sphere *other = &clump->sphere[neighbour[at]];
+        const double reach = other->radius, away = squared_distance(point, other->centre);
+        if (away < reach * reach * (1 - 1e-12) || (neighbour[at] < s && away <= reach * reach * (1 + 1e-12))) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Distance of a point outside the mesh from it; 0 for a point inside. */
+static double outside_distance(const ms_target *target, const double point[3])
+{
+    const ms_grid *grid = &target->grid;
+    int voxel[3], in_grid = 1;
+    for (int a = 0; a < 3; a++) {
+        const double at = rint((point[a] - grid->origin[a]) / grid->h);
+        in_grid &= at >= 0 && at < grid->n[a];
+        voxel[a] = in_grid ? (int)at : 0;
+    }
+    /* Two voxels deep, the surface is more than the voxel's own size away. */
+    if (in_grid && target->distance[ms_grid_index(grid, voxel[0], voxel[1], voxel[2])] > 2.5f) {
+        return 0;
+    }
+    return fmax(0, ms_closest_signed_distance(target->closest, point));
+}
+
+static part sphere_part(const ms_target *target, const ms_clump *clump, size_t s, uint32_t *neighbour)
+{
+    const ms_sphere *sphere = &clump->sphere[s];
+    const double h = target->grid.h, area = 4 * PI * sphere->radius * sphere->radius;
+    const int samples = (int)fmin(1000, fmax(32, ceil(area / (4 * h * h))));
+    const double golden = PI * (3 - sqrt(5.0));
+    const size_t count = find_neighbours(neighbour, clump, s);
+    part sum = {0};
+    for (int m = 0; m < samples; m++) {
+        const double z = 1 - (2 * m + 1.0) / samples, ring = sqrt(1 - z * z), turn = golden * m;
+        const double point[3] = {sphere->centre[0] + sphere->radius * ring * cos(turn),
+                                 sphere->centre[1] + sphere->radius * ring * sin(turn),
+                                 sphere->centre[2] + sphere->radius * z};
+        if (!hidden(point, clump, s, neighbour, count)) {
+            part_add(&sum, area / samples, outside_distance(target, point));
+        }
+    }
+    return sum;
+}
+
+ms_status ms_surface_protrusion(ms_standout *out, const ms_target *target, const ms_clump *clump, ms_error *err)
+{
+    int out_of_memory = 0;
+    part *parts = calloc(clump->n_spheres + 1, sizeof *parts);
+    memset(out, 0, sizeof *out);
+    if (!parts) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to measure %zu spheres", clump->n_spheres);
+    }
+#pragma omp parallel reduction(| : out_of_memory)
+    {
+        uint32_t *neighbour = malloc((clump->n_spheres + 1) * sizeof *neighbour);
+        out_of_memory = !neighbour;
+#pragma omp for schedule(dynamic, 1)
+        for (size_t s = 0; s < clump->n_spheres; s++) {
+            if (neighbour) {
+                parts[s] = sphere_part(target, clump, s, neighbour);
+            }
+        }
+        free(neighbour);
+    }
+    join_parts(out, parts, clump->n_spheres);
+    free(parts);
+    return out_of_memory ? ms_fail(err, MS_ERR_NOMEM, "no memory to measure %zu spheres", clump->n_spheres) : MS_OK;
+}
+
+/* Distance from a point to the union of the spheres; 0 within. */
+static double union_distance(const ms_clump *clump, const double point[3])
+{
+    double least = INFINITY;
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        const ms_sphere *sphere = &clump->sphere[s];
+        const double reach = sphere->radius + least, away = squared_distance(point, sphere->centre);
+        if (away < reach * reach) {
+            least = sqrt(away) - sphere->radius;
+        }
+        if (least <= 0) {
+            return 0;
+        }
+    }
+    return least;
+}
+
+/* Points spread evenly over a triangle: the R2 sequence, folded from the square. */
+static part triangle_part(const ms_target *target, const ms_clump *clump, size_t triangle)
+{
+    const uint32_t *t = target->mesh->triangle[triangle];
+    const double *a = target->mesh->vertex[t[0]], *b = target->mesh->vertex[t[1]], *c = target->mesh->vertex[t[2]];
+    const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    const double normal[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    const double area = 0.5 * sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    const double samples = fmin(1e6, fmax(1, ceil(area / (4 * target->grid.h * target->grid.h))));
+    part sum = {0};
+    for (double m = 0; m < samples; m++) {
+        double s = fmod(1 / 3.0 + m * 0.75487766624669276, 1), w = fmod(1 / 3.0 + m * 0.56984029099805327, 1);
+        if (s + w > 1) {
+            s = 1 - s;
+            w = 1 - w;
+        }
+        const double point[3] = {a[0] + s * u[0] + w * v[0], a[1] + s * u[1] + w * v[1], a[2] + s * u[2] + w * v[2]};
+        part_add(&sum, area / samples, union_distance(clump, point));
+    }
+    return sum;
+}
+
+ms_status ms_surface_gap(ms_standout *out, const ms_target *target, const ms_clump *clump, ms_error *err)
+{
+    const size_t triangles = target->mesh->n_triangles, chunks = (triangles + CHUNK - 1) / CHUNK;
+    part *parts = calloc(chunks + 1, sizeof *parts);
+    memset(out, 0, sizeof *out);
+    if (!parts) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to measure %zu triangles", triangles);
+    }
+#pragma omp parallel for schedule(dynamic, 1)
+    for (size_t chunk = 0; chunk < chunks; chunk++) {
+        const size_t last = (chunk + 1) * CHUNK < triangles ? (chunk + 1) * CHUNK : triangles;
+        for (size_t t = chunk * CHUNK; t < last; t++) {
+            const part one = triangle_part(target, clump, t);
+            parts[chunk].area += one.area;
+            parts[chunk].square += one.square;
+            parts[chunk].max = fmax(parts[chunk].max, one.max);
+        }
+    }
+    join_parts(out, parts, chunks);
+    free(parts);
+    return MS_OK;
+}

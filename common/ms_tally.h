@@ -1,0 +1,24 @@
+/** Sums over voxels, from which all measures of a union on a grid follow. */
+#ifndef MS_TALLY_H
+#define MS_TALLY_H
+
+#include <stdint.h>
+
+#include "ms_grid.h"
+#include "ms_inertia.h"
+
+/** Sums over a set of voxels; exact, in voxel indices. */
+typedef struct ms_tally {
+    int64_t inside;    /* voxels inside the target */
+    int64_t outside;   /* voxels outside the target */
+    int64_t first[3];  /* sum of i, j, k over all of them */
+    int64_t second[6]; /* sum of ii, jj, kk, jk, ik, ij */
+} ms_tally;
+
+/** Adds the sums of one set to those of another. */
+void ms_tally_add(ms_tally *sum, const ms_tally *part);
+
+/** Volume, centroid and inertia of the voxels as cubes of unit density; zeros if there are none. */
+void ms_tally_body(ms_body *body, const ms_tally *sum, const ms_grid *grid);
+
+#endif

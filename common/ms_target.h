@@ -1,0 +1,61 @@
+/** What a generator works on: the shape, its voxels and its distance field, made once. */
+#ifndef MS_TARGET_H
+#define MS_TARGET_H
+
+#include "ms_closest.h"
+#include "ms_grid.h"
+#include "ms_inertia.h"
+#include "ms_mesh.h"
+#include "ms_raster.h"
+#include "ms_volume.h"
+#include "ms_voxelize.h"
+
+typedef struct ms_target {
+    const ms_mesh *mesh; /* borrowed; NULL for a volume */
+    int closed;          /* the mesh bounds a body; 1 for a volume */
+    ms_closest *closest; /* nearest point on the mesh; NULL for a volume */
+    ms_voxel_rule rule;  /* for the shape and for any union of spheres on its grid */
+    ms_grid grid;        /* S, MSS eq. 5 */
+    float *distance;     /* E, MSS eq. 8, in voxels */
+    size_t voxels;       /* sum of S */
+    ms_body body;        /* exact for a closed mesh, else of the voxels */
+    size_t disagree;     /* voxels on which the axes did not agree (open mesh) */
+    double voxelize_seconds, distance_seconds;
+} ms_target;
+
+/** Bytes that the grid, the fields of the target and of a generator take at their peak. */
+double ms_target_bytes(const double n[3]);
+
+/**
+ * Voxelises a mesh and computes its distance field.
+ *
+ * @param[out] target the caller frees it; empty on failure
+ * @param      mesh   repaired (ms_mesh_repair); borrowed until ms_target_free
+ * @param      closed nonzero: the mesh is closed; zero: take the majority of three axes
+ * @param      h      lattice constant, in the mesh's unit
+ * @return MS_OK; as ms_voxelize, ms_inertia_mesh
+ */
+ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
+                              ms_error *err);
+
+/**
+ * Takes the voxels of one label of a volume, with a hull of background, on the volume's own
+ * lattice.
+ *
+ * @param label 0: every labelled voxel, if the volume has one label only
+ * @return MS_OK; MS_ERR_SHAPE without such voxels, or for label 0 and several labels; MS_ERR_NOMEM
+ */
+ms_status ms_target_from_volume(ms_target *target, const ms_volume *volume, uint32_t label, ms_error *err);
+
+/** Radius of the ball of the target's volume, in the mesh's unit. */
+double ms_target_equivalent_radius(const ms_target *target);
+
+/** A sphere in the mesh's frame, in voxels of the target's grid; and back. */
+void ms_target_to_voxels(double out_centre[3], double *out_radius, const ms_grid *grid, const double centre[3],
+                         double radius);
+void ms_target_from_voxels(double out_centre[3], double *out_radius, const ms_grid *grid, const double centre[3],
+                           double radius);
+
+void ms_target_free(ms_target *target);
+
+#endif

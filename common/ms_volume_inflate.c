@@ -1,0 +1,89 @@
+/* Unpacks zlib and gzip streams whose unpacked size is known and not believed. */
+#include <stdlib.h>
+
+#define ZLIB_CONST
+#include <zlib.h>
+
+#include "ms_volume_formats.h"
+
+/* Deflate packs at most 258 bytes into 2 bits. */
+#define DEFLATE_MAX_RATIO 1032
+
+/* zlib counts in unsigned int. */
+#define INFLATE_STEP ((size_t)1 << 30)
+
+/* Room for more output, up to one byte more than expected so that too much is noticed. */
+static ms_status grow(ms_bytes *out, size_t *room, size_t expected, const char *path, ms_error *err)
+{
+    size_t wanted = *room < ((size_t)1 << 20) ? (size_t)1 << 20 : 2 * *room;
+    wanted = wanted < expected + 1 ? wanted : expected + 1;
+    uint8_t *larger = realloc(out->data, wanted);
+    if (!larger) {
+        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to unpack its %zu bytes; crop it", path, expected);
+    }
+    out->data = larger;
+    *room = wanted;
+    return MS_OK;
+}
+
+/* One call of zlib, in steps that its counters can hold. */
+static int inflate_step(z_stream *stream, ms_bytes *out, size_t room, const uint8_t *data, size_t size, size_t *used)
+{
+    size_t in = size - *used < INFLATE_STEP ? size - *used : INFLATE_STEP;
+    size_t space = room - out->size < INFLATE_STEP ? room - out->size : INFLATE_STEP;
+    stream->next_in = data + *used;
+    stream->avail_in = (uInt)in;
+    stream->next_out = out->data + out->size;
+    stream->avail_out = (uInt)space;
+    int code = inflate(stream, Z_NO_FLUSH);
+    *used += in - stream->avail_in;
+    out->size += space - stream->avail_out;
+    return code;
+}
+
+static ms_status inflate_all(ms_bytes *out, z_stream *stream, const uint8_t *data, size_t size, size_t expected,
+    const char *path, ms_error *err)
+{
+    size_t room = 0;
+    size_t used = 0;
+    int code = Z_OK;
+    while (code != Z_STREAM_END && out->size <= expected) {
+        ms_status status = out->size == room ? grow(out, &room, expected, path, err) : MS_OK;
+        if (status) {
+            return status;
+        }
+        code = inflate_step(stream, out, room, data, size, &used);
+        if (code != Z_OK && code != Z_STREAM_END) {
+            return ms_fail(err, MS_ERR_FORMAT, "%s: its packed data are %s at byte %zu of %zu; fetch or save it again",
+                path, used == size ? "cut" : "damaged", used, size);
+        }
+    }
+    if (out->size != expected || used != size) {
+        return ms_fail(err, MS_ERR_FORMAT,
+            "%s: its packed data hold %s bytes than the %zu that its header claims; fetch or save it again", path,
+            out->size < expected ? "fewer" : "more", expected);
+    }
+    return MS_OK;
+}
+
+ms_status ms_volume_inflate(
+    ms_bytes *out, const uint8_t *data, size_t size, size_t expected, const char *path, ms_error *err)
+{
+    z_stream stream = {0};
+    *out = (ms_bytes){0};
+    if (expected / DEFLATE_MAX_RATIO > size) {
+        return ms_fail(err, MS_ERR_FORMAT,
+            "%s: its %zu packed bytes cannot hold the %zu that its header claims; fetch or save it again", path, size,
+            expected);
+    }
+    /* 32 lets zlib tell its own header from that of gzip. */
+    if (inflateInit2(&stream, 32 + MAX_WBITS) != Z_OK) {
+        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to unpack it", path);
+    }
+    ms_status status = inflate_all(out, &stream, data, size, expected, path, err);
+    inflateEnd(&stream);
+    if (status) {
+        ms_bytes_free(out);
+    }
+    return status;
+}

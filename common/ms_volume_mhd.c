@@ -1,0 +1,268 @@
+/* MetaImage .mhd and .mha: lines "Key = Value" up to ElementDataFile, voxels there or in another file. */
+#include <math.h>
+#include <string.h>
+
+#include "ms_volume_formats.h"
+
+typedef struct mhd {
+    ms_volume_header header;
+    int has_size;
+    int has_spacing;
+    int64_t packed_size; /* -1 where the file does not say */
+    int64_t skip;        /* bytes before the voxels; -1: they are the last of the file */
+    ms_word data_file;
+} mhd;
+
+typedef ms_status field_parser(mhd *image, ms_text *value, ms_error *err);
+
+static ms_status parse_object(mhd *image, ms_text *value, ms_error *err)
+{
+    ms_word word = ms_text_rest(value);
+    (void)image;
+    return ms_word_is(&word, "image") ? MS_OK : ms_text_fail(err, value, "only the ObjectType Image is read");
+}
+
+static ms_status parse_dimensions(mhd *image, ms_text *value, ms_error *err)
+{
+    int64_t n = 0;
+    (void)image;
+    ms_status status = ms_text_integers(&n, 1, value, err);
+    if (!status && n != 3) {
+        return ms_text_fail(err, value, "the image has %lld axes and a volume has 3", (long long)n);
+    }
+    return status;
+}
+
+static ms_status parse_size(mhd *image, ms_text *value, ms_error *err)
+{
+    image->has_size = 1;
+    return ms_text_integers(image->header.n, 3, value, err);
+}
+
+static ms_status parse_three(double numbers[3], const char *what, ms_text *value, ms_error *err)
+{
+    ms_status status = ms_text_doubles(numbers, 3, value, what, err);
+    return status ? status : ms_text_end_line(value, err);
+}
+
+static ms_status parse_spacing(mhd *image, ms_text *value, ms_error *err)
+{
+    image->has_spacing = 1;
+    return parse_three(image->header.spacing, "the spacing", value, err);
+}
+
+/* The extent of a voxel stands for the spacing only where that is missing. */
+static ms_status parse_element_size(mhd *image, ms_text *value, ms_error *err)
+{
+    double size[3];
+    ms_status status = parse_three(size, "the size", value, err);
+    if (!status && !image->has_spacing) {
+        memcpy(image->header.spacing, size, sizeof size);
+    }
+    return status;
+}
+
+static ms_status parse_origin(mhd *image, ms_text *value, ms_error *err)
+{
+    return parse_three(image->header.origin, "the origin", value, err);
+}
+
+static ms_status parse_matrix(mhd *image, ms_text *value, ms_error *err)
+{
+    double matrix[9];
+    (void)image;
+    ms_status status = ms_text_doubles(matrix, 9, value, "the matrix", err);
+    for (int i = 0; i < 9 && !status; i++) {
+        if (!(fabs(matrix[i] - (i % 4 == 0 ? 1.0 : 0.0)) <= 1e-6)) {
+            return ms_text_fail(err, value, "the axes are turned or mirrored; resample the image to aligned axes");
+        }
+    }
+    return status;
+}
+
+static ms_status parse_type(mhd *image, ms_text *value, ms_error *err)
+{
+    static const struct {
+        const char *name;
+        ms_sample sample;
+    } types[] = {
+        {"met_char", {MS_SAMPLE_SIGNED, 1}}, {"met_uchar", {MS_SAMPLE_UNSIGNED, 1}},
+        {"met_short", {MS_SAMPLE_SIGNED, 2}}, {"met_ushort", {MS_SAMPLE_UNSIGNED, 2}},
+        {"met_int", {MS_SAMPLE_SIGNED, 4}}, {"met_uint", {MS_SAMPLE_UNSIGNED, 4}},
+        {"met_long", {MS_SAMPLE_SIGNED, 4}}, {"met_ulong", {MS_SAMPLE_UNSIGNED, 4}},
+        {"met_long_long", {MS_SAMPLE_SIGNED, 8}}, {"met_ulong_long", {MS_SAMPLE_UNSIGNED, 8}},
+        {"met_float", {MS_SAMPLE_FLOAT, 4}}, {"met_double", {MS_SAMPLE_FLOAT, 8}},
+    };
+    ms_word word = ms_text_rest(value);
+    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
+        if (ms_word_is(&word, types[i].name)) {
+            image->header.sample = types[i].sample;
+            return MS_OK;
+        }
+    }
+    return ms_text_fail(err, value, "the type '%s' is not read; save the labels as MET_USHORT or MET_UINT",
+        ms_word_quote(&word).text);
+}
+
+static ms_status parse_bool(int *truth, ms_text *value, ms_error *err)
+{
+    ms_word word = ms_text_rest(value);
+    *truth = ms_word_is(&word, "true") || ms_word_is(&word, "t") || ms_word_is(&word, "1");
+    if (!*truth && !ms_word_is(&word, "false") && !ms_word_is(&word, "f") && !ms_word_is(&word, "0")) {
+        return ms_text_fail(err, value, "'%s' stands where True or False belongs", ms_word_quote(&word).text);
+    }
+    return MS_OK;
+}
+
+static ms_status parse_binary(mhd *image, ms_text *value, ms_error *err)
+{
+    int binary = 1;
+    (void)image;
+    ms_status status = parse_bool(&binary, value, err);
+    return status || binary ? status : ms_text_fail(err, value, "voxels as text are not read; save them as binary");
+}
+
+static ms_status parse_byte_order(mhd *image, ms_text *value, ms_error *err)
+{
+    return parse_bool(&image->header.big_endian, value, err);
+}
+
+static ms_status parse_compressed(mhd *image, ms_text *value, ms_error *err)
+{
+    int packed = 0;
+    ms_status status = parse_bool(&packed, value, err);
+    image->header.coding = packed ? MS_CODING_DEFLATE : MS_CODING_RAW;
+    return status;
+}
+
+static ms_status parse_packed_size(mhd *image, ms_text *value, ms_error *err)
+{
+    return ms_text_integers(&image->packed_size, 1, value, err);
+}
+
+static ms_status parse_channels(mhd *image, ms_text *value, ms_error *err)
+{
+    int64_t n = 0;
+    (void)image;
+    ms_status status = ms_text_integers(&n, 1, value, err);
+    if (!status && n != 1) {
+        return ms_text_fail(err, value, "voxels of %lld channels are colours and not labels", (long long)n);
+    }
+    return status;
+}
+
+static ms_status parse_skip(mhd *image, ms_text *value, ms_error *err)
+{
+    ms_status status = ms_text_integers(&image->skip, 1, value, err);
+    if (!status && image->skip < -1) {
+        return ms_text_fail(err, value, "HeaderSize is %lld; it must be -1 or more", (long long)image->skip);
+    }
+    return status;
+}
+
+static ms_status parse_data_file(mhd *image, ms_text *value, ms_error *err)
+{
+    return ms_volume_data_file(&image->data_file, value, err);
+}
+
+static field_parser *find_field(const ms_word *key)
+{
+    static const struct {
+        const char *key;
+        field_parser *parse;
+    } fields[] = {
+        {"objecttype", parse_object}, {"ndims", parse_dimensions}, {"dimsize", parse_size},
+        {"elementspacing", parse_spacing}, {"elementsize", parse_element_size},
+        {"offset", parse_origin}, {"position", parse_origin}, {"origin", parse_origin},
+        {"transformmatrix", parse_matrix}, {"orientation", parse_matrix}, {"rotation", parse_matrix},
+        {"elementtype", parse_type}, {"binarydata", parse_binary},
+        {"binarydatabyteordermsb", parse_byte_order}, {"elementbyteordermsb", parse_byte_order},
+        {"compresseddata", parse_compressed}, {"compresseddatasize", parse_packed_size},
+        {"elementnumberofchannels", parse_channels}, {"headersize", parse_skip},
+        {"elementdatafile", parse_data_file},
+    };
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
+        if (ms_word_is(key, fields[i].key)) {
+            return fields[i].parse;
+        }
+    }
+    return NULL;
+}
+
+/* One line; keys that say nothing about the labels, such as a patient's name, are passed over. */
+static ms_status parse_line(mhd *image, ms_text *text, ms_error *err)
+{
+    ms_word line = ms_text_rest(text);
+    const char *equals = memchr(line.start, '=', line.length);
+    if (!equals) {
+        return ms_text_fail(err, text, "'%s' is no line 'Key = Value'", ms_word_quote(&line).text);
+    }
+    ms_word left = {line.start, (size_t)(equals - line.start)};
+    ms_word right = {equals + 1, line.length - left.length - 1};
+    ms_text before = ms_text_of_word(&left, text);
+    ms_text value = ms_text_of_word(&right, text);
+    ms_word key = ms_text_rest(&before);
+    field_parser *parse = find_field(&key);
+    return parse ? parse(image, &value, err) : MS_OK;
+}
+
+static ms_status parse_header(mhd *image, ms_text *text, ms_error *err)
+{
+    while (!image->data_file.length) {
+        if (!ms_text_seek(text)) {
+            return ms_text_fail(err, text, "the header ends without ElementDataFile");
+        }
+        ms_status status = parse_line(image, text, err);
+        if (status) {
+            return status;
+        }
+    }
+    if (!image->has_size || image->header.sample.size == 0) {
+        return ms_text_fail(err, text, "the header lacks %s", image->has_size ? "ElementType" : "DimSize");
+    }
+    return MS_OK;
+}
+
+/* `data` begins with what the header may tell to skip. */
+static ms_status fill(ms_volume *volume, const mhd *image, const uint8_t *data, size_t size, const char *path,
+    ms_error *err)
+{
+    size_t voxels = 0;
+    ms_status status = ms_volume_data_size(&voxels, &image->header, path, err);
+    if (status) {
+        return status;
+    }
+    size_t packed = image->header.coding == MS_CODING_RAW ? voxels
+        : image->packed_size >= 0                         ? (size_t)image->packed_size
+                                                          : size;
+    size_t skip = image->skip >= 0 ? (size_t)image->skip : size > packed ? size - packed : 0;
+    if (skip > size || size - skip != packed) {
+        return ms_fail(err, MS_ERR_FORMAT,
+            "%s: its header claims %zu bytes of data behind %zu others but there are %zu; fetch or save it again", path,
+            packed, skip, size);
+    }
+    return ms_volume_fill(volume, &image->header, data + skip, packed, path, err);
+}
+
+ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const char *path, ms_error *err)
+{
+    ms_text text;
+    ms_bytes beside = {0};
+    mhd image = {.header = ms_volume_header_start(), .packed_size = -1};
+    *volume = (ms_volume){0};
+    ms_text_start(&text, bytes, path);
+    ms_status status = parse_header(&image, &text, err);
+    if (status) {
+        return status;
+    }
+    if (ms_word_is(&image.data_file, "local")) {
+        text.at += text.at < text.end;
+        return fill(volume, &image, (const uint8_t *)text.at, (size_t)(text.end - text.at), path, err);
+    }
+    status = ms_volume_read_beside(&beside, &image.data_file, &text, err);
+    if (!status) {
+        status = fill(volume, &image, beside.data, beside.size, path, err);
+    }
+    ms_bytes_free(&beside);
+    return status;
+}

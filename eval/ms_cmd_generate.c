@@ -1,0 +1,368 @@
+/* mskit generate SHAPE */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "ms_commands.h"
+#include "ms_generator.h"
+#include "ms_input.h"
+#include "ms_metrics.h"
+#include "ms_report.h"
+#include "ms_write.h"
+
+enum { MAX_OUTPUTS = 16, DEFAULT_SPHERES = 50 };
+
+static const ms_flag FLAGS[] = {
+    {"generator", 'g', "NAME", "the method (mss); mskit generators lists them"},
+    {"spheres", 'n', "N", "at most N spheres (50, if no --until is given)"},
+    {"until", 0, "MEASURE=VALUE", "end when eta, dice, coverage or inertia is as good, or spheres would be smaller than radius; may be repeated"},
+    {"set", 0, "OPTION=VALUE", "an option of the method (mskit help NAME); --OPTION VALUE does the same"},
+    {"seed", 0, "S", "seed of methods that draw random numbers (1)"},
+    {"output", 'o', "FILE", "csv, json or vtk by its ending, - for standard output; may be repeated"},
+    {"format", 0, "F", "format of the outputs whatever their ending"},
+    {"target-grid", 0, "FILE", "also write the voxels of the shape as VTK"},
+    {"json", 0, NULL, "scores and settings as JSON on standard output"},
+    MS_INPUT_FLAGS,
+    {0},
+};
+
+typedef struct arguments {
+    const char *shape;
+    ms_input_flags input;
+    const ms_generator *generator;
+    ms_settings settings;
+    ms_stop stop;
+    double seed;
+    const char *output[MAX_OUTPUTS];
+    int n_outputs;
+    const ms_format *format;
+    const char *target_grid;
+    int json;
+} arguments;
+
+/* All that a run gave. */
+typedef struct result {
+    ms_clump clump;
+    ms_stop_reason reason;
+    ms_metrics metrics;
+    double generate_seconds, score_seconds;
+} result;
+
+/* Cuts "name=value" in two; `name` has room for 64 characters. */
+static ms_status split_assignment(char name[64], const char **value, const char *text, ms_error *err)
+{
+    const char *equals = strchr(text, '=');
+    const size_t length = equals ? (size_t)(equals - text) : strlen(text);
+    if (length == 0 || length >= 64) {
+        return ms_fail(err, MS_ERR_ARG, "'%s' is not of the form name=value", text);
+    }
+    memcpy(name, text, length);
+    name[length] = 0;
+    *value = equals ? equals + 1 : NULL;
+    return MS_OK;
+}
+
+static ms_status take_until(arguments *a, const char *text, ms_error *err)
+{
+    char name[64];
+    const char *value = NULL;
+    double number;
+    ms_status status = split_assignment(name, &value, text, err);
+    if (status == MS_OK) {
+        status = ms_flag_number(&number, "until", value ? value : "", 0, HUGE_VAL, err);
+    }
+    return status == MS_OK ? ms_stop_set(&a->stop, name, number, err) : status;
+}
+
+static ms_status take_output(arguments *a, const char *path, ms_error *err)
+{
+    if (a->n_outputs == MAX_OUTPUTS) {
+        return ms_fail(err, MS_ERR_LIMIT, "more than %d outputs", MAX_OUTPUTS);
+    }
+    a->output[a->n_outputs++] = path;
+    return MS_OK;
+}
+
+static ms_status take_set(arguments *a, const char *text, ms_error *err)
+{
+    char name[64];
+    const char *value = NULL;
+    ms_status status = split_assignment(name, &value, text, err);
+    return status == MS_OK ? ms_settings_set(&a->settings, name, value, err) : status;
+}
+
+static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+{
+    arguments *a = context;
+    double number;
+    int taken;
+    ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
+    if (taken || strcmp(name, "generator") == 0) {
+        return status; /* the generator is known already */
+    }
+    if (strcmp(name, "spheres") == 0) {
+        status = ms_flag_whole(&number, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
+        a->stop.spheres = status == MS_OK ? (size_t)number : 0;
+        return status;
+    }
+    if (strcmp(name, "seed") == 0) {
+        return ms_flag_whole(&a->seed, name, value, 0, 9007199254740992.0, err);
+    }
+    if (strcmp(name, "format") == 0) {
+        a->format = ms_format_find(value, err);
+        return a->format ? MS_OK : MS_ERR_ARG;
+    }
+    if (strcmp(name, "target-grid") == 0) {
+        a->target_grid = value;
+        return MS_OK;
+    }
+    if (strcmp(name, "json") == 0) {
+        a->json = 1;
+        return MS_OK;
+    }
+    if (strcmp(name, "until") == 0) {
+        return take_until(a, value, err);
+    }
+    if (strcmp(name, "output") == 0) {
+        return take_output(a, value, err);
+    }
+    return strcmp(name, "set") == 0 ? take_set(a, value, err) : ms_settings_set(&a->settings, name, value, err);
+}
+
+/* The generator decides which options there are, so it is looked for before all else. */
+static const char *generator_name(int argc, char **argv)
+{
+    const char *name = "mss";
+    for (int w = 1; w < argc && strcmp(argv[w], "--") != 0; w++) {
+        if (strncmp(argv[w], "--generator=", 12) == 0) {
+            name = argv[w] + 12;
+        } else if ((strcmp(argv[w], "--generator") == 0 || strcmp(argv[w], "-g") == 0) && w + 1 < argc) {
+            name = argv[++w];
+        } else if (strncmp(argv[w], "-g", 2) == 0) {
+            name = argv[w] + 2;
+        }
+    }
+    return name;
+}
+
+static void show_progress(void *context, size_t spheres, double dice)
+{
+    fprintf(stderr, "\r%s: %zu spheres, D %.4f ", (const char *)context, spheres, dice);
+}
+
+static json_t *settings_json(const ms_settings *settings)
+{
+    json_t *json = json_object(), *planes = json_array();
+    for (size_t o = 0; settings->options[o].name; o++) {
+        char text[64];
+        if (settings->options[o].type != MS_OPTION_PLANE) {
+            ms_settings_text(text, sizeof text, settings, o);
+            json_object_set_new(json, settings->options[o].name, json_string(text));
+            continue;
+        }
+        for (size_t p = 0; p < settings->n_planes; p++) {
+            const double *q = settings->plane[p];
+            json_array_append_new(planes, json_pack("[f,f,f,f]", q[0], q[1], q[2], q[3]));
+        }
+        json_object_set(json, settings->options[o].name, planes);
+    }
+    json_decref(planes);
+    return json;
+}
+
+static json_t *stop_json(const ms_stop *stop)
+{
+    json_t *json = json_object();
+    const struct {
+        const char *name;
+        double value;
+    } asked[] = {{"eta", stop->eta},           {"dice", stop->dice},     {"coverage", stop->coverage},
+                 {"inertia", stop->inertia}, {"radius", stop->radius}};
+    if (stop->spheres) {
+        json_object_set_new(json, "spheres", json_integer((json_int_t)stop->spheres));
+    }
+    for (size_t m = 0; m < sizeof asked / sizeof *asked; m++) {
+        if (asked[m].value >= 0) {
+            json_object_set_new(json, asked[m].name, json_real(asked[m].value));
+        }
+    }
+    return json;
+}
+
+/* Everything that is needed to repeat the run, and what it gave. */
+static json_t *record_json(const arguments *a, const ms_input *input, const result *r)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    const double cpu = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+                       1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+    json_t *seconds = json_pack("{s:f,s:f,s:f,s:f,s:f,s:f}", "read", input->read_seconds, "voxelize",
+                                input->target.voxelize_seconds, "distance", input->target.distance_seconds, "generate",
+                                r->generate_seconds, "score", r->score_seconds, "cpu", cpu);
+    return json_pack("{s:s,s:o,s:I,s:o,s:s,s:o,s:o,s:o,s:i,s:I}", "generator", a->generator->name, "options",
+                     settings_json(&a->settings), "seed", (json_int_t)a->seed, "until", stop_json(&a->stop),
+                     "stopped_by", ms_stop_name(r->reason), "input", ms_report_input_json(input), "scores",
+                     ms_report_metrics_json(&r->metrics), "seconds", seconds, "threads", omp_get_max_threads(),
+                     "peak_memory_kb", (json_int_t)usage.ru_maxrss);
+}
+
+static ms_status generate(result *r, const arguments *a, const ms_input *input, ms_error *err)
+{
+    static char name[32];
+    const int terminal = isatty(STDERR_FILENO);
+    const ms_run run = {.target = &input->target, .stop = a->stop, .settings = &a->settings,
+                        .seed = (uint64_t)a->seed, .progress = terminal ? show_progress : NULL,
+                        .progress_context = name};
+    snprintf(name, sizeof name, "%s", a->generator->name);
+    const double start = omp_get_wtime();
+    ms_status status = ms_generator_run(&r->clump, &r->reason, a->generator, &run, err);
+    const double generated = omp_get_wtime();
+    if (terminal) {
+        fputc('\n', stderr);
+    }
+    if (status == MS_OK) {
+        status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump,
+                                    (size_t)(a->input.max_memory / 12), err);
+    }
+    r->generate_seconds = generated - start;
+    r->score_seconds = omp_get_wtime() - generated;
+    return status;
+}
+
+/* Without --output: NAME-GENERATOR.csv, .json and .vtk in the working folder. */
+static void default_output(char *path, size_t size, const arguments *a, const char *ending)
+{
+    const char *slash = strrchr(a->shape, '/'), *base = slash ? slash + 1 : a->shape, *dot = strrchr(base, '.');
+    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
+    snprintf(path, size, "%.*s-%s.%s", length, base, a->generator->name, ending);
+}
+
+static ms_status write_outputs(const arguments *a, const ms_input *input, const result *r, const char *record,
+                               ms_error *err)
+{
+    FILE *words = a->json ? stderr : stdout;
+    ms_status status = MS_OK;
+    for (int o = 0; o < a->n_outputs && status == MS_OK; o++) {
+        status = ms_write_clump(&r->clump, a->output[o], a->format, record, err);
+        if (strcmp(a->output[o], "-") != 0 && status == MS_OK) {
+            fprintf(words, "wrote %s\n", a->output[o]);
+        }
+    }
+    for (const ms_format *f = ms_formats; a->n_outputs == 0 && f->name && status == MS_OK; f++) {
+        char path[4096];
+        if (a->format && f != a->format) {
+            continue;
+        }
+        default_output(path, sizeof path, a, f->name);
+        status = ms_write_clump(&r->clump, path, f, record, err);
+        if (status == MS_OK) {
+            fprintf(words, "wrote %s\n", path);
+        }
+    }
+    if (status == MS_OK && a->target_grid) {
+        status = ms_write_grid(&input->target.grid, a->target_grid, err);
+    }
+    return status;
+}
+
+static int writes_to_stdout(const arguments *a)
+{
+    for (int o = 0; o < a->n_outputs; o++) {
+        if (strcmp(a->output[o], "-") == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static ms_status report(const arguments *a, const ms_input *input, const result *r, ms_error *err)
+{
+    json_t *json = record_json(a, input, r);
+    char *record = json ? json_dumps(json, JSON_COMPACT) : NULL;
+    ms_status status;
+    if (!record) {
+        json_decref(json);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the record of the run");
+    }
+    if (!a->json) {
+        FILE *words = writes_to_stdout(a) ? stderr : stdout;
+        fprintf(words, "%s with %s, stopped by %s, %.3g s\n", input->path, a->generator->name,
+                ms_stop_name(r->reason), r->generate_seconds);
+        ms_report_metrics(words, &r->metrics, &input->target);
+    }
+    status = write_outputs(a, input, r, record, err);
+    free(record);
+    if (a->json && status == MS_OK) {
+        return ms_report_print(stdout, json, err);
+    }
+    json_decref(json);
+    return status;
+}
+
+static int work(const ms_command *command, const arguments *a)
+{
+    ms_error err;
+    ms_input input;
+    result r;
+    memset(&r, 0, sizeof r);
+    ms_status status = ms_input_read(&input, a->shape, &err);
+    if (status != MS_OK) {
+        return ms_fail_command(command, &err);
+    }
+    status = ms_input_target(&input, &a->input, &err);
+    if (status == MS_OK) {
+        status = generate(&r, a, &input, &err);
+    }
+    if (status == MS_OK) {
+        status = report(a, &input, &r, &err);
+    }
+    ms_clump_free(&r.clump);
+    ms_input_free(&input);
+    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+}
+
+static int run(const ms_command *command, int argc, char **argv)
+{
+    arguments a = {.stop = ms_stop_none(), .seed = 1};
+    int first, code = EXIT_USAGE;
+    ms_error err;
+    ms_input_defaults(&a.input);
+    a.generator = ms_generator_find(generator_name(argc, argv), &err);
+    if (!a.generator || ms_settings_init(&a.settings, a.generator->options, &err) != MS_OK) {
+        return ms_wrong_usage(command, err.text);
+    }
+    switch (ms_flags_parse(&first, command, 1, argc, argv, take_flag, &a)) {
+    case MS_FLAGS_HELPED:
+        code = EXIT_DONE;
+        break;
+    case MS_FLAGS_WRONG:
+        break;
+    case MS_FLAGS_GO_ON:
+        if (argc - first != 1) {
+            ms_wrong_usage(command, "takes one shape");
+            break;
+        }
+        a.shape = argv[first];
+        if (a.stop.spheres == 0 && a.stop.eta < 0 && a.stop.dice < 0 && a.stop.coverage < 0 && a.stop.inertia < 0 &&
+            a.stop.radius < 0) {
+            a.stop.spheres = DEFAULT_SPHERES;
+        }
+        code = work(command, &a);
+        break;
+    }
+    ms_settings_free(&a.settings);
+    return code;
+}
+
+const ms_command ms_command_generate = {
+    .name = "generate",
+    .summary = "make a clump for a shape, score it and write it",
+    .usage = "SHAPE [-g NAME] [-n N] [--until MEASURE=VALUE]... [-o FILE]...",
+    .example = "mskit generate grain.stl --generator mss --spheres 50 --cells 100 -o grain.csv -o grain.json",
+    .flags = FLAGS,
+    .run = run,
+};

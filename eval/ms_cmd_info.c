@@ -1,0 +1,198 @@
+/* mskit info SHAPE */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "ms_commands.h"
+#include "ms_input.h"
+#include "ms_report.h"
+
+static const ms_flag FLAGS[] = {
+    {"json", 0, NULL, "as JSON"},
+    {"label", 0, "L", "the label of a volume to take"},
+    {0},
+};
+
+typedef struct arguments {
+    ms_input_flags input;
+    int json;
+} arguments;
+
+static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+{
+    arguments *a = context;
+    int taken;
+    if (strcmp(name, "json") == 0) {
+        a->json = 1;
+        return MS_OK;
+    }
+    return ms_input_flag(&taken, &a->input, name, value, err);
+}
+
+/* What is known of a shape. */
+typedef struct facts {
+    const ms_input *input;
+    double lo[3], hi[3];
+    double area; /* NAN for a volume */
+    int has_body;
+    ms_body body;
+    ms_principal principal;
+} facts;
+
+static double equivalent_diameter(const facts *f)
+{
+    return f->has_body ? cbrt(6 * f->body.volume / acos(-1.0)) : (double)NAN;
+}
+
+/* Wadell: area of the ball of equal volume over the area of the body. */
+static double sphericity(const facts *f)
+{
+    const double d = equivalent_diameter(f);
+    return acos(-1.0) * d * d / f->area;
+}
+
+static ms_status gather(facts *f, ms_input *input, const ms_input_flags *flags, ms_error *err)
+{
+    ms_status status = MS_OK;
+    memset(f, 0, sizeof *f);
+    f->input = input;
+    f->area = NAN;
+    if (input->volume.label) {
+        status = ms_target_from_volume(&input->target, &input->volume, flags->label, err);
+        f->body = input->target.body;
+        f->has_body = 1;
+        for (int a = 0; a < 3 && status == MS_OK; a++) {
+            f->lo[a] = input->target.grid.origin[a] + input->target.grid.h * (MS_GRID_HULL - 0.5);
+            f->hi[a] = f->lo[a] + input->target.grid.h * (input->target.grid.n[a] - 2 * MS_GRID_HULL);
+        }
+    } else {
+        ms_mesh_box(f->lo, f->hi, &input->mesh);
+        f->area = ms_mesh_area(&input->mesh);
+        f->has_body = input->report.closed;
+        status = f->has_body ? ms_inertia_mesh(&f->body, &input->mesh, err) : MS_OK;
+    }
+    return status == MS_OK && f->has_body ? ms_inertia_principal(&f->principal, &f->body, err) : status;
+}
+
+static void print_vector(const char *name, const double v[3])
+{
+    printf("  %-22s %.9g %.9g %.9g\n", name, v[0], v[1], v[2]);
+}
+
+static void print_mesh(const facts *f)
+{
+    const ms_mesh_report *r = &f->input->report;
+    printf("  %-22s %zu\n  %-22s %zu\n", "triangles", f->input->mesh.n_triangles, "vertices",
+           f->input->mesh.n_vertices);
+    printf("  %-22s %s\n  %-22s %zu\n  %-22s %zu\n", "closed", r->closed ? "yes" : "no", "open edges", r->open_edges,
+           "non-manifold edges", r->nonmanifold_edges);
+    if (r->closed) {
+        printf("  %-22s %zu (%zu cavities)\n", "bodies", r->bodies, r->cavities);
+    } else {
+        printf("  %-22s %zu\n", "shells", r->shells);
+    }
+}
+
+static void print_facts(const facts *f)
+{
+    static const char *const ROWS[] = {"inertia tensor", "", ""}, *const AXES[] = {"principal axes", "", ""};
+    printf("%s\n", f->input->path);
+    if (f->input->mesh.n_triangles) {
+        print_mesh(f);
+    } else {
+        printf("  %-22s %zu\n", "voxels", f->input->target.voxels);
+    }
+    const double size[3] = {f->hi[0] - f->lo[0], f->hi[1] - f->lo[1], f->hi[2] - f->lo[2]};
+    print_vector("box from", f->lo);
+    print_vector("box size", size);
+    if (isfinite(f->area)) {
+        printf("  %-22s %.9g\n", "area", f->area);
+    }
+    if (!f->has_body) {
+        puts("  (an open mesh has no volume)");
+        return;
+    }
+    printf("  %-22s %.9g\n", "volume", f->body.volume);
+    print_vector("centroid", f->body.centroid);
+    for (int a = 0; a < 3; a++) {
+        print_vector(ROWS[a], f->body.inertia[a]);
+    }
+    print_vector("principal moments", f->principal.moment);
+    for (int a = 0; a < 3; a++) {
+        print_vector(AXES[a], f->principal.axis[a]);
+    }
+    printf("  %-22s %.9g\n", "equivalent diameter", equivalent_diameter(f));
+    if (isfinite(f->area)) {
+        printf("  %-22s %.6f\n", "sphericity (Wadell)", sphericity(f));
+    }
+}
+
+static json_t *facts_json(const facts *f)
+{
+    const ms_mesh_report *r = &f->input->report;
+    json_t *json = json_pack("{s:s,s:[f,f,f],s:[f,f,f],s:o,s:o,s:o}", "path", f->input->path, "box_lo", f->lo[0],
+                             f->lo[1], f->lo[2], "box_hi", f->hi[0], f->hi[1], f->hi[2], "area",
+                             ms_report_number(f->area), "equivalent_diameter",
+                             ms_report_number(equivalent_diameter(f)), "sphericity", ms_report_number(sphericity(f)));
+    json_t *mesh = json_pack(
+        "{s:I,s:I,s:b,s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:I}", "triangles", (json_int_t)f->input->mesh.n_triangles,
+        "vertices", (json_int_t)f->input->mesh.n_vertices, "closed", r->closed, "open_edges",
+        (json_int_t)r->open_edges, "nonmanifold_edges", (json_int_t)r->nonmanifold_edges, "shells",
+        (json_int_t)r->shells, "bodies", (json_int_t)r->bodies, "cavities", (json_int_t)r->cavities, "turned",
+        (json_int_t)r->flipped, "dropped_degenerate", (json_int_t)r->dropped_degenerate, "dropped_duplicate",
+        (json_int_t)r->dropped_duplicate);
+    if (f->input->mesh.n_triangles) {
+        json_object_update(json, mesh);
+    } else {
+        json_object_set_new(json, "voxels", json_integer((json_int_t)f->input->target.voxels));
+    }
+    json_decref(mesh);
+    if (f->has_body) {
+        json_t *body = ms_report_body_json(&f->body, &f->principal);
+        json_object_update(json, body);
+        json_decref(body);
+    }
+    return json;
+}
+
+static int run(const ms_command *command, int argc, char **argv)
+{
+    arguments a = {0};
+    int first;
+    ms_error err;
+    ms_input input;
+    facts f;
+    ms_input_defaults(&a.input);
+    switch (ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a)) {
+    case MS_FLAGS_HELPED:
+        return EXIT_DONE;
+    case MS_FLAGS_WRONG:
+        return EXIT_USAGE;
+    case MS_FLAGS_GO_ON:
+        break;
+    }
+    if (argc - first != 1) {
+        return ms_wrong_usage(command, "takes one shape");
+    }
+    ms_status status = ms_input_read(&input, argv[first], &err);
+    if (status != MS_OK) {
+        return ms_fail_command(command, &err);
+    }
+    status = gather(&f, &input, &a.input, &err);
+    if (status == MS_OK && a.json) {
+        status = ms_report_print(stdout, facts_json(&f), &err);
+    } else if (status == MS_OK) {
+        print_facts(&f);
+    }
+    ms_input_free(&input);
+    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+}
+
+const ms_command ms_command_info = {
+    .name = "info",
+    .summary = "what a shape is: closed or not, volume, inertia, principal frame",
+    .usage = "SHAPE [--json] [--label L]",
+    .example = "mskit info grain.stl",
+    .flags = FLAGS,
+    .run = run,
+};

@@ -1,0 +1,116 @@
+/* mskit score CLUMP --target SHAPE */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_clump.h"
+#include "ms_commands.h"
+#include "ms_input.h"
+#include "ms_metrics.h"
+#include "ms_report.h"
+
+static const ms_flag FLAGS[] = {
+    {"target", 't', "SHAPE", "the mesh or volume that the clump stands for"},
+    {"curve", 0, NULL, "scores of every prefix as CSV: n,eta,dice,coverage,overshoot"},
+    {"json", 0, NULL, "as JSON"},
+    MS_INPUT_FLAGS,
+    {0},
+};
+
+typedef struct arguments {
+    ms_input_flags input;
+    const char *target;
+    int json, curve;
+} arguments;
+
+static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+{
+    arguments *a = context;
+    int taken;
+    ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
+    if (taken) {
+        return status;
+    }
+    if (strcmp(name, "target") == 0) {
+        a->target = value;
+    }
+    a->json |= strcmp(name, "json") == 0;
+    a->curve |= strcmp(name, "curve") == 0;
+    return MS_OK;
+}
+
+static void print_curve(const ms_score *curve, size_t count)
+{
+    puts("n,eta,dice,coverage,overshoot");
+    for (size_t n = 0; n < count; n++) {
+        printf("%zu,%.8g,%.8g,%.8g,%.8g\n", n + 1, curve[n].eta, curve[n].dice, curve[n].coverage,
+               curve[n].overshoot);
+    }
+}
+
+static ms_status report(const arguments *a, const ms_input *input, const ms_clump *clump, ms_error *err)
+{
+    ms_metrics metrics;
+    ms_score *curve = malloc((clump->n_spheres + 1) * sizeof *curve);
+    if (!curve) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu scores", clump->n_spheres);
+    }
+    const size_t max_voxels = (size_t)(a->input.max_memory / 12);
+    ms_status status = ms_metrics_compute(&metrics, curve, &input->target, clump, max_voxels, err);
+    if (status == MS_OK && a->curve) {
+        print_curve(curve, clump->n_spheres);
+    } else if (status == MS_OK && a->json) {
+        status = ms_report_print(stdout,
+                                 json_pack("{s:o,s:o}", "target", ms_report_input_json(input), "scores",
+                                           ms_report_metrics_json(&metrics)),
+                                 err);
+    } else if (status == MS_OK) {
+        ms_report_metrics(stdout, &metrics, &input->target);
+    }
+    free(curve);
+    return status;
+}
+
+static int run(const ms_command *command, int argc, char **argv)
+{
+    arguments a = {0};
+    int first;
+    ms_error err;
+    ms_input input;
+    ms_clump clump;
+    ms_input_defaults(&a.input);
+    switch (ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a)) {
+    case MS_FLAGS_HELPED:
+        return EXIT_DONE;
+    case MS_FLAGS_WRONG:
+        return EXIT_USAGE;
+    case MS_FLAGS_GO_ON:
+        break;
+    }
+    if (argc - first != 1 || !a.target) {
+        return ms_wrong_usage(command, "takes one clump file and --target SHAPE");
+    }
+    ms_status status = ms_clump_read(&clump, argv[first], &err);
+    if (status != MS_OK) {
+        return ms_fail_command(command, &err);
+    }
+    status = ms_input_read(&input, a.target, &err);
+    if (status == MS_OK) {
+        status = ms_input_target(&input, &a.input, &err);
+        if (status == MS_OK) {
+            status = report(&a, &input, &clump, &err);
+        }
+        ms_input_free(&input);
+    }
+    ms_clump_free(&clump);
+    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+}
+
+const ms_command ms_command_score = {
+    .name = "score",
+    .summary = "measure any file of spheres x,y,z,r against a shape",
+    .usage = "CLUMP --target SHAPE [...]",
+    .example = "mskit score grain.csv --target grain.stl --cells 150",
+    .flags = FLAGS,
+    .run = run,
+};

@@ -1,0 +1,117 @@
+/* mskit shape KIND [KEY=VALUE]... -o FILE */
+#include <stdio.h>
+#include <string.h>
+
+#include "ms_commands.h"
+#include "ms_mesh_write.h"
+#include "ms_shape.h"
+#include "ms_text.h"
+
+static const ms_flag FLAGS[] = {
+    {"output", 'o', "FILE", "the mesh: .stl, .obj, .ply or .off; - for OFF on standard output"},
+    {"list", 0, NULL, "list the kinds and their parameters"},
+    {0},
+};
+
+typedef struct arguments {
+    const char *output;
+    int list;
+} arguments;
+
+static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+{
+    arguments *a = context;
+    (void)err;
+    if (strcmp(name, "output") == 0) {
+        a->output = value;
+    } else {
+        a->list = 1;
+    }
+    return MS_OK;
+}
+
+static void list_kinds(void)
+{
+    for (const ms_shape_kind *kind = ms_shape_kinds; kind->name; kind++) {
+        printf("%s: %s\n", kind->name, kind->summary);
+        for (const ms_shape_parameter *p = kind->parameters; p->name; p++) {
+            printf("    %-12s %-8g %s\n", p->name, p->fallback, p->help);
+        }
+    }
+}
+
+static ms_status set_value(double *value, const ms_shape_kind *kind, const char *assignment, ms_error *err)
+{
+    const char *equals = strchr(assignment, '=');
+    for (const ms_shape_parameter *p = kind->parameters; equals && p->name; p++) {
+        const size_t length = (size_t)(equals - assignment);
+        if (strlen(p->name) == length && memcmp(p->name, assignment, length) == 0) {
+            const ms_word word = {equals + 1, strlen(equals + 1)};
+            if (word.length == 0 || !ms_word_double(&value[p - kind->parameters], &word)) {
+                return ms_fail(err, MS_ERR_ARG, "%s is not a number in %s", equals + 1, assignment);
+            }
+            return MS_OK;
+        }
+    }
+    return ms_fail(err, MS_ERR_ARG, "'%s' does not set a parameter of %s; see mskit shape --list", assignment,
+                   kind->name);
+}
+
+static int make(const ms_command *command, const char *output, int n_words, char **word)
+{
+    double value[MS_SHAPE_MAX_PARAMETERS];
+    ms_error err;
+    ms_mesh mesh;
+    const ms_shape_kind *kind = ms_shape_find(word[0], &err);
+    if (!kind) {
+        return ms_wrong_usage(command, err.text);
+    }
+    for (size_t p = 0; kind->parameters[p].name; p++) {
+        value[p] = kind->parameters[p].fallback;
+    }
+    for (int w = 1; w < n_words; w++) {
+        if (set_value(value, kind, word[w], &err) != MS_OK) {
+            return ms_wrong_usage(command, err.text);
+        }
+    }
+    ms_status status = ms_shape_make(&mesh, kind, value, &err);
+    if (status == MS_OK) {
+        status = ms_mesh_write(&mesh, output, &err);
+        if (status == MS_OK) {
+            fprintf(stderr, "%s: %zu triangles\n", output, mesh.n_triangles);
+        }
+        ms_mesh_free(&mesh);
+    }
+    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+}
+
+static int run(const ms_command *command, int argc, char **argv)
+{
+    arguments a = {0};
+    int first;
+    switch (ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a)) {
+    case MS_FLAGS_HELPED:
+        return EXIT_DONE;
+    case MS_FLAGS_WRONG:
+        return EXIT_USAGE;
+    case MS_FLAGS_GO_ON:
+        break;
+    }
+    if (a.list) {
+        list_kinds();
+        return EXIT_DONE;
+    }
+    if (first >= argc || !a.output) {
+        return ms_wrong_usage(command, "takes a kind of shape and -o FILE; --list shows the kinds");
+    }
+    return make(command, a.output, argc - first, argv + first);
+}
+
+const ms_command ms_command_shape = {
+    .name = "shape",
+    .summary = "make the mesh of an analytic or test body",
+    .usage = "KIND [KEY=VALUE]... -o FILE",
+    .example = "mskit shape ellipsoid a=2 b=1 c=1 -o ellipsoid.stl",
+    .flags = FLAGS,
+    .run = run,
+};

@@ -1,0 +1,14 @@
+/** All commands of the program, one file each. */
+#ifndef MS_COMMANDS_H
+#define MS_COMMANDS_H
+
+#include "ms_flags.h"
+
+extern const ms_command ms_command_generate;
+extern const ms_command ms_command_generators;
+extern const ms_command ms_command_help;
+extern const ms_command ms_command_info;
+extern const ms_command ms_command_score;
+extern const ms_command ms_command_shape;
+
+#endif

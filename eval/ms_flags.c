@@ -1,0 +1,143 @@
+#include "ms_flags.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_generator.h"
+#include "ms_text.h"
+
+/* Room for the flags of a command and the options of all generators. */
+enum { MAX_FLAGS = 128, HELP_COLUMN = 28 };
+
+static void print_flag(const ms_flag *flag)
+{
+    char left[64];
+    snprintf(left, sizeof left, "  %c%c%s--%s%s%s", flag->letter ? '-' : ' ', flag->letter ? flag->letter : ' ',
+             flag->letter ? ", " : "  ", flag->name, flag->argument ? " " : "", flag->argument ? flag->argument : "");
+    if (strlen(left) < HELP_COLUMN) {
+        printf("%-*s%s\n", HELP_COLUMN, left, flag->help);
+    } else {
+        printf("%s\n%*s%s\n", left, HELP_COLUMN, "", flag->help);
+    }
+}
+
+static void print_help(const ms_command *command)
+{
+    printf("mskit %s: %s\n\nusage: mskit %s %s\n\n", command->name, command->summary, command->name, command->usage);
+    for (const ms_flag *flag = command->flags; flag->name; flag++) {
+        print_flag(flag);
+    }
+    printf("      --help                print this\n\nexample: %s\n", command->example);
+}
+
+/* What getopt works on. */
+typedef struct tables {
+    struct option longs[MAX_FLAGS];
+    char shorts[2 * MAX_FLAGS];
+    size_t count;
+} tables;
+
+static void add_long(tables *t, const char *name, int has_argument, int value)
+{
+    for (size_t f = 0; f < t->count; f++) {
+        if (strcmp(t->longs[f].name, name) == 0) {
+            return; /* two generators may share an option */
+        }
+    }
+    if (t->count + 1 < MAX_FLAGS) {
+        t->longs[t->count++] = (struct option){name, has_argument, NULL, value};
+    }
+}
+
+static void make_tables(tables *t, const ms_command *command, int generator_options)
+{
+    char *letter = t->shorts;
+    memset(t, 0, sizeof *t);
+    for (const ms_flag *flag = command->flags; flag->name; flag++) {
+        add_long(t, flag->name, flag->argument ? required_argument : no_argument, 0);
+        if (flag->letter) {
+            *letter++ = flag->letter;
+            *letter = ':';
+            letter += flag->argument != NULL;
+        }
+    }
+    *letter = 0;
+    add_long(t, "help", no_argument, 'H');
+    for (const ms_generator *const *g = ms_generators; generator_options && *g; g++) {
+        for (const ms_option *o = (*g)->options; o->name; o++) {
+            add_long(t, o->name, o->type == MS_OPTION_FLAG ? no_argument : required_argument, 0);
+        }
+    }
+}
+
+static const char *name_of_letter(const ms_command *command, int letter)
+{
+    for (const ms_flag *flag = command->flags; flag->name; flag++) {
+        if (flag->letter == letter) {
+            return flag->name;
+        }
+    }
+    return "";
+}
+
+ms_flags_outcome ms_flags_parse(int *first_word, const ms_command *command, int generator_options, int argc,
+                                char **argv, ms_flag_handler handler, void *context)
+{
+    tables t;
+    int found, at = 0;
+    ms_error err;
+    char name[64];
+    snprintf(name, sizeof name, "mskit %s", command->name);
+    argv[0] = name; /* getopt's own messages begin with it */
+    make_tables(&t, command, generator_options);
+    while ((found = getopt_long(argc, argv, t.shorts, t.longs, &at)) != -1) {
+        if (found == 'H') {
+            print_help(command);
+            return MS_FLAGS_HELPED;
+        }
+        if (found == '?') {
+            fprintf(stderr, "mskit %s: try --help\n", command->name);
+            return MS_FLAGS_WRONG;
+        }
+        const char *flag = found == 0 ? t.longs[at].name : name_of_letter(command, found);
+        if (handler(context, flag, optarg, &err) != MS_OK) {
+            ms_wrong_usage(command, err.text);
+            return MS_FLAGS_WRONG;
+        }
+    }
+    *first_word = optind;
+    return MS_FLAGS_GO_ON;
+}
+
+int ms_fail_command(const ms_command *command, const ms_error *err)
+{
+    fprintf(stderr, "mskit %s: %s\n", command->name, err->text);
+    return EXIT_FAILED;
+}
+
+int ms_wrong_usage(const ms_command *command, const char *message)
+{
+    fprintf(stderr, "mskit %s: %s\nusage: mskit %s %s\n", command->name, message, command->name, command->usage);
+    return EXIT_USAGE;
+}
+
+ms_status ms_flag_number(double *value, const char *name, const char *text, double lo, double hi, ms_error *err)
+{
+    const ms_word word = {text, strlen(text)};
+    if (word.length == 0 || !ms_word_double(value, &word) || !(*value >= lo && *value <= hi)) {
+        return ms_fail(err, MS_ERR_ARG, "--%s %s is not a number from %g to %g", name, text, lo, hi);
+    }
+    return MS_OK;
+}
+
+ms_status ms_flag_whole(double *value, const char *name, const char *text, double lo, double hi, ms_error *err)
+{
+    ms_status status = ms_flag_number(value, name, text, lo, hi, err);
+    if (status == MS_OK && *value != floor(*value)) {
+        status = ms_fail(err, MS_ERR_ARG, "--%s %s is not a whole number", name, text);
+    }
+    return status;
+}

@@ -1,0 +1,61 @@
+/** Command line flags: one table per command gives parsing and help. */
+#ifndef MS_FLAGS_H
+#define MS_FLAGS_H
+
+#include "ms_error.h"
+#include "ms_option.h"
+
+/* Exit codes of the program. */
+enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
+
+/** One flag. A table of them ends with a NULL name. */
+typedef struct ms_flag {
+    const char *name;     /* --name */
+    char letter;          /* -l; 0 without */
+    const char *argument; /* what the help calls its argument; NULL if it takes none */
+    const char *help;
+} ms_flag;
+
+/** One command. */
+typedef struct ms_command {
+    const char *name;
+    const char *summary;   /* one line */
+    const char *usage;     /* what stands behind `mskit NAME` */
+    const char *example;   /* a whole command line */
+    const ms_flag *flags;
+    /** @return an exit code */
+    int (*run)(const struct ms_command *command, int argc, char **argv);
+} ms_command;
+
+/**
+ * Is told of each flag found. `name` is one of the table, or an option of any generator.
+ * @return MS_OK; else the message is printed and the exit code is EXIT_USAGE
+ */
+typedef ms_status (*ms_flag_handler)(void *context, const char *name, const char *value, ms_error *err);
+
+/** What parsing leaves to do. */
+typedef enum ms_flags_outcome { MS_FLAGS_GO_ON, MS_FLAGS_HELPED, MS_FLAGS_WRONG } ms_flags_outcome;
+
+/**
+ * Parses the flags of a command; --help prints the help and ends. Flags may stand anywhere;
+ * words move behind them.
+ *
+ * @param[out] first_word index in argv of the first word that is no flag
+ * @param      generator_options nonzero: options of generators are flags too
+ */
+ms_flags_outcome ms_flags_parse(int *first_word, const ms_command *command, int generator_options, int argc,
+                                char **argv, ms_flag_handler handler, void *context);
+
+/** Prints "mskit NAME: message" to stderr. @return EXIT_FAILED */
+int ms_fail_command(const ms_command *command, const ms_error *err);
+
+/** The same with a hint at --help. @return EXIT_USAGE */
+int ms_wrong_usage(const ms_command *command, const char *message);
+
+/** A number that the user wrote. @return MS_OK; MS_ERR_ARG if it is none from lo to hi */
+ms_status ms_flag_number(double *value, const char *name, const char *text, double lo, double hi, ms_error *err);
+
+/** The same, a whole number. */
+ms_status ms_flag_whole(double *value, const char *name, const char *text, double lo, double hi, ms_error *err);
+
+#endif

@@ -1,0 +1,229 @@
+#include "ms_input.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "ms_file.h"
+#include "ms_mesh_read.h"
+
+static double machine_memory(void)
+{
+    const double pages = (double)sysconf(_SC_PHYS_PAGES), size = (double)sysconf(_SC_PAGE_SIZE);
+    return pages > 0 && size > 0 ? pages * size : 4e9;
+}
+
+void ms_input_defaults(ms_input_flags *flags)
+{
+    memset(flags, 0, sizeof *flags);
+    flags->max_memory = 0.75 * machine_memory();
+}
+
+static ms_status parse_size(double *bytes, const char *text, ms_error *err)
+{
+    static const char UNITS[] = "kMGT";
+    char number[32];
+    const size_t length = strlen(text);
+    const char *unit = length ? strchr(UNITS, text[length - 1]) : NULL;
+    double factor = 1;
+    if (length >= sizeof number) {
+        return ms_fail(err, MS_ERR_ARG, "--max-memory %s is not a size like 500M or 8G", text);
+    }
+    for (const char *u = UNITS; unit && u <= unit; u++) {
+        factor *= 1000;
+    }
+    snprintf(number, sizeof number, "%.*s", (int)(length - (unit != NULL)), text);
+    ms_status status = ms_flag_number(bytes, "max-memory", number, 0, 1e18, err);
+    *bytes *= factor;
+    return status;
+}
+
+static ms_status parse_rule(ms_voxel_rule *rule, const char *text, ms_error *err)
+{
+    if (strcmp(text, "half") == 0) {
+        *rule = MS_VOXEL_HALF;
+    } else if (strcmp(text, "centre") == 0) {
+        *rule = MS_VOXEL_CENTRE;
+    } else {
+        return ms_fail(err, MS_ERR_ARG, "--rule %s is not half or centre", text);
+    }
+    return MS_OK;
+}
+
+ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, const char *value, ms_error *err)
+{
+    double number;
+    ms_status status = MS_OK;
+    *taken = 1;
+    if (strcmp(name, "cells") == 0) {
+        return ms_flag_whole(&flags->cells, name, value, 1, MS_GRID_MAX_EXTENT, err);
+    }
+    if (strcmp(name, "deq") == 0) {
+        return ms_flag_number(&flags->deq, name, value, 1, MS_GRID_MAX_EXTENT, err);
+    }
+    if (strcmp(name, "voxel-size") == 0) {
+        return ms_flag_number(&flags->voxel_size, name, value, 1e-300, 1e300, err);
+    }
+    if (strcmp(name, "rule") == 0) {
+        return parse_rule(&flags->rule, value, err);
+    }
+    if (strcmp(name, "allow-open") == 0) {
+        flags->allow_open = 1;
+        return MS_OK;
+    }
+    if (strcmp(name, "max-memory") == 0) {
+        return parse_size(&flags->max_memory, value, err);
+    }
+    if (strcmp(name, "label") == 0) {
+        status = ms_flag_whole(&number, name, value, 1, UINT32_MAX, err);
+        flags->label = status == MS_OK ? (uint32_t)number : 0;
+    } else if (strcmp(name, "threads") == 0) {
+        status = ms_flag_whole(&number, name, value, 1, 1024, err);
+        flags->threads = status == MS_OK ? (int)number : 0;
+    } else {
+        *taken = 0;
+    }
+    return status;
+}
+
+static void say_repairs(const char *path, const ms_mesh_report *r)
+{
+    if (r->dropped_degenerate || r->dropped_duplicate) {
+        fprintf(stderr, "%s: dropped %zu degenerate and %zu duplicate triangles\n", path, r->dropped_degenerate,
+                r->dropped_duplicate);
+    }
+    if (r->flipped) {
+        fprintf(stderr, "%s: turned %zu triangles that were wound the wrong way\n", path, r->flipped);
+    }
+    if (r->bodies > 1) {
+        fprintf(stderr, "%s: %zu separate bodies; they are treated as one particle\n", path, r->bodies);
+    }
+}
+
+static ms_status read_mesh(ms_input *input, ms_error *err)
+{
+    ms_status status = ms_mesh_read(&input->mesh, input->path, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    ms_error cause;
+    status = ms_mesh_repair(&input->mesh, &input->report, &cause);
+    if (status != MS_OK) {
+        return ms_fail(err, status, "%s: %s", input->path, cause.text);
+    }
+    say_repairs(input->path, &input->report);
+    return MS_OK;
+}
+
+ms_status ms_input_read(ms_input *input, const char *path, ms_error *err)
+{
+    ms_bytes bytes;
+    const double start = omp_get_wtime();
+    memset(input, 0, sizeof *input);
+    input->path = path;
+    ms_status status = ms_file_read(&bytes, path, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    input->checksum = ms_bytes_checksum(&bytes);
+    ms_bytes_free(&bytes);
+    status = ms_volume_is_volume_path(path) ? ms_volume_read(&input->volume, path, err) : read_mesh(input, err);
+    input->read_seconds = omp_get_wtime() - start;
+    if (status != MS_OK) {
+        ms_input_free(input);
+    }
+    return status;
+}
+
+/* The lattice constant that the flags ask for. */
+static ms_status choose_voxel_size(double *h, const ms_input *input, const ms_input_flags *flags, ms_error *err)
+{
+    double lo[3], hi[3];
+    if ((flags->cells > 0) + (flags->deq > 0) + (flags->voxel_size > 0) > 1) {
+        return ms_fail(err, MS_ERR_ARG, "--cells, --deq and --voxel-size exclude one another");
+    }
+    if (flags->voxel_size > 0) {
+        *h = flags->voxel_size;
+        return MS_OK;
+    }
+    if (flags->deq > 0) {
+        ms_body body;
+        if (!input->report.closed) {
+            return ms_fail(err, MS_ERR_ARG, "--deq needs the volume of a closed mesh; use --cells or --voxel-size");
+        }
+        ms_status status = ms_inertia_mesh(&body, &input->mesh, err);
+        *h = cbrt(6 * body.volume / acos(-1.0)) / flags->deq;
+        return status;
+    }
+    ms_mesh_box(lo, hi, &input->mesh);
+    const double side = fmin(hi[0] - lo[0], fmin(hi[1] - lo[1], hi[2] - lo[2]));
+    if (!(side > 0)) {
+        return ms_fail(err, MS_ERR_SHAPE, "%s: the mesh is flat, it encloses nothing", input->path);
+    }
+    *h = side / (flags->cells > 0 ? flags->cells : 100);
+    return MS_OK;
+}
+
+static ms_status check_memory(const double n[3], const ms_input_flags *flags, ms_error *err)
+{
+    const double bytes = ms_target_bytes(n);
+    if (bytes > flags->max_memory) {
+        return ms_fail(err, MS_ERR_LIMIT,
+                       "a grid of %.0fx%.0fx%.0f voxels takes about %.3g GB, more than the %.3g GB allowed; use fewer "
+                       "cells or raise --max-memory",
+                       n[0], n[1], n[2], bytes / 1e9, flags->max_memory / 1e9);
+    }
+    fprintf(stderr, "grid: %.0fx%.0fx%.0f voxels, about %.3g MB\n", n[0], n[1], n[2], bytes / 1e6);
+    return MS_OK;
+}
+
+static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, ms_error *err)
+{
+    double h = 0, n[3];
+    if (!input->report.closed && !flags->allow_open) {
+        return ms_fail(err, MS_ERR_SHAPE,
+                       "%s: the mesh is open: %zu edges belong to one triangle only, %zu to an odd number; close it, "
+                       "or use --allow-open",
+                       input->path, input->report.open_edges, input->report.odd_edges);
+    }
+    ms_status status = choose_voxel_size(&h, input, flags, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    ms_voxelize_extents(n, &input->mesh, h);
+    status = check_memory(n, flags, err);
+    if (status == MS_OK) {
+        status = ms_target_from_mesh(&input->target, &input->mesh, input->report.closed, h, flags->rule, err);
+    }
+    if (status == MS_OK && !input->report.closed) {
+        fprintf(stderr, "%s: the mesh is open (%zu open edges); the three axes disagreed on %zu of %zu voxels\n",
+                input->path, input->report.open_edges, input->target.disagree, input->target.voxels);
+    }
+    return status;
+}
+
+ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err)
+{
+    if (flags->threads) {
+        omp_set_num_threads(flags->threads);
+    }
+    if (!input->volume.label) {
+        return target_from_mesh(input, flags, err);
+    }
+    if (flags->cells > 0 || flags->deq > 0 || flags->voxel_size > 0) {
+        return ms_fail(err, MS_ERR_ARG, "%s is a volume with voxels of its own; --cells, --deq and --voxel-size do not apply",
+                       input->path);
+    }
+    const double n[3] = {input->volume.n[0], input->volume.n[1], input->volume.n[2]};
+    ms_status status = check_memory(n, flags, err);
+    return status == MS_OK ? ms_target_from_volume(&input->target, &input->volume, flags->label, err) : status;
+}
+
+void ms_input_free(ms_input *input)
+{
+    ms_target_free(&input->target);
+    ms_mesh_free(&input->mesh);
+    ms_volume_free(&input->volume);
+}

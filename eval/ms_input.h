@@ -1,0 +1,56 @@
+/** From a path on the command line to a target: reading, mending, voxelising. */
+#ifndef MS_INPUT_H
+#define MS_INPUT_H
+
+#include "ms_flags.h"
+#include "ms_mesh.h"
+#include "ms_target.h"
+#include "ms_volume.h"
+
+/** Flags about the shape and its grid, common to several commands; see MS_INPUT_FLAGS. */
+typedef struct ms_input_flags {
+    double cells, deq, voxel_size; /* 0: not given */
+    ms_voxel_rule rule;
+    int allow_open;
+    uint32_t label;
+    double max_memory; /* bytes */
+    int threads;       /* 0: all */
+} ms_input_flags;
+
+/* clang-format off */
+#define MS_INPUT_FLAGS \
+    {"cells", 0, "N", "cells along the shortest side of the shape's box (100)"}, \
+    {"deq", 0, "N", "voxel size = diameter of the ball of equal volume / N"}, \
+    {"voxel-size", 0, "H", "voxel size in the shape's unit"}, \
+    {"rule", 0, "half|centre", "a voxel is inside if more than half of it is, or if its centre is (half)"}, \
+    {"allow-open", 0, NULL, "take a mesh with holes: majority of the parities along three axes"}, \
+    {"label", 0, "L", "the label of a volume to take"}, \
+    {"max-memory", 0, "SIZE", "refuse grids beyond this, as 500M or 8G (3/4 of the machine's)"}, \
+    {"threads", 'j', "T", "threads (all cores)"}
+/* clang-format on */
+
+void ms_input_defaults(ms_input_flags *flags);
+
+/** Takes a flag if it is one of MS_INPUT_FLAGS. @param[out] taken 0 if it is not */
+ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, const char *value, ms_error *err);
+
+/** A shape that was read. */
+typedef struct ms_input {
+    const char *path;
+    uint64_t checksum; /* FNV-1a of the file */
+    ms_mesh mesh;      /* empty for a volume */
+    ms_mesh_report report;
+    ms_volume volume; /* empty for a mesh */
+    ms_target target; /* after ms_input_target */
+    double read_seconds;
+} ms_input;
+
+/** Reads a mesh or a volume; mends a mesh. What was mended is said on stderr. */
+ms_status ms_input_read(ms_input *input, const char *path, ms_error *err);
+
+/** Makes the target; says the size of the grid on stderr. Refuses open meshes unless allowed. */
+ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err);
+
+void ms_input_free(ms_input *input);
+
+#endif

@@ -1,0 +1,29 @@
+/** Scores and properties as tables for people and as JSON for machines. */
+#ifndef MS_REPORT_H
+#define MS_REPORT_H
+
+#include <jansson.h>
+#include <stdio.h>
+
+#include "ms_input.h"
+#include "ms_metrics.h"
+
+/** All measures of a clump, a line each. */
+void ms_report_metrics(FILE *stream, const ms_metrics *metrics, const ms_target *target);
+
+/** The same as a JSON object; the caller owns it. Measures that do not apply are null. */
+json_t *ms_report_metrics_json(const ms_metrics *metrics);
+
+/** Path, checksum, grid and rule of the input; the caller owns it. */
+json_t *ms_report_input_json(const ms_input *input);
+
+/** Volume, centroid, inertia, principal moments and axes; the caller owns it. */
+json_t *ms_report_body_json(const ms_body *body, const ms_principal *principal);
+
+/** A number, or null if it is not finite. */
+json_t *ms_report_number(double value);
+
+/** Prints and frees a JSON value, indented. @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM if it is NULL */
+ms_status ms_report_print(FILE *stream, json_t *value, ms_error *err);
+
+#endif

@@ -1,0 +1,49 @@
+#include "ms_generator.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "ms_mss.h"
+
+const ms_generator *const ms_generators[] = {
+    &ms_generator_mss,
+    NULL,
+};
+
+const ms_generator *ms_generator_find(const char *name, ms_error *err)
+{
+    char names[256] = "";
+    for (const ms_generator *const *g = ms_generators; *g; g++) {
+        if (strcmp((*g)->name, name) == 0) {
+            return *g;
+        }
+        const size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", (*g)->name);
+    }
+    ms_fail(err, MS_ERR_ARG, "there is no generator '%s'; choose from %s", name, names);
+    return NULL;
+}
+
+ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
+                           const ms_run *run, ms_error *err)
+{
+    const ms_stop *stop = &run->stop;
+    memset(clump, 0, sizeof *clump);
+    *reason = MS_STOP_NOT;
+    if (stop->spheres == 0 && stop->eta < 0 && stop->dice < 0 && stop->coverage < 0 && stop->inertia < 0 &&
+        stop->radius < 0) {
+        return ms_fail(err, MS_ERR_ARG, "nothing says when to stop; give a number of spheres or a measure");
+    }
+    if (stop->spheres > MS_CLUMP_MAX_SPHERES) {
+        return ms_fail(err, MS_ERR_LIMIT, "%zu spheres are more than %d", stop->spheres, MS_CLUMP_MAX_SPHERES);
+    }
+    ms_status status = generator->generate(clump, reason, run, err);
+    if (status == MS_OK && clump->n_spheres == 0) {
+        status = ms_fail(err, MS_ERR_SHAPE, "%s placed no sphere (%s); use more cells or a smaller least radius",
+                         generator->name, ms_stop_name(*reason));
+    }
+    if (status != MS_OK) {
+        ms_clump_free(clump);
+    }
+    return status;
+}

@@ -1,0 +1,262 @@
+/*
+ * MSS. F. Buchele, T. Poeschel, P. Mueller, Multi-sphere shape generator for DEM simulations
+ * of complex-shaped particles, arXiv:2603.05877 (2026), Powder Technology. Equation and
+ * section numbers are of that paper; docs/methods/mss.md says what it leaves open and how it
+ * was decided.
+ */
+#include "ms_mss.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_mss_field.h"
+#include "ms_mss_select.h"
+#include "ms_peaks.h"
+
+enum { SPACING, OFFSET, ORDER, CONFINE, PLANES };
+enum { ORDER_RADIUS, ORDER_GAIN };
+
+static const ms_option OPTIONS[] = {
+    [SPACING] = {"spacing", MS_OPTION_REAL, 4, 0, 1000, NULL, "voxels",
+                 "least distance between the centres of any two spheres (delta_min, section 3.4)"},
+    [OFFSET] = {"radius-offset", MS_OPTION_REAL, 0, -2, 2, NULL, "voxels",
+                "added to every radius; the paper adds nothing, 0.5 to 0.75 lowers the mismatch"},
+    [ORDER] = {"order", MS_OPTION_CHOICE, ORDER_RADIUS, 0, 0, "radius|gain", NULL,
+               "radius: all maxima of a step, the largest spheres first (the paper); gain: one set of mirror "
+               "images a step, that of the largest (E - E~) E"},
+    [CONFINE] = {"confine", MS_OPTION_FLAG, 0, 0, 1, NULL, NULL,
+                 "no sphere leaves the mesh: radii are at most the distance to the nearest face (section 3.5)"},
+    [PLANES] = {"plane", MS_OPTION_PLANE, 0, 0, 0, NULL, NULL,
+                "a,b,c,d: no sphere crosses the plane a x + b y + c z = d (section 3.5); may be repeated"},
+    {0},
+};
+
+typedef struct mss {
+    const ms_run *run;
+    mss_field field;
+    mss_candidate *candidates; /* maxima of E* where a sphere may be placed */
+    size_t n_candidates, room;
+    int too_small; /* a maximum was passed over because its sphere would be too small */
+    ms_tally sum;  /* of the spheres so far */
+} mss;
+
+static double option(const mss *m, int which)
+{
+    return m->run->settings->value[which];
+}
+
+/* Shrinks a ball to what faces and planes allow (section 3.5); 0 if it becomes too small. */
+static int confine(ms_ball *ball, mss *m)
+{
+    const ms_target *target = m->run->target;
+    const ms_settings *settings = m->run->settings;
+    double centre[3], radius, allowed = INFINITY;
+    ms_target_from_voxels(centre, &radius, &target->grid, ball->centre, ball->radius);
+    if (option(m, CONFINE) != 0) {
+        allowed = -ms_closest_signed_distance(target->closest, centre);
+    }
+    for (size_t p = 0; p < settings->n_planes; p++) {
+        const double *q = settings->plane[p];
+        allowed = fmin(allowed, fabs(q[0] * centre[0] + q[1] * centre[1] + q[2] * centre[2] - q[3]));
+    }
+    if (allowed < radius) {
+        radius = allowed;
+        ball->radius = allowed / target->grid.h;
+    }
+    if (!(radius > 0) || radius < m->run->stop.radius) {
+        m->too_small |= radius > 0;
+        return 0;
+    }
+    return 1;
+}
+
+/* The sphere at a maximum of E*: centre from E*, radius from E (3.4 iv). 0 if there is no room for one. */
+static int place_candidate(mss_candidate *c, mss *m, size_t voxel)
+{
+    const ms_target *target = m->run->target;
+    ms_peak peak;
+    ms_peaks_refine(&peak, m->field.star, target->grid.n, voxel);
+    for (int a = 0; a < 3; a++) {
+        c->ball.centre[a] = peak.voxel[a] + peak.shift[a];
+    }
+    c->ball.radius = ms_peaks_value(&peak, target->distance, target->grid.n) + option(m, OFFSET);
+    c->voxel = voxel;
+    if (!confine(&c->ball, m)) {
+        return 0;
+    }
+    c->rank = c->ball.radius;
+    if (option(m, ORDER) == ORDER_GAIN) {
+        const double e = (double)target->distance[voxel], e_union = 2 * e - (double)m->field.star[voxel];
+        c->rank = (e - e_union) * e;
+    }
+    return 1;
+}
+
+static int in_box(const int lo[3], const int hi[3], const int n[3], size_t voxel)
+{
+    const int at[3] = {(int)(voxel % (size_t)n[0]), (int)(voxel / (size_t)n[0] % (size_t)n[1]),
+                       (int)(voxel / (size_t)n[0] / (size_t)n[1])};
+    for (int a = 0; a < 3; a++) {
+        if (at[a] < lo[a] || at[a] >= hi[a]) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int keeps_distance(const mss *m, const ms_ball *ball, size_t from)
+{
+    const double spacing = option(m, SPACING);
+    for (size_t s = from; s < m->field.raster.n_balls; s++) {
+        const double *c = m->field.raster.ball[s].centre;
+        const double x = c[0] - ball->centre[0], y = c[1] - ball->centre[1], z = c[2] - ball->centre[2];
+        if (x * x + y * y + z * z < spacing * spacing) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Forgets the candidates in a box, and those too close to the spheres from `first_new` on. */
+static void forget_candidates(mss *m, const int lo[3], const int hi[3], size_t first_new)
+{
+    size_t kept = 0;
+    for (size_t c = 0; c < m->n_candidates; c++) {
+        if (!in_box(lo, hi, m->run->target->grid.n, m->candidates[c].voxel) &&
+            keeps_distance(m, &m->candidates[c].ball, first_new)) {
+            m->candidates[kept++] = m->candidates[c];
+        }
+    }
+    m->n_candidates = kept;
+}
+
+static ms_status add_candidates(mss *m, const size_t *voxel, size_t count, ms_error *err)
+{
+    if (m->n_candidates + count > m->room) {
+        const size_t room = 2 * (m->n_candidates + count);
+        mss_candidate *grown = realloc(m->candidates, room * sizeof *grown);
+        if (!grown) {
+            return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu maxima; use fewer cells", room);
+        }
+        m->candidates = grown;
+        m->room = room;
+    }
+    for (size_t p = 0; p < count; p++) {
+        mss_candidate *next = &m->candidates[m->n_candidates];
+        if (place_candidate(next, m, voxel[p]) && keeps_distance(m, &next->ball, 0)) {
+            m->n_candidates++;
+        }
+    }
+    return MS_OK;
+}
+
+/* Finds the maxima anew where E* has changed; a maximum and its place depend on the voxels up
+ * to two away. */
+static ms_status update_candidates(mss *m, size_t first_new, ms_error *err)
+{
+    int lo[3], hi[3];
+    size_t *voxel, count;
+    const int changed = m->field.hi[0] > m->field.lo[0];
+    for (int a = 0; a < 3; a++) {
+        lo[a] = changed ? m->field.lo[a] - 2 : 0;
+        hi[a] = changed ? m->field.hi[a] + 2 : 0;
+    }
+    forget_candidates(m, lo, hi, first_new);
+    if (!changed) {
+        return MS_OK;
+    }
+    ms_status status = ms_peaks_find(&voxel, &count, m->field.star, m->run->target->grid.n, lo, hi, err);
+    if (status == MS_OK) {
+        status = add_candidates(m, voxel, count, err);
+        free(voxel);
+    }
+    return status;
+}
+
+/* Copies the new spheres to the clump until the stop rule holds. */
+static ms_status accept(ms_clump *clump, ms_stop_reason *reason, mss *m, size_t first_new, ms_error *err)
+{
+    const ms_target *target = m->run->target;
+    for (size_t s = first_new; s < m->field.raster.n_balls && *reason == MS_STOP_NOT; s++) {
+        ms_sphere sphere;
+        ms_target_from_voxels(sphere.centre, &sphere.radius, &target->grid, m->field.raster.ball[s].centre,
+                              m->field.raster.ball[s].radius);
+        ms_status status = ms_clump_add(clump, &sphere, err);
+        if (status != MS_OK) {
+            return status;
+        }
+        ms_tally_add(&m->sum, &m->field.raster.tally[s]);
+        *reason = ms_stop_reached(&m->run->stop, target, &m->sum, clump->n_spheres);
+    }
+    return MS_OK;
+}
+
+/* Chooses the spheres of a step; a mean of several candidates may have less room than they had. */
+static size_t choose(ms_ball *chosen, size_t limit, mss *m)
+{
+    const size_t taken =
+        mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball, m->field.raster.n_balls,
+                   option(m, SPACING), option(m, ORDER) == ORDER_GAIN, m->run->target);
+    size_t kept = 0;
+    for (size_t c = 0; c < taken; c++) {
+        chosen[kept] = chosen[c];
+        kept += confine(&chosen[kept], m);
+    }
+    return kept;
+}
+
+/* One step: choose among the candidates, add to S~, find the new maxima. */
+static ms_status step(ms_clump *clump, ms_stop_reason *reason, mss *m, ms_error *err)
+{
+    const size_t before = m->field.raster.n_balls;
+    const size_t most = m->run->stop.spheres ? m->run->stop.spheres : MS_CLUMP_MAX_SPHERES;
+    const size_t limit = m->n_candidates < most - before ? m->n_candidates : most - before;
+    ms_ball *chosen = malloc((limit + 1) * sizeof *chosen);
+    if (!chosen) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", limit);
+    }
+    const size_t taken = choose(chosen, limit, m);
+    ms_status status = mss_field_add(&m->field, chosen, taken, err);
+    free(chosen);
+    if (status == MS_OK) {
+        status = accept(clump, reason, m, before, err);
+    }
+    if (status == MS_OK && taken == 0) {
+        *reason = m->too_small ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
+    }
+    if (status == MS_OK && *reason == MS_STOP_NOT) {
+        status = update_candidates(m, before, err);
+    }
+    return status;
+}
+
+static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
+{
+    mss m = {.run = run};
+    if (run->settings->value[CONFINE] != 0 && (!run->target->closest || !run->target->closed)) {
+        return ms_fail(err, MS_ERR_ARG, "confine needs a closed mesh; this shape is a volume or an open mesh");
+    }
+    ms_status status = mss_field_init(&m.field, run->target, err);
+    if (status == MS_OK) {
+        status = update_candidates(&m, 0, err);
+    }
+    while (status == MS_OK && *reason == MS_STOP_NOT) {
+        status = step(clump, reason, &m, err);
+        if (run->progress) {
+            run->progress(run->progress_context, clump->n_spheres, ms_score_of(&m.sum, run->target->voxels).dice);
+        }
+    }
+    mss_field_free(&m.field);
+    free(m.candidates);
+    return status;
+}
+
+const ms_generator ms_generator_mss = {
+    .name = "mss",
+    .summary = "spheres at the maxima of the distance field, then of twice it less that of the spheres",
+    .source = "F. Buchele, T. Poeschel, P. Mueller, Powder Technology (2026), arXiv:2603.05877",
+    .nested = 1,
+    .options = OPTIONS,
+    .generate = generate,
+};

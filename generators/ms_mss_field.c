@@ -1,0 +1,247 @@
+#include "ms_mss_field.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_distance.h"
+
+/* A part of the grid up to this share is transformed by itself, beyond it the whole grid is:
+ * the part needs memory of its own, five bytes a voxel. */
+enum { LARGEST_PART = 8 };
+
+typedef struct box {
+    int lo[3], hi[3];
+} box;
+
+static size_t box_voxels(const box *b)
+{
+    return (size_t)(b->hi[0] - b->lo[0]) * (size_t)(b->hi[1] - b->lo[1]) * (size_t)(b->hi[2] - b->lo[2]);
+}
+
+static box box_grow(const box *b, int margin, const int n[3])
+{
+    box grown;
+    for (int a = 0; a < 3; a++) {
+        grown.lo[a] = b->lo[a] > margin ? b->lo[a] - margin : 0;
+        grown.hi[a] = b->hi[a] < n[a] - margin ? b->hi[a] + margin : n[a];
+    }
+    return grown;
+}
+
+static void box_include(box *b, int from, int to, int j, int k)
+{
+    const int lo[3] = {from, j, k}, hi[3] = {to, j + 1, k + 1};
+    for (int a = 0; a < 3; a++) {
+        b->lo[a] = lo[a] < b->lo[a] ? lo[a] : b->lo[a];
+        b->hi[a] = hi[a] > b->hi[a] ? hi[a] : b->hi[a];
+    }
+}
+
+ms_status mss_field_init(mss_field *field, const ms_target *target, ms_error *err)
+{
+    const size_t voxels = ms_grid_voxels(&target->grid);
+    float deepest = 0;
+    memset(field, 0, sizeof *field);
+    field->target = target;
+    field->star = malloc(voxels * sizeof *field->star);
+    if (!field->star) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the field E* of %zu voxels; use fewer cells", voxels);
+    }
+#pragma omp parallel for reduction(max : deepest)
+    for (size_t v = 0; v < voxels; v++) {
+        field->star[v] = 2 * target->distance[v];
+        deepest = target->distance[v] > deepest ? target->distance[v] : deepest;
+    }
+    field->deepest = deepest;
+    memcpy(field->hi, target->grid.n, sizeof field->hi);
+    return ms_raster_alloc(&field->raster, &target->grid, target->rule, err);
+}
+
+void mss_field_free(mss_field *field)
+{
+    ms_raster_free(&field->raster);
+    free(field->star);
+}
+
+/* Which voxels of a part S~ covers. */
+static void copy_covered(uint8_t *covered, const mss_field *field, const box *part)
+{
+    const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
+#pragma omp parallel for
+    for (int k = part->lo[2]; k < part->hi[2]; k++) {
+        for (int j = part->lo[1]; j < part->hi[1]; j++) {
+            const uint16_t *from = field->raster.first + ms_grid_index(&field->target->grid, part->lo[0], j, k);
+            uint8_t *to = covered + plane * (size_t)(k - part->lo[2]) + row * (size_t)(j - part->lo[1]);
+            for (size_t i = 0; i < row; i++) {
+                to[i] = from[i] != MS_RASTER_NONE;
+            }
+        }
+    }
+}
+
+static ms_status update_whole(mss_field *field, ms_error *err)
+{
+    const size_t voxels = ms_grid_voxels(&field->target->grid);
+    box all = {{0, 0, 0}, {0, 0, 0}};
+    memcpy(all.hi, field->target->grid.n, sizeof all.hi);
+    memcpy(field->lo, all.lo, sizeof field->lo);
+    memcpy(field->hi, all.hi, sizeof field->hi);
+    uint8_t *covered = malloc(voxels);
+    if (!covered) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
+    }
+    copy_covered(covered, field, &all);
+    ms_status status = ms_distance(field->star, covered, all.hi, err);
+    free(covered);
+#pragma omp parallel for
+    for (size_t v = 0; v < voxels; v++) {
+        field->star[v] = 2 * field->target->distance[v] - field->star[v];
+    }
+    return status;
+}
+
+static double gap(int at, int lo, int hi)
+{
+    return at < lo ? lo - at : at >= hi ? at - hi + 1 : 0;
+}
+
+/*
+ * The voxels whose E~ may change: those that are covered now, and those that had their
+ * nearest background voxel among these, which then was within their old E~.
+ */
+static box changed_box(const mss_field *field)
+{
+    const ms_grid *grid = &field->target->grid;
+    box covered, changed;
+    memcpy(covered.lo, field->raster.lo, sizeof covered.lo);
+    memcpy(covered.hi, field->raster.hi, sizeof covered.hi);
+    const box reach = box_grow(&covered, (int)ceilf(field->deepest) + 1, grid->n);
+    changed = covered;
+#pragma omp parallel
+    {
+        box mine = covered;
+#pragma omp for schedule(dynamic, 4)
+        for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
+            for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
+                const double dz = gap(k, covered.lo[2], covered.hi[2]), dy = gap(j, covered.lo[1], covered.hi[1]);
+                const float away = (float)sqrt(dz * dz + dy * dy) - 0.01f; /* E~ is known up to rounding */
+                const size_t start = ms_grid_index(grid, 0, j, k);
+                const float *e = field->target->distance + start, *star = field->star + start;
+                int from = reach.lo[0], to = reach.hi[0];
+                while (from < to && 2 * e[from] - star[from] < fmaxf(away, (float)(covered.lo[0] - from) - 0.01f)) {
+                    from++;
+                }
+                while (from < to &&
+                       2 * e[to - 1] - star[to - 1] < fmaxf(away, (float)(to - covered.hi[0]) - 0.01f)) {
+                    to--;
+                }
+                if (from < to) {
+                    box_include(&mine, from, to, j, k);
+                }
+            }
+        }
+#pragma omp critical(mss_changed_box)
+        for (int a = 0; a < 3; a++) {
+            changed.lo[a] = mine.lo[a] < changed.lo[a] ? mine.lo[a] : changed.lo[a];
+            changed.hi[a] = mine.hi[a] > changed.hi[a] ? mine.hi[a] : changed.hi[a];
+        }
+    }
+    return changed;
+}
+
+static float deepest_in(const mss_field *field, const box *b)
+{
+    float deepest = 0;
+    for (int k = b->lo[2]; k < b->hi[2]; k++) {
+        for (int j = b->lo[1]; j < b->hi[1]; j++) {
+            const float *e = field->target->distance + ms_grid_index(&field->target->grid, 0, j, k);
+            for (int i = b->lo[0]; i < b->hi[0]; i++) {
+                deepest = e[i] > deepest ? e[i] : deepest;
+            }
+        }
+    }
+    return deepest;
+}
+
+/* How far a voxel is from the outside of the part, where the part is not the grid's own end. */
+static int depth_in_part(const box *part, const int n[3], int i, int j, int k)
+{
+    const int at[3] = {i, j, k};
+    int depth = MS_GRID_MAX_EXTENT;
+    for (int a = 0; a < 3; a++) {
+        if (part->lo[a] > 0 && at[a] - part->lo[a] + 1 < depth) {
+            depth = at[a] - part->lo[a] + 1;
+        }
+        if (part->hi[a] < n[a] && part->hi[a] - at[a] < depth) {
+            depth = part->hi[a] - at[a];
+        }
+    }
+    return depth;
+}
+
+/* Writes E* of the changed voxels; 0 if a distance may be to background beyond the part. */
+static int write_star(mss_field *field, const float *distance, const box *part, const box *changed)
+{
+    const ms_grid *grid = &field->target->grid;
+    const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
+    int exact = 1;
+#pragma omp parallel for reduction(& : exact)
+    for (int k = changed->lo[2]; k < changed->hi[2]; k++) {
+        for (int j = changed->lo[1]; j < changed->hi[1]; j++) {
+            const float *from = distance + plane * (size_t)(k - part->lo[2]) + row * (size_t)(j - part->lo[1]);
+            const size_t start = ms_grid_index(grid, 0, j, k);
+            for (int i = changed->lo[0]; i < changed->hi[0]; i++) {
+                const float d = from[i - part->lo[0]];
+                exact &= d <= (float)depth_in_part(part, grid->n, i, j, k);
+                field->star[start + (size_t)i] = 2 * field->target->distance[start + (size_t)i] - d;
+            }
+        }
+    }
+    return exact;
+}
+
+/* @param[out] done 0 if the part proved too small */
+static ms_status update_part(int *done, mss_field *field, const box *part, const box *changed, ms_error *err)
+{
+    const size_t voxels = box_voxels(part);
+    const int n[3] = {part->hi[0] - part->lo[0], part->hi[1] - part->lo[1], part->hi[2] - part->lo[2]};
+    uint8_t *covered = malloc(voxels);
+    float *distance = malloc(voxels * sizeof *distance);
+    ms_status status = MS_OK;
+    *done = 0;
+    if (!covered || !distance) {
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
+    } else {
+        copy_covered(covered, field, part);
+        status = ms_distance(distance, covered, n, err);
+    }
+    if (status == MS_OK) {
+        *done = write_star(field, distance, part, changed);
+        memcpy(field->lo, changed->lo, sizeof field->lo);
+        memcpy(field->hi, changed->hi, sizeof field->hi);
+    }
+    free(covered);
+    free(distance);
+    return status;
+}
+
+ms_status mss_field_add(mss_field *field, const ms_ball *balls, size_t count, ms_error *err)
+{
+    const int *n = field->target->grid.n;
+    ms_status status = ms_raster_add(&field->raster, balls, count, err);
+    memset(field->lo, 0, sizeof field->lo);
+    memset(field->hi, 0, sizeof field->hi);
+    if (status != MS_OK || field->raster.hi[0] == field->raster.lo[0]) {
+        return status; /* failed, or nothing newly covered */
+    }
+    /* Background is at most as far as that of the target, and spheres may stand out of it by
+     * a voxel or so; write_star checks. */
+    const box changed = changed_box(field);
+    const box part = box_grow(&changed, (int)ceilf(deepest_in(field, &changed)) + 2, n);
+    int done = 0;
+    if (box_voxels(&part) <= ms_grid_voxels(&field->target->grid) / LARGEST_PART) {
+        status = update_part(&done, field, &part, &changed, err);
+    }
+    return done || status != MS_OK ? status : update_whole(field, err);
+}

@@ -1,0 +1,213 @@
+#include "ms_mss_select.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Ranks and distances of mirror images agree but for rounding. */
+static const double EQUAL = 1e-6;
+
+static double squared_distance(const double a[3], const double b[3])
+{
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
+static int by_rank(const void *first, const void *second)
+{
+    const mss_candidate *a = first, *b = second;
+    if (a->rank != b->rank) {
+        return a->rank > b->rank ? -1 : 1;
+    }
+    return a->voxel < b->voxel ? -1 : a->voxel > b->voxel;
+}
+
+static int by_voxel(const void *first, const void *second)
+{
+    const mss_candidate *a = first, *b = second;
+    return a->voxel < b->voxel ? -1 : a->voxel > b->voxel;
+}
+
+/* E between voxels, for a place that is no maximum. */
+static double interpolate(const ms_target *target, const double at[3])
+{
+    const ms_grid *grid = &target->grid;
+    int base[3];
+    double part[3], sum = 0;
+    for (int a = 0; a < 3; a++) {
+        base[a] = (int)floor(at[a]);
+        part[a] = at[a] - base[a];
+    }
+    for (int corner = 0; corner < 8; corner++) {
+        const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
+        const double weight = (i ? part[0] : 1 - part[0]) * (j ? part[1] : 1 - part[1]) * (k ? part[2] : 1 - part[2]);
+        if (weight > 0) {
+            sum += weight * (double)target->distance[ms_grid_index(grid, base[0] + i, base[1] + j, base[2] + k)];
+        }
+    }
+    return sum;
+}
+
+/* The mean of a cluster. Members in one place (a plateau of two voxels, refined) keep their radius. */
+static ms_ball mean_ball(const mss_candidate *cluster, size_t count, const ms_target *target)
+{
+    ms_ball mean = {{0, 0, 0}, cluster[0].ball.radius};
+    double spread = 0;
+    for (int a = 0; a < 3; a++) {
+        for (size_t m = 0; m < count; m++) {
+            mean.centre[a] += cluster[m].ball.centre[a] / (double)count;
+        }
+    }
+    for (size_t m = 0; m < count; m++) {
+        spread = fmax(spread, squared_distance(mean.centre, cluster[m].ball.centre));
+    }
+    if (spread > EQUAL) {
+        mean.radius = fmin(mean.radius, interpolate(target, mean.centre));
+    }
+    return mean;
+}
+
+/* Moves all that hang together with the first candidate by steps below `spacing` to the
+ * front; how many they are. */
+static size_t gather_cluster(mss_candidate *c, size_t count, double spacing)
+{
+    size_t size = 1;
+    for (size_t done = 0; done < size; done++) {
+        for (size_t m = size; m < count; m++) {
+            if (squared_distance(c[done].ball.centre, c[m].ball.centre) < spacing * spacing) {
+                const mss_candidate swap = c[m];
+                c[m] = c[size];
+                c[size++] = swap;
+            }
+        }
+    }
+    return size;
+}
+
+static void update_apart(mss_candidate *c, size_t count, const ms_ball *ball)
+{
+#pragma omp parallel for if (count > 4096)
+    for (size_t m = 0; m < count; m++) {
+        c[m].apart = fmin(c[m].apart, squared_distance(c[m].ball.centre, ball->centre));
+    }
+}
+
+/* Moves to the front those that are farthest from all spheres; how many they are. */
+static size_t gather_farthest(mss_candidate *c, size_t count)
+{
+    double most = -INFINITY;
+    size_t size = 0;
+    for (size_t m = 0; m < count; m++) {
+        most = fmax(most, c[m].apart);
+    }
+    for (size_t m = 0; m < count; m++) {
+        if (c[m].apart >= most - EQUAL * (1 + fabs(most))) {
+            const mss_candidate swap = c[m];
+            c[m] = c[size];
+            c[size++] = swap;
+        }
+    }
+    return size;
+}
+
+static size_t drop_close(mss_candidate *c, size_t count, double spacing)
+{
+    size_t kept = 0;
+    for (size_t m = 0; m < count; m++) {
+        if (!(c[m].apart >= 0 && c[m].apart < spacing * spacing)) {
+            c[kept++] = c[m];
+        }
+    }
+    return kept;
+}
+
+/* Spheres that new ones keep away from: those of earlier steps and those of this one. */
+typedef struct placed {
+    const ms_ball *earlier, *step;
+    size_t n_earlier, n_step;
+} placed;
+
+static int too_close(const ms_ball *ball, const placed *p, double spacing)
+{
+    for (size_t s = 0; s < p->n_earlier + p->n_step; s++) {
+        const ms_ball *other = s < p->n_earlier ? &p->earlier[s] : &p->step[s - p->n_earlier];
+        if (squared_distance(ball->centre, other->centre) < spacing * spacing) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Sets how far each candidate is from the spheres so far, or from the centroid if there are none. */
+static void start_apart(mss_candidate *c, size_t count, const placed *p, const ms_target *target)
+{
+    double centroid[3], unused;
+    ms_target_to_voxels(centroid, &unused, &target->grid, target->body.centroid, 0);
+    for (size_t m = 0; m < count; m++) {
+        c[m].apart = p->n_earlier + p->n_step ? (double)INFINITY : -squared_distance(c[m].ball.centre, centroid);
+    }
+    for (size_t s = 0; s < p->n_earlier; s++) {
+        update_apart(c, count, &p->earlier[s]);
+    }
+    for (size_t s = 0; s < p->n_step; s++) {
+        update_apart(c, count, &p->step[s]);
+    }
+}
+
+/* Places the first `count` candidates, equals in rank and distance: clusters as their mean.
+ * What is placed goes behind p->step. */
+static size_t place_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size_t count, const placed *p,
+                           double spacing, const ms_target *target)
+{
+    size_t taken = 0;
+    qsort(c, count, sizeof *c, by_voxel);
+    for (size_t at = 0; at < count && taken < limit;) {
+        const size_t size = gather_cluster(c + at, count - at, spacing);
+        const placed now = {p->earlier, p->step, p->n_earlier, p->n_step + taken};
+        chosen[taken] = mean_ball(c + at, size, target);
+        taken += !too_close(&chosen[taken], &now, spacing);
+        at += size;
+    }
+    return taken;
+}
+
+/* Chooses among candidates of one rank; `chosen` is the end of p->step. */
+static size_t select_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size_t count, placed p, double spacing,
+                            int one_set, const ms_target *target)
+{
+    size_t taken = 0;
+    start_apart(c, count, &p, target);
+    while ((count = drop_close(c, count, spacing)) > 0 && taken < limit && !(one_set && taken)) {
+        const size_t farthest = gather_farthest(c, count);
+        const size_t placed_now = place_equals(chosen + taken, limit - taken, c, farthest, &p, spacing, target);
+        c += farthest; /* placed, or merged into one that is */
+        count -= farthest;
+        for (size_t m = 0; m < count && p.n_earlier + p.n_step == 0; m++) {
+            c[m].apart = INFINITY;
+        }
+        for (size_t s = 0; s < placed_now; s++) {
+            update_apart(c, count, &chosen[taken + s]);
+        }
+        taken += placed_now;
+        p.n_step += placed_now;
+    }
+    return taken;
+}
+
+size_t mss_select(ms_ball *chosen, size_t limit, mss_candidate *candidates, size_t count, const ms_ball *spheres,
+                  size_t n_spheres, double spacing, int one_set, const ms_target *target)
+{
+    size_t taken = 0;
+    qsort(candidates, count, sizeof *candidates, by_rank);
+    for (size_t from = 0; from < count && taken < limit && !(one_set && taken);) {
+        const double least = candidates[from].rank - EQUAL * (1 + fabs(candidates[from].rank));
+        size_t to = from + 1;
+        while (to < count && candidates[to].rank >= least) {
+            to++;
+        }
+        const placed p = {spheres, chosen, n_spheres, taken};
+        taken += select_equals(chosen + taken, limit - taken, candidates + from, to - from, p, spacing, one_set,
+                               target);
+        from = to;
+    }
+    return taken;
+}

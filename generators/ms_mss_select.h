@@ -1,0 +1,34 @@
+/** Which of the maxima of E* become spheres in a step of MSS. Private to ms_mss. */
+#ifndef MS_MSS_SELECT_H
+#define MS_MSS_SELECT_H
+
+#include "ms_raster.h"
+#include "ms_target.h"
+
+/** A maximum of E* where a sphere may be placed; in voxels. */
+typedef struct mss_candidate {
+    ms_ball ball;
+    double rank;  /* the larger, the earlier */
+    size_t voxel; /* the maximum at voxel resolution */
+    double apart; /* squared distance to the nearest sphere so far */
+} mss_candidate;
+
+/**
+ * Chooses spheres in descending rank, none closer than `spacing` to another.
+ *
+ * Candidates of equal rank (mirror images; plateaus) are taken farthest from the spheres so
+ * far first; the first sphere of all nearest to the target's centroid. Of those that are
+ * equally far, those closer than `spacing` to one another are replaced by their mean, so that
+ * a pair across a plane of symmetry becomes one sphere on it. A symmetric target thus gives
+ * symmetric spheres, unless the limit falls among equals: then the lower voxel index wins.
+ *
+ * @param[out]    chosen     room for `limit` balls
+ * @param[in,out] candidates reordered
+ * @param         spheres    those placed before
+ * @param         one_set    nonzero: only the first set of equals (mirror images of one another)
+ * @return how many were chosen
+ */
+size_t mss_select(ms_ball *chosen, size_t limit, mss_candidate *candidates, size_t count, const ms_ball *spheres,
+                  size_t n_spheres, double spacing, int one_set, const ms_target *target);
+
+#endif

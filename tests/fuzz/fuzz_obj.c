@@ -1,0 +1,6 @@
+#include "fuzz_mesh.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    return fuzz_mesh(ms_mesh_parse_obj, data, size);
+}
