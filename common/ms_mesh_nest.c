@@ -137,7 +137,9 @@ static int compare_hits(const void *a, const void *b)
 static void reduce_hits(ray *r)
 {
     size_t kept = 0;
-    qsort(r->hits, r->n_hits, sizeof *r->hits, compare_hits);
+    if (r->n_hits > 1) {
+        qsort(r->hits, r->n_hits, sizeof *r->hits, compare_hits);
+    }
     for (size_t begin = 0, end; begin < r->n_hits; begin = end) {
         int touches = 0;
         for (end = begin; end < r->n_hits && r->hits[end].shell == r->hits[begin].shell; end++) {

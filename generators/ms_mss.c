@@ -18,8 +18,9 @@ enum { SPACING, OFFSET, ORDER, CONFINE, PLANES };
 enum { ORDER_RADIUS, ORDER_GAIN };
 
 static const ms_option OPTIONS[] = {
-    [SPACING] = {"spacing", MS_OPTION_REAL, 4, 0, 1000, NULL, "voxels",
-                 "least distance between the centres of any two spheres (delta_min, section 3.4)"},
+    [SPACING] = {"spacing", MS_OPTION_REAL, 0, 0, 1000, NULL, "voxels",
+                 "least distance between the centres of any two spheres (delta_min, section 3.4); 0: as large as "
+                 "leaves maxima, halved from the largest radius down to 1 voxel (gain: from 2)"},
     [OFFSET] = {"radius-offset", MS_OPTION_REAL, 0, -2, 2, NULL, "voxels",
                 "added to every radius; the paper adds nothing, 0.5 to 0.75 lowers the mismatch"},
     [ORDER] = {"order", MS_OPTION_CHOICE, ORDER_RADIUS, 0, 0, "radius|gain", NULL,
@@ -37,6 +38,7 @@ typedef struct mss {
     mss_field field;
     mss_candidate *candidates; /* maxima of E* where a sphere may be placed */
     size_t n_candidates, room;
+    double spacing; /* delta_min, in voxels */
     int too_small; /* a maximum was passed over because its sphere would be too small */
     ms_tally sum;  /* of the spheres so far */
 } mss;
@@ -105,26 +107,12 @@ static int in_box(const int lo[3], const int hi[3], const int n[3], size_t voxel
     return 1;
 }
 
-static int keeps_distance(const mss *m, const ms_ball *ball, size_t from)
-{
-    const double spacing = option(m, SPACING);
-    for (size_t s = from; s < m->field.raster.n_balls; s++) {
-        const double *c = m->field.raster.ball[s].centre;
-        const double x = c[0] - ball->centre[0], y = c[1] - ball->centre[1], z = c[2] - ball->centre[2];
-        if (x * x + y * y + z * z < spacing * spacing) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-/* Forgets the candidates in a box, and those too close to the spheres from `first_new` on. */
-static void forget_candidates(mss *m, const int lo[3], const int hi[3], size_t first_new)
+/* Forgets the candidates in a box. */
+static void forget_candidates(mss *m, const int lo[3], const int hi[3])
 {
     size_t kept = 0;
     for (size_t c = 0; c < m->n_candidates; c++) {
-        if (!in_box(lo, hi, m->run->target->grid.n, m->candidates[c].voxel) &&
-            keeps_distance(m, &m->candidates[c].ball, first_new)) {
+        if (!in_box(lo, hi, m->run->target->grid.n, m->candidates[c].voxel)) {
             m->candidates[kept++] = m->candidates[c];
         }
     }
@@ -133,6 +121,7 @@ static void forget_candidates(mss *m, const int lo[3], const int hi[3], size_t f
 
 static ms_status add_candidates(mss *m, const size_t *voxel, size_t count, ms_error *err)
 {
+    const size_t first = m->n_candidates;
     if (m->n_candidates + count > m->room) {
         const size_t room = 2 * (m->n_candidates + count);
         mss_candidate *grown = realloc(m->candidates, room * sizeof *grown);
@@ -144,9 +133,14 @@ static ms_status add_candidates(mss *m, const size_t *voxel, size_t count, ms_er
     }
     for (size_t p = 0; p < count; p++) {
         mss_candidate *next = &m->candidates[m->n_candidates];
-        if (place_candidate(next, m, voxel[p]) && keeps_distance(m, &next->ball, 0)) {
+        if (place_candidate(next, m, voxel[p])) {
+            next->apart = INFINITY;
             m->n_candidates++;
         }
+    }
+    mss_candidate *added = m->candidates + first;
+    for (size_t s = 0; s < m->field.raster.n_balls; s++) {
+        mss_keep_apart(added, m->n_candidates - first, &m->field.raster.ball[s]);
     }
     return MS_OK;
 }
@@ -162,7 +156,10 @@ static ms_status update_candidates(mss *m, size_t first_new, ms_error *err)
         lo[a] = changed ? m->field.lo[a] - 2 : 0;
         hi[a] = changed ? m->field.hi[a] + 2 : 0;
     }
-    forget_candidates(m, lo, hi, first_new);
+    forget_candidates(m, lo, hi);
+    for (size_t s = first_new; s < m->field.raster.n_balls; s++) {
+        mss_keep_apart(m->candidates, m->n_candidates, &m->field.raster.ball[s]);
+    }
     if (!changed) {
         return MS_OK;
     }
@@ -197,7 +194,7 @@ static size_t choose(ms_ball *chosen, size_t limit, mss *m)
 {
     const size_t taken =
         mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball, m->field.raster.n_balls,
-                   option(m, SPACING), option(m, ORDER) == ORDER_GAIN, m->run->target);
+                   m->spacing, option(m, ORDER) == ORDER_GAIN, m->run->target);
     size_t kept = 0;
     for (size_t c = 0; c < taken; c++) {
         chosen[kept] = chosen[c];
@@ -206,29 +203,52 @@ static size_t choose(ms_ball *chosen, size_t limit, mss *m)
     return kept;
 }
 
-/* One step: choose among the candidates, add to S~, find the new maxima. */
-static ms_status step(ms_clump *clump, ms_stop_reason *reason, mss *m, ms_error *err)
+/* Adds the spheres of a step to S~ and to the clump, and finds the new maxima. */
+static ms_status add_spheres(ms_clump *clump, ms_stop_reason *reason, mss *m, const ms_ball *chosen, size_t count,
+                             ms_error *err)
 {
     const size_t before = m->field.raster.n_balls;
-    const size_t most = m->run->stop.spheres ? m->run->stop.spheres : MS_CLUMP_MAX_SPHERES;
-    const size_t limit = m->n_candidates < most - before ? m->n_candidates : most - before;
-    ms_ball *chosen = malloc((limit + 1) * sizeof *chosen);
-    if (!chosen) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", limit);
-    }
-    const size_t taken = choose(chosen, limit, m);
-    ms_status status = mss_field_add(&m->field, chosen, taken, err);
-    free(chosen);
+    ms_status status = mss_field_add(&m->field, chosen, count, err);
     if (status == MS_OK) {
         status = accept(clump, reason, m, before, err);
-    }
-    if (status == MS_OK && taken == 0) {
-        *reason = m->too_small ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
     }
     if (status == MS_OK && *reason == MS_STOP_NOT) {
         status = update_candidates(m, before, err);
     }
     return status;
+}
+
+/* One step. Where delta_min is left to us and no maximum is that far from the spheres, it is
+ * halved; below a voxel there is nothing more to find. */
+static ms_status step(ms_clump *clump, ms_stop_reason *reason, mss *m, ms_error *err)
+{
+    const size_t most = m->run->stop.spheres ? m->run->stop.spheres : MS_CLUMP_MAX_SPHERES;
+    const size_t left = most - m->field.raster.n_balls;
+    const size_t limit = m->n_candidates < left ? m->n_candidates : left;
+    ms_status status = MS_OK;
+    ms_ball *chosen = malloc((limit + 1) * sizeof *chosen);
+    if (!chosen) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", limit);
+    }
+    const size_t taken = choose(chosen, limit, m);
+    if (taken > 0) {
+        status = add_spheres(clump, reason, m, chosen, taken, err);
+    } else if (option(m, SPACING) == 0 && m->spacing > 1) {
+        m->spacing = fmax(1, m->spacing / 2);
+    } else {
+        *reason = m->too_small ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
+    }
+    free(chosen);
+    return status;
+}
+
+/* delta_min to begin with. */
+static double first_spacing(const mss *m)
+{
+    if (option(m, SPACING) > 0) {
+        return option(m, SPACING);
+    }
+    return option(m, ORDER) == ORDER_GAIN ? 2 : (double)m->field.deepest;
 }
 
 static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
@@ -239,6 +259,7 @@ static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run 
     }
     ms_status status = mss_field_init(&m.field, run->target, err);
     if (status == MS_OK) {
+        m.spacing = first_spacing(&m);
         status = update_candidates(&m, 0, err);
     }
     while (status == MS_OK && *reason == MS_STOP_NOT) {

@@ -6,9 +6,9 @@
 
 #include "ms_distance.h"
 
-/* A part of the grid up to this share is transformed by itself, beyond it the whole grid is:
- * the part needs memory of its own, five bytes a voxel. */
-enum { LARGEST_PART = 8 };
+/* A part of the grid up to a fifth of it is transformed by itself: its flags and distances, five
+ * bytes a voxel, then take no more memory than the flags of the whole grid would. */
+enum { LARGEST_PART = 5 };
 
 typedef struct box {
     int lo[3], hi[3];

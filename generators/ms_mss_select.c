@@ -83,11 +83,17 @@ static size_t gather_cluster(mss_candidate *c, size_t count, double spacing)
     return size;
 }
 
-static void update_apart(mss_candidate *c, size_t count, const ms_ball *ball)
+void mss_keep_apart(mss_candidate *candidates, size_t count, const ms_ball *sphere)
 {
-#pragma omp parallel for if (count > 4096)
     for (size_t m = 0; m < count; m++) {
-        c[m].apart = fmin(c[m].apart, squared_distance(c[m].ball.centre, ball->centre));
+        candidates[m].apart = fmin(candidates[m].apart, squared_distance(candidates[m].ball.centre, sphere->centre));
+    }
+}
+
+static void keep_apart_now(mss_candidate *c, size_t count, const ms_ball *sphere)
+{
+    for (size_t m = 0; m < count; m++) {
+        c[m].now = fmin(c[m].now, squared_distance(c[m].ball.centre, sphere->centre));
     }
 }
 
@@ -97,10 +103,10 @@ static size_t gather_farthest(mss_candidate *c, size_t count)
     double most = -INFINITY;
     size_t size = 0;
     for (size_t m = 0; m < count; m++) {
-        most = fmax(most, c[m].apart);
+        most = fmax(most, c[m].now);
     }
     for (size_t m = 0; m < count; m++) {
-        if (c[m].apart >= most - EQUAL * (1 + fabs(most))) {
+        if (c[m].now >= most - EQUAL * (1 + fabs(most))) {
             const mss_candidate swap = c[m];
             c[m] = c[size];
             c[size++] = swap;
@@ -109,15 +115,18 @@ static size_t gather_farthest(mss_candidate *c, size_t count)
     return size;
 }
 
-static size_t drop_close(mss_candidate *c, size_t count, double spacing)
+/* Moves to the front those that keep their distance; how many they are. */
+static size_t gather_eligible(mss_candidate *c, size_t count, double spacing)
 {
-    size_t kept = 0;
+    size_t size = 0;
     for (size_t m = 0; m < count; m++) {
-        if (!(c[m].apart >= 0 && c[m].apart < spacing * spacing)) {
-            c[kept++] = c[m];
+        if (c[m].now >= spacing * spacing) {
+            const mss_candidate swap = c[m];
+            c[m] = c[size];
+            c[size++] = swap;
         }
     }
-    return kept;
+    return size;
 }
 
 /* Spheres that new ones keep away from: those of earlier steps and those of this one. */
@@ -137,20 +146,19 @@ static int too_close(const ms_ball *ball, const placed *p, double spacing)
     return 0;
 }
 
-/* Sets how far each candidate is from the spheres so far, or from the centroid if there are none. */
-static void start_apart(mss_candidate *c, size_t count, const placed *p, const ms_target *target)
+/* Of equals, the first sphere of all is the one nearest to the centroid. */
+static size_t gather_central(mss_candidate *c, size_t count, const ms_target *target)
 {
     double centroid[3], unused;
     ms_target_to_voxels(centroid, &unused, &target->grid, target->body.centroid, 0);
     for (size_t m = 0; m < count; m++) {
-        c[m].apart = p->n_earlier + p->n_step ? (double)INFINITY : -squared_distance(c[m].ball.centre, centroid);
+        c[m].now = -squared_distance(c[m].ball.centre, centroid);
     }
-    for (size_t s = 0; s < p->n_earlier; s++) {
-        update_apart(c, count, &p->earlier[s]);
+    const size_t size = gather_farthest(c, count);
+    for (size_t m = 0; m < count; m++) {
+        c[m].now = INFINITY;
     }
-    for (size_t s = 0; s < p->n_step; s++) {
-        update_apart(c, count, &p->step[s]);
-    }
+    return size;
 }
 
 /* Places the first `count` candidates, equals in rank and distance: clusters as their mean.
@@ -170,22 +178,21 @@ static size_t place_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size
     return taken;
 }
 
-/* Chooses among candidates of one rank; `chosen` is the end of p->step. */
+/* Chooses among candidates of one rank; `chosen` is the end of p.step. */
 static size_t select_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size_t count, placed p, double spacing,
                             int one_set, const ms_target *target)
 {
     size_t taken = 0;
-    start_apart(c, count, &p, target);
-    while ((count = drop_close(c, count, spacing)) > 0 && taken < limit && !(one_set && taken)) {
-        const size_t farthest = gather_farthest(c, count);
-        const size_t placed_now = place_equals(chosen + taken, limit - taken, c, farthest, &p, spacing, target);
-        c += farthest; /* placed, or merged into one that is */
-        count -= farthest;
-        for (size_t m = 0; m < count && p.n_earlier + p.n_step == 0; m++) {
-            c[m].apart = INFINITY;
-        }
+    for (size_t s = 0; s < p.n_step; s++) {
+        keep_apart_now(c, count, &p.step[s]);
+    }
+    while ((count = gather_eligible(c, count, spacing)) > 0 && taken < limit && !(one_set && taken)) {
+        const size_t set = p.n_earlier + p.n_step ? gather_farthest(c, count) : gather_central(c, count, target);
+        const size_t placed_now = place_equals(chosen + taken, limit - taken, c, set, &p, spacing, target);
+        c += set; /* placed, or merged into one that is */
+        count -= set;
         for (size_t s = 0; s < placed_now; s++) {
-            update_apart(c, count, &chosen[taken + s]);
+            keep_apart_now(c, count, &chosen[taken + s]);
         }
         taken += placed_now;
         p.n_step += placed_now;
@@ -197,6 +204,10 @@ size_t mss_select(ms_ball *chosen, size_t limit, mss_candidate *candidates, size
                   size_t n_spheres, double spacing, int one_set, const ms_target *target)
 {
     size_t taken = 0;
+    for (size_t m = 0; m < count; m++) {
+        candidates[m].now = candidates[m].apart;
+    }
+    count = gather_eligible(candidates, count, spacing);
     qsort(candidates, count, sizeof *candidates, by_rank);
     for (size_t from = 0; from < count && taken < limit && !(one_set && taken);) {
         const double least = candidates[from].rank - EQUAL * (1 + fabs(candidates[from].rank));

@@ -10,8 +10,12 @@ typedef struct mss_candidate {
     ms_ball ball;
     double rank;  /* the larger, the earlier */
     size_t voxel; /* the maximum at voxel resolution */
-    double apart; /* squared distance to the nearest sphere so far */
+    double apart; /* squared distance to the nearest sphere so far; INFINITY if there is none */
+    double now;   /* work space: the same, within a step */
 } mss_candidate;
+
+/** Takes note of a new sphere in the distances `apart`. */
+void mss_keep_apart(mss_candidate *candidates, size_t count, const ms_ball *sphere);
 
 /**
  * Chooses spheres in descending rank, none closer than `spacing` to another.
