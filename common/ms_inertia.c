@@ -87,7 +87,7 @@ static void fill_body(ms_body *body, const integrals *sums, const double centre[
         body->inertia[k][k] = moment[(k + 1) % 3] + moment[(k + 2) % 3];
         int i = pair[3 + k][0];
         int j = pair[3 + k][1];
-        body->inertia[i][j] = body->inertia[j][i] = -moment[3 + k];
+        body->inertia[i][j] = body->inertia[j][i] = 0.0 - moment[3 + k]; /* never -0 */
     }
 }
 

@@ -17,13 +17,13 @@ typedef struct ms_mesh {
 
 /** What ms_mesh_repair found and what it changed. */
 typedef struct ms_mesh_report {
-    size_t dropped_degenerate; /* triangles with two equal corners or no area, removed */
+    size_t dropped_degenerate; /* triangles with two equal corners, and fins, removed */
     size_t dropped_duplicate;  /* triangles on the same three corners as another, removed */
     size_t flipped;            /* triangles whose winding was reversed */
     size_t open_edges;         /* edges of one triangle */
     size_t nonmanifold_edges;  /* edges of more than two triangles */
     size_t odd_edges;          /* edges of an odd number of triangles: with any, the mesh bounds no body */
-    size_t shells;             /* pieces joined by edges */
+    size_t shells;             /* pieces joined by edges; of four triangles at an edge two and two are */
     size_t cavities;           /* shells that lie inside an odd number of others */
     size_t bodies;             /* shells - cavities */
     int closed;                /* no odd edges, every shell could be oriented */
@@ -41,15 +41,25 @@ ms_status ms_mesh_alloc(ms_mesh *mesh, size_t n_vertices, size_t n_triangles, ms
 void ms_mesh_box(double lo[3], double hi[3], const ms_mesh *mesh);
 
 /**
- * Drops degenerate and duplicate triangles and, where the mesh is closed, winds every shell
- * so that it encloses matter: outer shells outward, cavities inward. An open mesh keeps its
- * windings and is reported, not refused: the caller decides.
+ * Drops what bounds nothing and, where the mesh is closed, winds every shell so that it
+ * encloses matter: outer shells outward, cavities inward. An open mesh keeps its windings and
+ * is reported, not refused: the caller decides.
  *
- * @param[in,out] mesh    vertices already welded (ms_mesh_read does); triangles change
+ * Dropped are triangles with two equal corners; of triangles on the same three corners, pairs
+ * of opposite winding and all but one of the rest (one of a pair comes back where it would
+ * leave a hole); fins, which hang by one edge on an edge of two or more others; and vertices
+ * that no triangle uses. A collinear triangle of three vertices that fills a gap is kept.
+ *
+ * A shell is a cavity if it lies inside an odd number of others. Shells that cut each other
+ * do not lie inside each other.
+ *
+ * @param[in,out] mesh    vertices already welded (ms_mesh_read does); on failure it may have
+ *                        lost triangles but is whole
  * @param[out]    report  what was found and done
  * @param[out]    err     message; may be NULL
  * @return MS_OK; MS_ERR_SHAPE if no triangle is left or a closed shell cannot be
- *         oriented (one-sided); MS_ERR_NOMEM
+ *         oriented (one-sided); MS_ERR_ARG for a corner that does not exist; MS_ERR_LIMIT
+ *         over 2^32 / 3 triangles; MS_ERR_NOMEM
  *
  * Cost: O(triangles log triangles).
  */

@@ -54,8 +54,8 @@ static ms_status check_single_precision(const ms_mesh *mesh, ms_error *err)
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         for (int k = 0; k < 3; k++) {
             if (!(fabs(mesh->vertex[v][k]) <= (double)FLT_MAX)) {
-                return ms_fail(err, MS_ERR_ARG, "vertex %zu has the coordinate %g, which STL cannot hold; write .ply", v,
-                               mesh->vertex[v][k]);
+                return ms_fail(err, MS_ERR_ARG, "vertex %zu has the coordinate %g, which STL cannot hold; write .ply",
+                               v, mesh->vertex[v][k]);
             }
         }
     }
@@ -112,7 +112,8 @@ static ms_status write_ply(const ms_mesh *mesh, FILE *stream, ms_error *err)
 
 /* OBJ and OFF differ in what stands before a vertex and a face, and in where counting begins.
    17 digits restore a double exactly. */
-static ms_status write_text(const ms_mesh *mesh, FILE *stream, const char *vertex, const char *face, unsigned long first)
+static ms_status write_text(const ms_mesh *mesh, FILE *stream, const char *vertex, const char *face,
+                            unsigned long first)
 {
     int good = 1;
     for (size_t v = 0; good && v < mesh->n_vertices; v++) {

@@ -9,7 +9,8 @@
  * STL holds single precision; the text formats restore the doubles.
  *
  * @param path the file; "-" writes OFF to standard output
- * @return MS_OK; MS_ERR_ARG for an unknown ending; MS_ERR_IO
+ * @return MS_OK; MS_ERR_ARG for an unknown ending or coordinates beyond single precision in
+ *         STL; MS_ERR_LIMIT; MS_ERR_NOMEM; MS_ERR_IO
  */
 ms_status ms_mesh_write(const ms_mesh *mesh, const char *path, ms_error *err);
 

@@ -88,7 +88,8 @@ const ms_shape_kind *ms_shape_find(const char *name, ms_error *err)
     return NULL;
 }
 
-static ms_status check_value(const ms_shape_kind *kind, const ms_shape_parameter *parameter, double value, ms_error *err)
+static ms_status check_value(const ms_shape_kind *kind, const ms_shape_parameter *parameter, double value,
+                             ms_error *err)
 {
     if (!(value >= parameter->min && value <= parameter->max)) {
         return ms_fail(err, MS_ERR_ARG, "%s: %s = %g is not within %g to %g", kind->name, parameter->name, value,

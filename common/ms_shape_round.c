@@ -151,7 +151,8 @@ ms_status ms_shape_dumbbell(ms_mesh *mesh, const double *value, ms_error *err)
     double neck = value[2];
     double half = value[1] / 2;
     if (neck >= ball) {
-        return ms_fail(err, MS_ERR_ARG, "the neck's radius neck = %g must be below the balls' radius R = %g", neck, ball);
+        return ms_fail(err, MS_ERR_ARG, "the neck's radius neck = %g must be below the balls' radius R = %g", neck,
+                       ball);
     }
     double shoulder = sqrt(ball * ball - neck * neck);
     if (half <= shoulder) {

@@ -82,14 +82,14 @@ static int place_candidate(mss_candidate *c, mss *m, size_t voxel)
     for (int a = 0; a < 3; a++) {
         c->ball.centre[a] = peak.voxel[a] + peak.shift[a];
     }
-    c->ball.radius = ms_peaks_value(&peak, target->distance, target->grid.n) + option(m, OFFSET);
+    c->ball.radius = ms_peaks_value(&peak, m->field.e, target->grid.n) + option(m, OFFSET);
     c->voxel = voxel;
     if (!confine(&c->ball, m)) {
         return 0;
     }
     c->rank = c->ball.radius;
     if (option(m, ORDER) == ORDER_GAIN) {
-        const double e = (double)target->distance[voxel], e_union = 2 * e - (double)m->field.star[voxel];
+        const double e = (double)m->field.e[voxel], e_union = 2 * e - (double)m->field.star[voxel];
         c->rank = (e - e_union) * e;
     }
     return 1;
@@ -257,7 +257,7 @@ static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run 
     if (run->settings->value[CONFINE] != 0 && (!run->target->closest || !run->target->closed)) {
         return ms_fail(err, MS_ERR_ARG, "confine needs a closed mesh; this shape is a volume or an open mesh");
     }
-    ms_status status = mss_field_init(&m.field, run->target, err);
+    ms_status status = mss_field_init(&m.field, run->target, (const double(*)[4])run->settings->plane, run->settings->n_planes, err);
     if (status == MS_OK) {
         m.spacing = first_spacing(&m);
         status = update_candidates(&m, 0, err);

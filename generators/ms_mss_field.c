@@ -38,20 +38,49 @@ static void box_include(box *b, int from, int to, int j, int k)
     }
 }
 
-ms_status mss_field_init(mss_field *field, const ms_target *target, ms_error *err)
+/* E cut down to the distance to the nearest plane, in voxels. */
+static void wall_off(float *e, const ms_target *target, const double (*planes)[4], size_t n_planes)
+{
+    const ms_grid *grid = &target->grid;
+#pragma omp parallel for
+    for (int k = 0; k < grid->n[2]; k++) {
+        for (int j = 0; j < grid->n[1]; j++) {
+            const size_t start = ms_grid_index(grid, 0, j, k);
+            for (int i = 0; i < grid->n[0]; i++) {
+                double least = (double)target->distance[start + (size_t)i];
+                for (size_t p = 0; p < n_planes; p++) {
+                    const double *q = planes[p];
+                    const double side = q[0] * (grid->origin[0] + grid->h * i) +
+                                        q[1] * (grid->origin[1] + grid->h * j) +
+                                        q[2] * (grid->origin[2] + grid->h * k) - q[3];
+                    least = fmin(least, fabs(side) / grid->h);
+                }
+                e[start + (size_t)i] = (float)least;
+            }
+        }
+    }
+}
+
+ms_status mss_field_init(mss_field *field, const ms_target *target, const double (*planes)[4], size_t n_planes,
+                         ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(&target->grid);
     float deepest = 0;
     memset(field, 0, sizeof *field);
     field->target = target;
     field->star = malloc(voxels * sizeof *field->star);
-    if (!field->star) {
+    field->own_e = n_planes ? malloc(voxels * sizeof *field->own_e) : NULL;
+    if (!field->star || (n_planes && !field->own_e)) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the field E* of %zu voxels; use fewer cells", voxels);
     }
+    if (n_planes) {
+        wall_off(field->own_e, target, planes, n_planes);
+    }
+    field->e = n_planes ? field->own_e : target->distance;
 #pragma omp parallel for reduction(max : deepest)
     for (size_t v = 0; v < voxels; v++) {
-        field->star[v] = 2 * target->distance[v];
-        deepest = target->distance[v] > deepest ? target->distance[v] : deepest;
+        field->star[v] = 2 * field->e[v];
+        deepest = field->e[v] > deepest ? field->e[v] : deepest;
     }
     field->deepest = deepest;
     memcpy(field->hi, target->grid.n, sizeof field->hi);
@@ -62,6 +91,7 @@ void mss_field_free(mss_field *field)
 {
     ms_raster_free(&field->raster);
     free(field->star);
+    free(field->own_e);
 }
 
 /* Which voxels of a part S~ covers. */
@@ -94,10 +124,13 @@ static ms_status update_whole(mss_field *field, ms_error *err)
     copy_covered(covered, field, &all);
     ms_status status = ms_distance(field->star, covered, all.hi, err);
     free(covered);
-#pragma omp parallel for
+    float deepest = 0;
+#pragma omp parallel for reduction(max : deepest)
     for (size_t v = 0; v < voxels; v++) {
-        field->star[v] = 2 * field->target->distance[v] - field->star[v];
+        deepest = field->star[v] > deepest ? field->star[v] : deepest;
+        field->star[v] = 2 * field->e[v] - field->star[v];
     }
+    field->deepest_union = deepest;
     return status;
 }
 
@@ -116,7 +149,7 @@ static box changed_box(const mss_field *field)
     box covered, changed;
     memcpy(covered.lo, field->raster.lo, sizeof covered.lo);
     memcpy(covered.hi, field->raster.hi, sizeof covered.hi);
-    const box reach = box_grow(&covered, (int)ceilf(field->deepest) + 1, grid->n);
+    const box reach = box_grow(&covered, (int)ceilf(field->deepest_union) + 1, grid->n);
     changed = covered;
 #pragma omp parallel
     {
@@ -127,7 +160,7 @@ static box changed_box(const mss_field *field)
                 const double dz = gap(k, covered.lo[2], covered.hi[2]), dy = gap(j, covered.lo[1], covered.hi[1]);
                 const float away = (float)sqrt(dz * dz + dy * dy) - 0.01f; /* E~ is known up to rounding */
                 const size_t start = ms_grid_index(grid, 0, j, k);
-                const float *e = field->target->distance + start, *star = field->star + start;
+                const float *e = field->e + start, *star = field->star + start;
                 int from = reach.lo[0], to = reach.hi[0];
                 while (from < to && 2 * e[from] - star[from] < fmaxf(away, (float)(covered.lo[0] - from) - 0.01f)) {
                     from++;
@@ -185,8 +218,9 @@ static int write_star(mss_field *field, const float *distance, const box *part, 
 {
     const ms_grid *grid = &field->target->grid;
     const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
+    float deepest = field->deepest_union;
     int exact = 1;
-#pragma omp parallel for reduction(& : exact)
+#pragma omp parallel for reduction(& : exact) reduction(max : deepest)
     for (int k = changed->lo[2]; k < changed->hi[2]; k++) {
         for (int j = changed->lo[1]; j < changed->hi[1]; j++) {
             const float *from = distance + plane * (size_t)(k - part->lo[2]) + row * (size_t)(j - part->lo[1]);
@@ -194,10 +228,12 @@ static int write_star(mss_field *field, const float *distance, const box *part, 
             for (int i = changed->lo[0]; i < changed->hi[0]; i++) {
                 const float d = from[i - part->lo[0]];
                 exact &= d <= (float)depth_in_part(part, grid->n, i, j, k);
-                field->star[start + (size_t)i] = 2 * field->target->distance[start + (size_t)i] - d;
+                deepest = d > deepest ? d : deepest;
+                field->star[start + (size_t)i] = 2 * field->e[start + (size_t)i] - d;
             }
         }
     }
+    field->deepest_union = deepest;
     return exact;
 }
 

@@ -7,14 +7,24 @@
 
 typedef struct mss_field {
     const ms_target *target;
-    ms_raster raster; /* the union of the spheres so far, S~ */
-    float *star;      /* E*, in voxels */
-    float deepest;    /* largest E */
-    int lo[3], hi[3]; /* box lo <= (i,j,k) < hi in which the last update changed E*; empty: lo = hi */
+    const float *e;    /* E; with planes, no more than the distance to the nearest plane */
+    float *own_e;      /* where e is kept if it is not the target's own */
+    ms_raster raster;  /* the union of the spheres so far, S~ */
+    float *star;       /* E*, in voxels */
+    float deepest;     /* largest E */
+    float deepest_union; /* largest E~ so far; E~ only grows */
+    int lo[3], hi[3];  /* box lo <= (i,j,k) < hi in which the last update changed E*; empty: lo = hi */
 } mss_field;
 
-/** No spheres yet: E~ = 0, E* = 2E; all of it counts as changed. @return MS_OK; MS_ERR_NOMEM */
-ms_status mss_field_init(mss_field *field, const ms_target *target, ms_error *err);
+/**
+ * No spheres yet: E~ = 0, E* = 2E; all of it counts as changed.
+ *
+ * @param planes (a, b, c, d), a x + b y + c z = d in the mesh's frame, (a, b, c) of unit
+ *               length: each is taken as a wall, so that E has its maxima on either side
+ * @return MS_OK; MS_ERR_NOMEM
+ */
+ms_status mss_field_init(mss_field *field, const ms_target *target, const double (*planes)[4], size_t n_planes,
+                         ms_error *err);
 
 /**
  * Adds spheres to S~ and recomputes E* where that can have changed it.

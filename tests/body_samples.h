@@ -26,9 +26,19 @@ static inline void default_values(double value[MS_SHAPE_MAX_PARAMETERS], const m
     }
 }
 
+/** Where a kind has its parameter fineness. */
+static inline int fineness_at(const ms_shape_kind *kind)
+{
+    int at = 0;
+    while (strcmp(kind->parameters[at].name, "fineness") != 0) {
+        at++;
+    }
+    return at;
+}
+
 static inline ms_mesh make_body(const char *name, const double *value)
 {
-    ms_mesh mesh;
+    ms_mesh mesh = {0};
     ms_error err = {{0}};
     const ms_shape_kind *kind = ms_shape_find(name, &err);
     if (!kind || ms_shape_make(&mesh, kind, value, &err) != MS_OK) {
@@ -123,7 +133,8 @@ static inline uint32_t add_vertex(ms_mesh *mesh, double x, double y, double z)
 /** Cube with the corners 0 and 1: vertex 4x + 2y + z, twelve triangles. */
 static inline ms_mesh unit_cube(void)
 {
-    static const uint32_t quad[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+    static const uint32_t quad[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
+                                        {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
     ms_mesh mesh;
     assert_int_equal(ms_mesh_alloc(&mesh, 8, 12, NULL), MS_OK);
     for (int v = 0; v < 8; v++) {

@@ -179,7 +179,7 @@ static void a_bound_returns_itself(void **state)
         expect_close(distance_of(p, q), exact, 1e-14);
         assert_true(ms_closest_distance(NULL, closest, p, 0) == 0);
     }
-    const vec nowhere = {NAN, 0, 0};
+    const vec nowhere = {(double)NAN, 0, 0};
     vec q = {7, 7, 7};
     assert_true(ms_closest_distance(q, closest, nowhere, 2.5) == 2.5);
     assert_true(q[0] == 7);
