@@ -64,8 +64,8 @@ ms_status ms_clump_pieces(size_t *pieces, const ms_clump *clump, ms_error *err)
 void ms_clump_box(double lo[3], double hi[3], const ms_clump *clump)
 {
     for (int a = 0; a < 3; a++) {
-        lo[a] = INFINITY;
-        hi[a] = -INFINITY;
+        lo[a] = HUGE_VAL;
+        hi[a] = -HUGE_VAL;
         for (size_t s = 0; s < clump->n_spheres; s++) {
             lo[a] = fmin(lo[a], clump->sphere[s].centre[a] - clump->sphere[s].radius);
             hi[a] = fmax(hi[a], clump->sphere[s].centre[a] + clump->sphere[s].radius);
@@ -75,7 +75,7 @@ void ms_clump_box(double lo[3], double hi[3], const ms_clump *clump)
 
 double ms_clump_smallest_radius(const ms_clump *clump)
 {
-    double least = INFINITY;
+    double least = HUGE_VAL;
     for (size_t s = 0; s < clump->n_spheres; s++) {
         least = fmin(least, clump->sphere[s].radius);
     }

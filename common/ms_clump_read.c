@@ -5,14 +5,73 @@
 #include "ms_file.h"
 #include "ms_text.h"
 
-/* Other tools write commas, semicolons, tabs or blanks: all become blanks. */
-static void blank_separators(ms_bytes *bytes)
+static int is_mark(char c)
 {
-    for (size_t at = 0; at < bytes->size; at++) {
-        if (bytes->data[at] == ',' || bytes->data[at] == ';') {
-            bytes->data[at] = ' ';
+    return c == ',' || c == ';';
+}
+
+static int is_between(char c)
+{
+    return is_mark(c) || c == ' ' || c == '\t' || c == '\r';
+}
+
+/*
+ * Other tools write commas, semicolons, tabs or blanks: in one line all become blanks.
+ * Returns what is wrong with its first four columns, NULL if nothing is: an empty one, or the
+ * decimal commas of many a spreadsheet, would shift the numbers without notice.
+ */
+static const char *separate(char *at, const char *end)
+{
+    const char *flaw = NULL;
+    char kind = ' '; /* the mark between the first two columns; blank where there is none */
+    for (int column = 0; column < 4 || at < end; column++) {
+        char mark = ' ';
+        int marks = at < end && is_mark(*at); /* nothing stands before the first mark */
+        while (at < end && !is_between(*at)) {
+            at++;
+        }
+        for (; at < end && is_between(*at); at++) {
+            if (is_mark(*at)) {
+                marks++;
+                mark = *at;
+                *at = ' ';
+            }
+        }
+        kind = column == 0 ? mark : kind;
+        if (column < 3 && marks > 1) {
+            flaw = "one of the first four columns is empty";
+        } else if (!flaw && at < end && mark != kind && (column < 3 || (column == 3 && mark == ','))) {
+            flaw = "commas and other separators are mixed; write decimal points, and one kind of separator";
         }
     }
+    return flaw;
+}
+
+/* Separates the columns of the line at which the text stands, up to its comment. */
+static const char *separate_line(ms_bytes *bytes, const ms_text *text)
+{
+    char *start = (char *)bytes->data + (text->at - (const char *)bytes->data);
+    const size_t left = (size_t)(text->end - text->at);
+    const char *newline = memchr(start, '\n', left), *end = newline ? newline : start + left;
+    const char *comment = memchr(start, '#', (size_t)(end - start));
+    return separate(start, comment ? comment : end);
+}
+
+/* Old files end their lines by a carriage return alone. */
+static void mend_line_ends(ms_bytes *bytes)
+{
+    for (size_t at = 0; at + 1 < bytes->size; at++) {
+        if (bytes->data[at] == '\r' && bytes->data[at + 1] != '\n') {
+            bytes->data[at] = '\n';
+        }
+    }
+}
+
+static int line_is_empty(const ms_text *text)
+{
+    ms_text ahead = *text;
+    ms_word word;
+    return !ms_text_word(&word, &ahead);
 }
 
 static int first_word_is_number(const ms_text *text)
@@ -40,22 +99,26 @@ static ms_status read_sphere(ms_clump *clump, ms_text *text, ms_error *err)
 
 static ms_status parse(ms_clump *clump, ms_bytes *bytes, const char *name, ms_error *err)
 {
-    ms_text text = {.comment = '#'};
+    ms_text text;
     int header_allowed = 1;
     if (memchr(bytes->data, 0, bytes->size)) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: this is not a text file of spheres x,y,z,r", name);
     }
-    blank_separators(bytes);
+    mend_line_ends(bytes);
     ms_text_start(&text, bytes, name);
     text.comment = '#';
     while (ms_text_seek(&text)) {
-        if (header_allowed && !first_word_is_number(&text)) {
-            header_allowed = 0;
-            ms_text_skip_line(&text);
+        const int first_is_empty = is_mark(*text.at);
+        const char *flaw = separate_line(bytes, &text);
+        if (line_is_empty(&text)) {
             continue;
         }
+        const int header = header_allowed && !first_word_is_number(&text);
         header_allowed = 0;
-        ms_status status = read_sphere(clump, &text, err);
+        if (flaw && (!header || first_is_empty)) { /* a nameless first column holds numbers of rows */
+            return ms_text_fail(err, &text, "%s", flaw);
+        }
+        ms_status status = header ? MS_OK : read_sphere(clump, &text, err);
         if (status != MS_OK) {
             return status;
         }

@@ -87,7 +87,7 @@ static ms_status next_whole(int64_t *whole, source *from, ms_ply_type type, cons
 static ms_status parse_list(
     ms_mesh_builder *builder, source *from, const ms_ply_property *property, const ms_bytes *bytes, ms_error *err)
 {
-    int64_t length;
+    int64_t length = 0;
     size_t place = place_of(from, bytes);
     ms_status status = next_whole(&length, from, property->count_type, bytes, err);
     if (!status && length < 0) {
@@ -96,7 +96,7 @@ static ms_status parse_list(
     }
     for (int64_t i = 0; i < length && !status; i++) {
         double ignored;
-        int64_t corner;
+        int64_t corner = 0;
         if (property->role != MS_PLY_CORNERS) {
             status = next_value(&ignored, from, property->type, bytes, err);
             continue;

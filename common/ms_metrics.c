@@ -126,7 +126,7 @@ static ms_status count_on_fitting_grid(ms_metrics *metrics, ms_score *curve, con
 
 static ms_status measure_surface(ms_metrics *metrics, const ms_target *target, const ms_clump *clump, ms_error *err)
 {
-    ms_standout protrusion = {NAN, NAN}, gap = {NAN, NAN};
+    ms_standout protrusion = {(double)NAN, (double)NAN}, gap = {(double)NAN, (double)NAN};
     ms_status status = MS_OK;
     if (target->mesh && target->closed) {
         status = ms_surface_protrusion(&protrusion, target, clump, err);
@@ -159,6 +159,9 @@ ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_targ
     }
     if (status == MS_OK && metrics->body.volume > 0) {
         status = ms_inertia_compare(&metrics->inertia, &metrics->body, &target->body, err);
+    } else {
+        const double unknown = (double)NAN;
+        metrics->inertia = (ms_inertia_error){{unknown, unknown, unknown}, unknown, unknown, unknown};
     }
     return status;
 }

@@ -44,15 +44,15 @@ typedef struct ms_metrics {
 /**
  * Measures a clump against a target, by the target's voxel rule. Where spheres reach beyond
  * the target's grid the union is counted on a larger one. Lengths are in the mesh's unit;
- * protrusion and gap are NAN for a volume.
+ * protrusion and gap are NAN for a volume, protrusion for an open mesh too, the inertia error
+ * for spheres so small that they cover no voxel.
  *
  * @param[out] curve      scores of the prefixes 1..n_spheres; NULL if not wanted
  * @param      clump      at least one sphere
  * @param      max_voxels the largest grid that may be made
  * @return MS_OK; MS_ERR_ARG for an empty clump; MS_ERR_LIMIT; MS_ERR_NOMEM
  *
- * Cost: one raster of the union, and a search of the mesh per surface sample
- * (256 on each sphere, one for each h^2 of the mesh).
+ * Cost: one raster of the union, and a search per sample of the surfaces (ms_surface.h).
  */
 ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
                              size_t max_voxels, ms_error *err);

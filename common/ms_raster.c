@@ -66,28 +66,34 @@ static uint64_t sample_mask(double dx, double dy, double dz, double radius_squar
     return mask;
 }
 
-static uint64_t ball_mask(const ms_ball *ball, int i, int j, int k)
+/* The samples of a voxel in a ball; sets *centre if its centre is too. */
+static uint64_t ball_mask(int *centre, const ms_ball *ball, int i, int j, int k)
 {
     const double dx = i - ball->centre[0], dy = j - ball->centre[1], dz = k - ball->centre[2];
-    const double reach = ball->radius + HALF_DIAGONAL;
-    if (dx * dx + dy * dy + dz * dz > reach * reach) {
+    const double reach = ball->radius + HALF_DIAGONAL, away = dx * dx + dy * dy + dz * dz;
+    if (away > reach * reach) {
         return 0;
     }
-    return sample_mask(dx, dy, dz, ball->radius * ball->radius);
+    const double square = ball->radius * ball->radius;
+    *centre |= away <= square;
+    return sample_mask(dx, dy, dz, square);
 }
 
-/* Does the union of ball b and those before it cover more than half of the voxel? */
+/* Does the union of ball b and those before it cover more than half of the voxel? Where half
+ * of the samples are covered, the centre decides: a ball of radius 1/2 on a voxel's centre,
+ * 0.52 of the voxel, covers 32 of 64 and has to cover the voxel (MSS 2.3). */
 static int covers_half(const worker *w, size_t b, int i, int j, int k)
 {
-    uint64_t mask = ball_mask(&w->raster->ball[b], i, j, k);
-    if (mask == 0) {
+    int centre = 0;
+    uint64_t mask = ball_mask(&centre, &w->raster->ball[b], i, j, k);
+    if (mask == 0 && !centre) {
         return 0; /* nothing new in this voxel */
     }
     const size_t *range = w->neighbour_start + (b - w->from);
     for (size_t at = range[0]; at < range[1] && __builtin_popcountll(mask) <= HALF_OF_SAMPLES; at++) {
-        mask |= ball_mask(&w->raster->ball[w->neighbour[at]], i, j, k);
+        mask |= ball_mask(&centre, &w->raster->ball[w->neighbour[at]], i, j, k);
     }
-    return __builtin_popcountll(mask) > HALF_OF_SAMPLES;
+    return __builtin_popcountll(mask) + centre > HALF_OF_SAMPLES;
 }
 
 /* Sums over the voxels of one row that a ball covers first. */
@@ -231,8 +237,10 @@ static ms_status append(ms_raster *raster, const ms_ball *balls, size_t count, m
     }
     for (size_t b = 0; b < count; b++) {
         const double *c = balls[b].centre;
-        if (!isfinite(c[0]) || !isfinite(c[1]) || !isfinite(c[2]) || !isfinite(balls[b].radius)) {
-            return ms_fail(err, MS_ERR_ARG, "sphere %zu has a centre or radius that is not a finite number", b + 1);
+        const double r = balls[b].radius;
+        if (!isfinite(c[0]) || !isfinite(c[1]) || !isfinite(c[2]) || !isfinite(r) || r < 0) {
+            return ms_fail(err, MS_ERR_ARG, "sphere %zu has the centre (%g, %g, %g) and the radius %g, in voxels; a "
+                           "centre must be finite and a radius not below 0", b + 1, c[0], c[1], c[2], r);
         }
     }
     const size_t needed = raster->n_balls + count;
@@ -256,7 +264,7 @@ static ms_status append(ms_raster *raster, const ms_ball *balls, size_t count, m
 /* The planes that any new ball touches. */
 static void plane_range(int *from, int *to, const ms_raster *raster, size_t first_new)
 {
-    double lo = INFINITY, hi = -INFINITY;
+    double lo = HUGE_VAL, hi = -HUGE_VAL;
     for (size_t b = first_new; b < raster->n_balls; b++) {
         lo = fmin(lo, raster->ball[b].centre[2] - raster->ball[b].radius - 1);
         hi = fmax(hi, raster->ball[b].centre[2] + raster->ball[b].radius + 1);

@@ -44,13 +44,13 @@ ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule 
 /**
  * Adds spheres, in order. By the rule MS_VOXEL_HALF a voxel is covered once more than half
  * of its 4x4x4 sample points lie in the union of the spheres so far (MSS eq. 5 for the
- * union), by MS_VOXEL_CENTRE once its centre does.
+ * union; just half of them, if its centre does too), by MS_VOXEL_CENTRE once its centre does.
  *
  * Parts of spheres beyond the grid are not counted: use a grid that holds them
  * (ms_grid_enlarge).
  *
- * @return MS_OK; MS_ERR_ARG for a radius or place that is not finite; MS_ERR_LIMIT above
- *         MS_CLUMP_MAX_SPHERES; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for a radius or place that is not finite or a radius below 0;
+ *         MS_ERR_LIMIT above MS_CLUMP_MAX_SPHERES; MS_ERR_NOMEM
  * Cost: O(voxels in the spheres' boxes); all cores, the same bits at any number of threads.
  */
 ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err);

@@ -133,7 +133,7 @@ ms_status ms_surface_protrusion(ms_standout *out, const ms_target *target, const
 /* Distance from a point to the union of the spheres; 0 within. */
 static double union_distance(const ms_clump *clump, const double point[3])
 {
-    double least = INFINITY;
+    double least = HUGE_VAL;
     for (size_t s = 0; s < clump->n_spheres; s++) {
         const ms_sphere *sphere = &clump->sphere[s];
         const double reach = sphere->radius + least, away = squared_distance(point, sphere->centre);

@@ -9,8 +9,8 @@
 enum { ACROSS_BITS = 15, ACROSS = 1 << ACROSS_BITS };
 /* Along the rays: crossings are integers in units of 2^-12 voxel. */
 enum { ALONG_BITS = 12, ALONG = 1 << ALONG_BITS };
-/* A ray that no edge touches counts as the four rays infinitely near it. */
-enum { RAY_WEIGHT = 4 };
+/* A ray counts as the four rays infinitely near it; a set of them has a bit for each. */
+enum { NEAR_RAYS = 4, ALL_NEAR = (1 << NEAR_RAYS) - 1, LAST_NEAR = 1 << (NEAR_RAYS - 1) };
 
 typedef struct vertex {
     int32_t b, c; /* across the rays, in 1/ACROSS voxel from the centre of the first voxel */
@@ -28,6 +28,23 @@ typedef struct sweep {
     size_t *plane_start;      /* n[c] + 1 offsets into plane_triangle */
     uint32_t *plane_triangle; /* the triangles that touch each plane's rays */
 } sweep;
+
+/* A face that a ray passes through. */
+typedef struct crossing {
+    uint32_t ray; /* of those of the plane */
+    int32_t at;   /* along the ray, in 1/ALONG voxel from the outer face of the first voxel */
+    int8_t sign;  /* 1 into matter, -1 out of it */
+    uint8_t near; /* the near rays that pass */
+} crossing;
+
+/* What one thread needs for one plane. */
+typedef struct plane_work {
+    int32_t *lines; /* rows of voxels: what each is covered by, as steps along the row */
+    uint32_t *start; /* of each ray, into sorted; one more at the end */
+    crossing *found, *sorted;
+    size_t count, capacity;
+    int out_of_memory;
+} plane_work;
 
 void ms_voxelize_extents(double n[3], const ms_mesh *mesh, double h)
 {
@@ -171,48 +188,113 @@ static int shifted_side(int64_t db, int64_t dc, int sb, int sc)
     return dc != 0 ? -dc * sb > 0 : db * sc > 0;
 }
 
-/* How many of the four rays infinitely near the given one pass through the triangle. */
-static int near_rays_inside(const int64_t e[3], const int64_t db[3], const int64_t dc[3], int positive, int parity)
+/* Which of the four rays infinitely near the given one pass through the triangle. */
+static int near_rays_inside(const int64_t e[3], const int64_t db[3], const int64_t dc[3], int positive)
 {
     int inside = 0;
-    for (int sb = -1; sb <= 1; sb += 2) {
-        for (int sc = -1; sc <= 1; sc += 2) {
-            int in = 1;
-            for (int m = 0; m < 3; m++) {
-                int side = e[m] != 0 ? e[m] > 0 : shifted_side(db[m], dc[m], sb, sc);
-                in &= side == positive;
-            }
-            if (parity && sb > 0 && sc > 0) {
-                return in * RAY_WEIGHT; /* parities cannot be shared out: one of the four decides */
-            }
-            inside += in;
+    for (int near = 0; near < NEAR_RAYS; near++) {
+        const int sb = near & 1 ? 1 : -1, sc = near & 2 ? 1 : -1;
+        int in = 1;
+        for (int m = 0; m < 3; m++) {
+            int side = e[m] != 0 ? e[m] > 0 : shifted_side(db[m], dc[m], sb, sc);
+            in &= side == positive;
         }
+        inside |= in << near;
     }
     return inside;
 }
 
-/* Adds a crossing at x, in voxels from the outer face of the first: all beyond is covered. */
-static void add_crossing(int32_t *row, const sweep *s, double x, int weight)
+/* Keeps a crossing at x, in voxels from the outer face of the first. */
+static void add_crossing(plane_work *w, uint32_t ray, double x, int sign, int near)
 {
-    int64_t at = (int64_t)rint(x * ALONG);
-    int voxel = (int)(at >> ALONG_BITS), part = (int)(at & (ALONG - 1));
+    if (w->count == w->capacity) {
+        const size_t capacity = 2 * w->capacity + 1024;
+        crossing *found = realloc(w->found, capacity * sizeof *found);
+        w->found = found ? found : w->found;
+        crossing *sorted = found ? realloc(w->sorted, capacity * sizeof *sorted) : NULL;
+        w->sorted = sorted ? sorted : w->sorted;
+        if (!sorted) {
+            w->out_of_memory = 1;
+            return;
+        }
+        w->capacity = capacity;
+    }
+    w->found[w->count++] = (crossing){.ray = ray, .at = (int32_t)rint(x * ALONG), .sign = (int8_t)sign,
+                                      .near = (uint8_t)near};
+}
+
+/* By parity the row holds which voxel centres see the last of the near rays change sides. */
+static void flip_beyond(int32_t *row, double x)
+{
+    row[(int)ceil(x - 0.5)] ^= 1;
+}
+
+/* From `at` on, so many near rays more (or fewer) run in matter. */
+static void cover_beyond(int32_t *row, const sweep *s, int32_t at, int weight)
+{
+    int voxel = at >> ALONG_BITS, part = at & (ALONG - 1);
     if (s->rays == 1) {
         /* Only the centre counts; a face right through it covers it half. */
         part = part < ALONG / 2 ? 0 : part == ALONG / 2 ? ALONG / 2 : ALONG;
     }
-    if (s->parity) {
-        row[voxel + (part > ALONG / 2)] ^= 1;
-        return;
-    }
     row[voxel] += weight * (ALONG - part);
     row[voxel + 1] += weight * part;
+}
+
+/* Sorts the crossings by ray, and those of a ray along it: they are few. */
+static void sort_crossings(plane_work *w, size_t rays)
+{
+    memset(w->start, 0, (rays + 1) * sizeof *w->start);
+    for (size_t m = 0; m < w->count; m++) {
+        w->start[w->found[m].ray + 1]++;
+    }
+    for (size_t ray = 0; ray < rays; ray++) {
+        w->start[ray + 1] += w->start[ray];
+    }
+    for (size_t m = w->count; m-- > 0;) { /* fills each ray's part from its end, and moves the ends to the starts */
+        w->sorted[--w->start[w->found[m].ray + 1]] = w->found[m];
+    }
+    memmove(w->start, w->start + 1, rays * sizeof *w->start);
+    w->start[rays] = (uint32_t)w->count;
+    for (size_t m = 1; m < w->count; m++) {
+        const crossing here = w->sorted[m];
+        size_t to = m;
+        for (; to > 0 && w->sorted[to - 1].ray == here.ray && w->sorted[to - 1].at > here.at; to--) {
+            w->sorted[to] = w->sorted[to - 1];
+        }
+        w->sorted[to] = here;
+    }
+}
+
+/* Matter begins where the winding number of a near ray rises above zero and ends where it
+ * falls back, however many bodies overlap between. */
+static void cover_rays(plane_work *w, const sweep *s)
+{
+    const size_t across = (size_t)s->grid->n[s->b] * (size_t)s->rays, row_length = (size_t)s->grid->n[s->a] + 1;
+    sort_crossings(w, across * (size_t)s->rays);
+    for (size_t ray = 0; ray < across * (size_t)s->rays; ray++) {
+        int32_t *row = w->lines + ray % across / (size_t)s->rays * row_length;
+        int winding[NEAR_RAYS] = {0}, covered = 0;
+        for (size_t m = w->start[ray]; m < w->start[ray + 1]; m++) {
+            const crossing *c = &w->sorted[m];
+            int now = 0;
+            for (int near = 0; near < NEAR_RAYS; near++) {
+                winding[near] += c->near >> near & 1 ? c->sign : 0;
+                now += winding[near] > 0;
+            }
+            if (now != covered) {
+                cover_beyond(row, s, c->at, now - covered);
+            }
+            covered = now;
+        }
+    }
 }
 
 /* The stretch of the row of rays at height c that the triangle may cover, widened a little:
  * the exact test decides. */
 static int covered_stretch(int64_t *lo, int64_t *hi, const vertex *const v[3], int64_t c)
 {
-    double least = INFINITY, most = -INFINITY;
+    double least = HUGE_VAL, most = -HUGE_VAL;
     for (int m = 0; m < 3; m++) {
         const vertex *p = v[m], *q = v[(m + 1) % 3];
         if ((p->c < c && q->c < c) || (p->c > c && q->c > c)) {
@@ -231,8 +313,8 @@ static int covered_stretch(int64_t *lo, int64_t *hi, const vertex *const v[3], i
     return least <= most;
 }
 
-/* All rays of one row (fixed c) through one triangle. `lines` holds the plane's rows. */
-static void cross_row(int32_t *lines, const sweep *s, const vertex *const v[3], int64_t c)
+/* All rays of one row (number ray_c, at height c) through one triangle. */
+static void cross_row(plane_work *w, const sweep *s, const vertex *const v[3], int ray_c, int64_t c)
 {
     int64_t lo, hi, db[3], dc[3], e[3], area = 0;
     int first, last;
@@ -252,18 +334,23 @@ static void cross_row(int32_t *lines, const sweep *s, const vertex *const v[3], 
         return; /* parallel to the rays: crosses none of the nearby ones */
     }
     const int positive = area > 0, sign = positive ? -1 : 1; /* a face towards +a ends matter */
+    const int across = s->grid->n[s->b] * s->rays;
     const size_t row_length = (size_t)s->grid->n[s->a] + 1;
     for (int r = first; r <= last; r++) {
-        int inside = RAY_WEIGHT;
+        int inside = ALL_NEAR;
         if (e[0] == 0 || e[1] == 0 || e[2] == 0) {
-            inside = near_rays_inside(e, db, dc, positive, s->parity);
+            inside = near_rays_inside(e, db, dc, positive);
         } else if ((e[0] > 0) != positive || (e[1] > 0) != positive || (e[2] > 0) != positive) {
             inside = 0;
         }
         if (inside) {
             double x = v[0]->a +
                        ((double)e[1] * (v[1]->a - v[0]->a) + (double)e[2] * (v[2]->a - v[0]->a)) / (double)area;
-            add_crossing(lines + (size_t)(r / s->rays) * row_length, s, x, sign * inside);
+            if (!s->parity) {
+                add_crossing(w, (uint32_t)(r + across * ray_c), x, sign, inside);
+            } else if (inside & LAST_NEAR) { /* parities cannot be shared out: one of the four decides */
+                flip_beyond(w->lines + (size_t)r * row_length, x);
+            }
         }
         for (int m = 0; m < 3; m++) {
             e[m] -= dc[m] * ray_step(s);
@@ -276,7 +363,7 @@ static void emit_plane(const int32_t *lines, const sweep *s, int plane)
 {
     const int *n = s->grid->n;
     const size_t stride[3] = {1, (size_t)n[0], (size_t)n[0] * (size_t)n[1]};
-    const int32_t full = s->rays * s->rays * RAY_WEIGHT * ALONG;
+    const int32_t full = s->rays * s->rays * NEAR_RAYS * ALONG;
     for (int j = 0; j < n[s->b]; j++) {
         const int32_t *row = lines + (size_t)j * ((size_t)n[s->a] + 1);
         uint8_t *voxel = s->grid->inside + stride[s->b] * (size_t)j + stride[s->c] * (size_t)plane;
@@ -288,26 +375,65 @@ static void emit_plane(const int32_t *lines, const sweep *s, int plane)
     }
 }
 
-static void sweep_plane(int32_t *lines, const sweep *s, int plane)
+static void sweep_plane(plane_work *w, const sweep *s, int plane)
 {
     const int *n = s->grid->n;
-    memset(lines, 0, (size_t)n[s->b] * ((size_t)n[s->a] + 1) * sizeof *lines);
+    memset(w->lines, 0, (size_t)n[s->b] * ((size_t)n[s->a] + 1) * sizeof *w->lines);
+    w->count = 0;
     for (size_t at = s->plane_start[plane]; at < s->plane_start[plane + 1]; at++) {
         const uint32_t *t = s->mesh->triangle[s->plane_triangle[at]];
         const vertex *v[3] = {&s->vertices[t[0]], &s->vertices[t[1]], &s->vertices[t[2]]};
         for (int ray = 0; ray < s->rays; ray++) {
-            cross_row(lines, s, v, ray_first(s) + ((int64_t)plane * s->rays + ray) * ray_step(s));
+            cross_row(w, s, v, ray, ray_first(s) + ((int64_t)plane * s->rays + ray) * ray_step(s));
         }
     }
-    emit_plane(lines, s, plane);
+    if (!s->parity && !w->out_of_memory) {
+        cover_rays(w, s);
+    }
+    emit_plane(w->lines, s, plane);
+}
+
+static plane_work plane_work_alloc(const sweep *s)
+{
+    const size_t across = (size_t)s->grid->n[s->b];
+    plane_work w = {.lines = malloc(across * ((size_t)s->grid->n[s->a] + 1) * sizeof *w.lines),
+                    .start = malloc((across * (size_t)s->rays * (size_t)s->rays + 1) * sizeof *w.start)};
+    w.out_of_memory = !w.lines || !w.start;
+    return w;
+}
+
+static void plane_work_free(plane_work *w)
+{
+    free(w->lines);
+    free(w->start);
+    free(w->found);
+    free(w->sorted);
+}
+
+static ms_status sweep_planes(const sweep *s, ms_error *err)
+{
+    int out_of_memory = 0;
+#pragma omp parallel reduction(| : out_of_memory)
+    {
+        plane_work w = plane_work_alloc(s);
+#pragma omp for schedule(dynamic, 4)
+        for (int plane = 0; plane < s->grid->n[s->c]; plane++) {
+            if (!w.out_of_memory) {
+                sweep_plane(&w, s, plane);
+            }
+        }
+        out_of_memory = w.out_of_memory;
+        plane_work_free(&w);
+    }
+    return out_of_memory ? ms_fail(err, MS_ERR_NOMEM, "no memory for planes of %dx%d voxels; use fewer cells",
+                                   s->grid->n[s->a], s->grid->n[s->b])
+                         : MS_OK;
 }
 
 static ms_status sweep_run(const ms_mesh *mesh, ms_grid *grid, int axis, int rays, int parity, ms_error *err)
 {
     sweep s = {.mesh = mesh, .grid = grid, .a = axis, .b = (axis + 1) % 3, .c = (axis + 2) % 3, .rays = rays,
                .parity = parity};
-    const size_t line_count = (size_t)grid->n[s.b] * ((size_t)grid->n[s.a] + 1);
-    int out_of_memory = 0;
     s.vertices = malloc(mesh->n_vertices * sizeof *s.vertices);
     s.plane_start = calloc((size_t)grid->n[s.c] + 1, sizeof *s.plane_start);
     if (!s.vertices || !s.plane_start) {
@@ -317,21 +443,7 @@ static ms_status sweep_run(const ms_mesh *mesh, ms_grid *grid, int axis, int ray
     place_vertices(&s);
     ms_status status = sort_into_planes(&s, err);
     if (status == MS_OK) {
-#pragma omp parallel reduction(| : out_of_memory)
-        {
-            int32_t *lines = malloc(line_count * sizeof *lines);
-            out_of_memory = !lines;
-#pragma omp for schedule(dynamic, 4)
-            for (int plane = 0; plane < grid->n[s.c]; plane++) {
-                if (lines) {
-                    sweep_plane(lines, &s, plane);
-                }
-            }
-            free(lines);
-        }
-        if (out_of_memory) {
-            status = ms_fail(err, MS_ERR_NOMEM, "no memory for a plane of %zu voxels; use fewer cells", line_count);
-        }
+        status = sweep_planes(&s, err);
     }
     sweep_free(&s);
     return status;

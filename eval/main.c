@@ -1,7 +1,9 @@
 /* mskit: which command. */
+#include <fcntl.h>
 #include <gsl/gsl_errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "ms_commands.h"
 #include "ms_version.h"
@@ -22,31 +24,66 @@ static void print_usage(FILE *stream)
           stream);
 }
 
+static const ms_command *find_command(const char *name)
+{
+    for (const ms_command *const *c = COMMANDS; *c; c++) {
+        if (strcmp(name, (*c)->name) == 0) {
+            return *c;
+        }
+    }
+    return NULL;
+}
+
+static int run_command(int argc, char **argv)
+{
+    const ms_command *command = find_command(argv[1]);
+    if (!command) {
+        fprintf(stderr, "mskit: there is no command '%s'; choose from", argv[1]);
+        for (const ms_command *const *c = COMMANDS; *c; c++) {
+            fprintf(stderr, "%s %s", c == COMMANDS ? "" : ",", (*c)->name);
+        }
+        fputs("; mskit --help tells more\n", stderr);
+        return EXIT_USAGE;
+    }
+    if (command == &ms_command_help && argc == 3 && find_command(argv[2])) {
+        char help[] = "--help", *words[] = {argv[2], help, NULL};
+        return find_command(argv[2])->run(find_command(argv[2]), 2, words);
+    }
+    return command->run(command, argc - 1, argv + 1);
+}
+
+/* A file must not be opened under the number of a stream that the caller has closed: what is
+ * printed would go into it. */
+static void occupy_streams(void)
+{
+    int fd;
+    do {
+        fd = open("/dev/null", O_RDONLY);
+    } while (fd >= 0 && fd <= STDERR_FILENO);
+    if (fd >= 0) {
+        close(fd);
+    }
+}
+
 int main(int argc, char **argv)
 {
+    int code = EXIT_DONE;
     gsl_set_error_handler_off(); /* its default is to abort */
+    occupy_streams();
     if (argc < 2) {
         print_usage(stderr);
         return EXIT_USAGE;
     }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || (argc == 2 && strcmp(argv[1], "help") == 0)) {
         print_usage(stdout);
-        return EXIT_DONE;
-    }
-    if (strcmp(argv[1], "--version") == 0) {
+    } else if (strcmp(argv[1], "--version") == 0) {
         puts("mskit " MS_VERSION);
-        return EXIT_DONE;
+    } else {
+        code = run_command(argc, argv);
     }
-    for (const ms_command *const *c = COMMANDS; *c; c++) {
-        if (strcmp(argv[1], (*c)->name) == 0) {
-            const int code = (*c)->run(*c, argc - 1, argv + 1);
-            if (fflush(stdout) != 0 && code == EXIT_DONE) {
-                fputs("mskit: standard output cannot be written\n", stderr);
-                return EXIT_FAILED;
-            }
-            return code;
-        }
+    if ((fflush(stdout) != 0 || ferror(stdout)) && code == EXIT_DONE) {
+        fputs("mskit: standard output cannot be written\n", stderr);
+        return EXIT_FAILED;
     }
-    fprintf(stderr, "mskit: there is no command '%s'; try mskit --help\n", argv[1]);
-    return EXIT_USAGE;
+    return code;
 }

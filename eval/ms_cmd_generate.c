@@ -5,16 +5,19 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "ms_commands.h"
+#include "ms_file.h"
 #include "ms_generator.h"
 #include "ms_input.h"
 #include "ms_metrics.h"
 #include "ms_report.h"
+#include "ms_text.h"
 #include "ms_write.h"
 
-enum { MAX_OUTPUTS = 16, DEFAULT_SPHERES = 50 };
+enum { MAX_OUTPUTS = 16, MAX_SETTINGS = 256, DEFAULT_SPHERES = 50 };
 
 static const ms_flag FLAGS[] = {
     {"generator", 'g', "NAME", "the method (mss); mskit generators lists them"},
@@ -30,15 +33,25 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
+/* An option of the generator as it was written. */
+typedef struct wish {
+    const char *name; /* NULL: `text` is OPTION=VALUE */
+    const char *text;
+} wish;
+
 typedef struct arguments {
     const char *shape;
     ms_input_flags input;
+    const char *generator_name;
+    wish wish[MAX_SETTINGS];
+    int n_wishes;
     const ms_generator *generator;
     ms_settings settings;
     ms_stop stop;
     double seed;
     const char *output[MAX_OUTPUTS];
     int n_outputs;
+    char default_output[MAX_OUTPUTS][512];
     const ms_format *format;
     const char *target_grid;
     int json;
@@ -72,8 +85,14 @@ static ms_status take_until(arguments *a, const char *text, ms_error *err)
     const char *value = NULL;
     double number;
     ms_status status = split_assignment(name, &value, text, err);
-    if (status == MS_OK) {
-        status = ms_flag_number(&number, "until", value ? value : "", 0, HUGE_VAL, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    const ms_word word = {value, value ? strlen(value) : 0};
+    ms_stop known = ms_stop_none();
+    status = ms_stop_set(&known, name, 0, err); /* is there such a measure? */
+    if (status == MS_OK && (word.length == 0 || !ms_word_double(&number, &word))) {
+        return ms_fail(err, MS_ERR_ARG, "--until '%s' is not of the form MEASURE=VALUE, as %s=0.05", text, name);
     }
     return status == MS_OK ? ms_stop_set(&a->stop, name, number, err) : status;
 }
@@ -87,12 +106,14 @@ static ms_status take_output(arguments *a, const char *path, ms_error *err)
     return MS_OK;
 }
 
-static ms_status take_set(arguments *a, const char *text, ms_error *err)
+/* Which options there are is known when all flags are read: the generator may come last. */
+static ms_status take_wish(arguments *a, const char *name, const char *text, ms_error *err)
 {
-    char name[64];
-    const char *value = NULL;
-    ms_status status = split_assignment(name, &value, text, err);
-    return status == MS_OK ? ms_settings_set(&a->settings, name, value, err) : status;
+    if (a->n_wishes == MAX_SETTINGS) {
+        return ms_fail(err, MS_ERR_LIMIT, "more than %d options of the generator", MAX_SETTINGS);
+    }
+    a->wish[a->n_wishes++] = (wish){name, text};
+    return MS_OK;
 }
 
 static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
@@ -101,8 +122,12 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
     double number;
     int taken;
     ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
-    if (taken || strcmp(name, "generator") == 0) {
-        return status; /* the generator is known already */
+    if (taken) {
+        return status;
+    }
+    if (strcmp(name, "generator") == 0) {
+        a->generator_name = value;
+        return MS_OK;
     }
     if (strcmp(name, "spheres") == 0) {
         status = ms_flag_whole(&number, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
@@ -130,23 +155,101 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
     if (strcmp(name, "output") == 0) {
         return take_output(a, value, err);
     }
-    return strcmp(name, "set") == 0 ? take_set(a, value, err) : ms_settings_set(&a->settings, name, value, err);
+    return take_wish(a, strcmp(name, "set") == 0 ? NULL : name, value, err);
 }
 
-/* The generator decides which options there are, so it is looked for before all else. */
-static const char *generator_name(int argc, char **argv)
+/* Finds the generator and gives it its options. */
+static ms_status settle_generator(arguments *a, ms_error *err)
 {
-    const char *name = "mss";
-    for (int w = 1; w < argc && strcmp(argv[w], "--") != 0; w++) {
-        if (strncmp(argv[w], "--generator=", 12) == 0) {
-            name = argv[w] + 12;
-        } else if ((strcmp(argv[w], "--generator") == 0 || strcmp(argv[w], "-g") == 0) && w + 1 < argc) {
-            name = argv[++w];
-        } else if (strncmp(argv[w], "-g", 2) == 0) {
-            name = argv[w] + 2;
+    a->generator = ms_generator_find(a->generator_name, err);
+    ms_status status = a->generator ? ms_settings_init(&a->settings, a->generator->options, err) : MS_ERR_ARG;
+    for (int w = 0; w < a->n_wishes && status == MS_OK; w++) {
+        char name[64];
+        const char *value = a->wish[w].text;
+        if (!a->wish[w].name) {
+            status = split_assignment(name, &value, a->wish[w].text, err);
+        }
+        if (status == MS_OK) {
+            status = ms_settings_set(&a->settings, a->wish[w].name ? a->wish[w].name : name, value, err);
         }
     }
-    return name;
+    return status;
+}
+
+/* The format of an output; NULL with a message. */
+static const ms_format *format_of(const arguments *a, const char *path, ms_error *err)
+{
+    char ending[16];
+    ms_error cause;
+    if (a->format) {
+        return a->format;
+    }
+    ms_file_ending(ending, path);
+    const ms_format *format = ms_format_find(strcmp(path, "-") == 0 ? "csv" : ending, &cause);
+    if (!format) {
+        ms_fail(err, MS_ERR_ARG, "the ending of --output '%.200s' names no format, and --format is not given: %s",
+                path, cause.text);
+    }
+    return format;
+}
+
+/* Without --output: NAME-GENERATOR.csv, .json and .vtk in the working folder. */
+static void add_default_outputs(arguments *a)
+{
+    const char *slash = strrchr(a->shape, '/'), *base = slash ? slash + 1 : a->shape, *dot = strrchr(base, '.');
+    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
+    for (const ms_format *f = ms_formats; f->name && a->n_outputs < MAX_OUTPUTS; f++) {
+        char *path = a->default_output[a->n_outputs];
+        if (!a->format || f == a->format) {
+            snprintf(path, sizeof a->default_output[0], "%.*s-%s.%s", length, base, a->generator->name, f->name);
+            a->output[a->n_outputs++] = path;
+        }
+    }
+}
+
+/* Checks before the work what can be known of the outputs. */
+static ms_status settle_outputs(arguments *a, ms_error *err)
+{
+    int to_stdout = a->json;
+    if (a->n_outputs == 0) {
+        add_default_outputs(a);
+    }
+    for (int o = 0; o < a->n_outputs; o++) {
+        if (a->output[o][0] == '\0') {
+            return ms_fail(err, MS_ERR_ARG, "--output '' names no file; use - for standard output");
+        }
+        if (!format_of(a, a->output[o], err)) {
+            return MS_ERR_ARG;
+        }
+        to_stdout += strcmp(a->output[o], "-") == 0;
+    }
+    to_stdout += a->target_grid && strcmp(a->target_grid, "-") == 0;
+    return to_stdout > 1 ? ms_fail(err, MS_ERR_ARG, "--json and each - write to standard output; choose one of them")
+                         : MS_OK;
+}
+
+/* Can this file be made? A device or a pipe is not tried, since that would be noticed at its other end. */
+static ms_status try_output(const char *path, ms_error *err)
+{
+    ms_output output;
+    struct stat info;
+    if (strcmp(path, "-") == 0 || (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))) {
+        return MS_OK;
+    }
+    ms_status status = ms_output_open(&output, path, err);
+    if (status == MS_OK) {
+        ms_output_close(&output, MS_ERR_IO, NULL); /* removes it */
+    }
+    return status;
+}
+
+static ms_status try_outputs(const arguments *a, ms_error *err)
+{
+    ms_status status = a->target_grid ? try_output(a->target_grid, err) : MS_OK;
+    for (int o = 0; o < a->n_outputs && status == MS_OK; o++) {
+        status = try_output(a->output[o], err);
+    }
+    return status;
 }
 
 static void show_progress(void *context, size_t spheres, double dice)
@@ -224,6 +327,10 @@ static ms_status generate(result *r, const arguments *a, const ms_input *input, 
     if (terminal) {
         fputc('\n', stderr);
     }
+    if (status == MS_OK && r->reason == MS_STOP_EXHAUSTED) {
+        fprintf(stderr, "%s: found no place for a further sphere after %zu; more cells may help, or its options (mskit help %s)\n",
+                name, r->clump.n_spheres, name);
+    }
     if (status == MS_OK) {
         status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump,
                                     (size_t)(a->input.max_memory / 12), err);
@@ -233,18 +340,19 @@ static ms_status generate(result *r, const arguments *a, const ms_input *input, 
     return status;
 }
 
-/* Without --output: NAME-GENERATOR.csv, .json and .vtk in the working folder. */
-static void default_output(char *path, size_t size, const arguments *a, const char *ending)
+static int writes_to_stdout(const arguments *a)
 {
-    const char *slash = strrchr(a->shape, '/'), *base = slash ? slash + 1 : a->shape, *dot = strrchr(base, '.');
-    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
-    snprintf(path, size, "%.*s-%s.%s", length, base, a->generator->name, ending);
+    int found = a->json || (a->target_grid && strcmp(a->target_grid, "-") == 0);
+    for (int o = 0; o < a->n_outputs; o++) {
+        found |= strcmp(a->output[o], "-") == 0;
+    }
+    return found;
 }
 
 static ms_status write_outputs(const arguments *a, const ms_input *input, const result *r, const char *record,
                                ms_error *err)
 {
-    FILE *words = a->json ? stderr : stdout;
+    FILE *words = writes_to_stdout(a) ? stderr : stdout;
     ms_status status = MS_OK;
     for (int o = 0; o < a->n_outputs && status == MS_OK; o++) {
         status = ms_write_clump(&r->clump, a->output[o], a->format, record, err);
@@ -252,31 +360,13 @@ static ms_status write_outputs(const arguments *a, const ms_input *input, const 
             fprintf(words, "wrote %s\n", a->output[o]);
         }
     }
-    for (const ms_format *f = ms_formats; a->n_outputs == 0 && f->name && status == MS_OK; f++) {
-        char path[4096];
-        if (a->format && f != a->format) {
-            continue;
-        }
-        default_output(path, sizeof path, a, f->name);
-        status = ms_write_clump(&r->clump, path, f, record, err);
-        if (status == MS_OK) {
-            fprintf(words, "wrote %s\n", path);
-        }
-    }
     if (status == MS_OK && a->target_grid) {
         status = ms_write_grid(&input->target.grid, a->target_grid, err);
-    }
-    return status;
-}
-
-static int writes_to_stdout(const arguments *a)
-{
-    for (int o = 0; o < a->n_outputs; o++) {
-        if (strcmp(a->output[o], "-") == 0) {
-            return 1;
+        if (strcmp(a->target_grid, "-") != 0 && status == MS_OK) {
+            fprintf(words, "wrote %s\n", a->target_grid);
         }
     }
-    return 0;
+    return status;
 }
 
 static ms_status report(const arguments *a, const ms_input *input, const result *r, ms_error *err)
@@ -313,7 +403,10 @@ static int work(const ms_command *command, const arguments *a)
     if (status != MS_OK) {
         return ms_fail_command(command, &err);
     }
-    status = ms_input_target(&input, &a->input, &err);
+    status = try_outputs(a, &err);
+    if (status == MS_OK) {
+        status = ms_input_target(&input, &a->input, &err);
+    }
     if (status == MS_OK) {
         status = generate(&r, a, &input, &err);
     }
@@ -327,14 +420,10 @@ static int work(const ms_command *command, const arguments *a)
 
 static int run(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {.stop = ms_stop_none(), .seed = 1};
+    arguments a = {.generator_name = "mss", .stop = ms_stop_none(), .seed = 1};
     int first, code = EXIT_USAGE;
     ms_error err;
     ms_input_defaults(&a.input);
-    a.generator = ms_generator_find(generator_name(argc, argv), &err);
-    if (!a.generator || ms_settings_init(&a.settings, a.generator->options, &err) != MS_OK) {
-        return ms_wrong_usage(command, err.text);
-    }
     switch (ms_flags_parse(&first, command, 1, argc, argv, take_flag, &a)) {
     case MS_FLAGS_HELPED:
         code = EXIT_DONE;
@@ -350,6 +439,10 @@ static int run(const ms_command *command, int argc, char **argv)
         if (a.stop.spheres == 0 && a.stop.eta < 0 && a.stop.dice < 0 && a.stop.coverage < 0 && a.stop.inertia < 0 &&
             a.stop.radius < 0) {
             a.stop.spheres = DEFAULT_SPHERES;
+        }
+        if (settle_generator(&a, &err) != MS_OK || settle_outputs(&a, &err) != MS_OK) {
+            ms_wrong_usage(command, err.text);
+            break;
         }
         code = work(command, &a);
         break;

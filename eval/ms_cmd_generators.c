@@ -102,7 +102,7 @@ static int run_help(const ms_command *command, int argc, char **argv)
         break;
     }
     if (argc - first != 1) {
-        return ms_wrong_usage(command, "takes the name of one generator");
+        return ms_wrong_usage(command, "takes the name of one generator or command");
     }
     const ms_generator *generator = ms_generator_find(argv[first], &err);
     if (!generator) {
@@ -119,8 +119,8 @@ static int run_help(const ms_command *command, int argc, char **argv)
 
 const ms_command ms_command_help = {
     .name = "help",
-    .summary = "show the options of a method",
-    .usage = "NAME",
+    .summary = "show the options of a method, or the flags of a command",
+    .usage = "[NAME]",
     .example = "mskit help mss",
     .flags = NO_FLAGS,
     .run = run_help,

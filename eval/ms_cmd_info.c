@@ -56,7 +56,11 @@ static ms_status gather(facts *f, ms_input *input, const ms_input_flags *flags, 
     ms_status status = MS_OK;
     memset(f, 0, sizeof *f);
     f->input = input;
-    f->area = NAN;
+    f->area = (double)NAN;
+    status = ms_input_check_flags(input, flags, err);
+    if (status != MS_OK) {
+        return status;
+    }
     if (input->volume.label) {
         status = ms_target_from_volume(&input->target, &input->volume, flags->label, err);
         f->body = input->target.body;
@@ -130,7 +134,7 @@ static void print_facts(const facts *f)
 static json_t *facts_json(const facts *f)
 {
     const ms_mesh_report *r = &f->input->report;
-    json_t *json = json_pack("{s:s,s:[f,f,f],s:[f,f,f],s:o,s:o,s:o}", "path", f->input->path, "box_lo", f->lo[0],
+    json_t *json = json_pack("{s:o,s:[f,f,f],s:[f,f,f],s:o,s:o,s:o}", "path", ms_report_text(f->input->path), "box_lo", f->lo[0],
                              f->lo[1], f->lo[2], "box_hi", f->hi[0], f->hi[1], f->hi[2], "area",
                              ms_report_number(f->area), "equivalent_diameter",
                              ms_report_number(equivalent_diameter(f)), "sphericity", ms_report_number(sphericity(f)));

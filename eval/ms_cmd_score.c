@@ -90,6 +90,9 @@ static int run(const ms_command *command, int argc, char **argv)
     if (argc - first != 1 || !a.target) {
         return ms_wrong_usage(command, "takes one clump file and --target SHAPE");
     }
+    if (a.json && a.curve) {
+        return ms_wrong_usage(command, "--curve prints CSV and --json JSON; choose one of them");
+    }
     ms_status status = ms_clump_read(&clump, argv[first], &err);
     if (status != MS_OK) {
         return ms_fail_command(command, &err);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "ms_commands.h"
+#include "ms_mesh_read.h"
 #include "ms_mesh_write.h"
 #include "ms_shape.h"
 #include "ms_text.h"
@@ -103,6 +104,9 @@ static int run(const ms_command *command, int argc, char **argv)
     }
     if (first >= argc || !a.output) {
         return ms_wrong_usage(command, "takes a kind of shape and -o FILE; --list shows the kinds");
+    }
+    if (strcmp(a.output, "-") != 0 && !ms_mesh_is_mesh_path(a.output)) {
+        return ms_wrong_usage(command, "a mesh is written as .stl, .obj, .ply or .off; give -o FILE one of these endings");
     }
     return make(command, a.output, argc - first, argv + first);
 }

@@ -30,7 +30,7 @@ static void print_help(const ms_command *command)
     for (const ms_flag *flag = command->flags; flag->name; flag++) {
         print_flag(flag);
     }
-    printf("      --help                print this\n\nexample: %s\n", command->example);
+    printf("  -h, --help                print this\n\nexample: %s\n", command->example);
 }
 
 /* What getopt works on. */
@@ -64,13 +64,22 @@ static void make_tables(tables *t, const ms_command *command, int generator_opti
             letter += flag->argument != NULL;
         }
     }
-    *letter = 0;
-    add_long(t, "help", no_argument, 'H');
+    strcpy(letter, "h");
+    add_long(t, "help", no_argument, 'h');
     for (const ms_generator *const *g = ms_generators; generator_options && *g; g++) {
         for (const ms_option *o = (*g)->options; o->name; o++) {
             add_long(t, o->name, o->type == MS_OPTION_FLAG ? no_argument : required_argument, 0);
         }
     }
+}
+
+static void print_choices(const ms_command *command, const tables *t)
+{
+    fprintf(stderr, "mskit %s: choose from", command->name);
+    for (size_t f = 0; f < t->count; f++) {
+        fprintf(stderr, "%s --%s", f ? "," : "", t->longs[f].name);
+    }
+    fputs("; --help tells more\n", stderr);
 }
 
 static const char *name_of_letter(const ms_command *command, int letter)
@@ -94,12 +103,12 @@ ms_flags_outcome ms_flags_parse(int *first_word, const ms_command *command, int 
     argv[0] = name; /* getopt's own messages begin with it */
     make_tables(&t, command, generator_options);
     while ((found = getopt_long(argc, argv, t.shorts, t.longs, &at)) != -1) {
-        if (found == 'H') {
+        if (found == 'h') {
             print_help(command);
             return MS_FLAGS_HELPED;
         }
         if (found == '?') {
-            fprintf(stderr, "mskit %s: try --help\n", command->name);
+            print_choices(command, &t); /* getopt has said what is wrong */
             return MS_FLAGS_WRONG;
         }
         const char *flag = found == 0 ? t.longs[at].name : name_of_letter(command, found);
@@ -128,7 +137,7 @@ ms_status ms_flag_number(double *value, const char *name, const char *text, doub
 {
     const ms_word word = {text, strlen(text)};
     if (word.length == 0 || !ms_word_double(value, &word) || !(*value >= lo && *value <= hi)) {
-        return ms_fail(err, MS_ERR_ARG, "--%s %s is not a number from %g to %g", name, text, lo, hi);
+        return ms_fail(err, MS_ERR_ARG, "--%s '%s' is not a number from %.16g to %.16g", name, text, lo, hi);
     }
     return MS_OK;
 }
@@ -137,7 +146,7 @@ ms_status ms_flag_whole(double *value, const char *name, const char *text, doubl
 {
     ms_status status = ms_flag_number(value, name, text, lo, hi, err);
     if (status == MS_OK && *value != floor(*value)) {
-        status = ms_fail(err, MS_ERR_ARG, "--%s %s is not a whole number", name, text);
+        status = ms_fail(err, MS_ERR_ARG, "--%s '%s' is not a whole number", name, text);
     }
     return status;
 }

@@ -1,5 +1,6 @@
 #include "ms_input.h"
 
+#include <limits.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -8,6 +9,7 @@
 
 #include "ms_file.h"
 #include "ms_mesh_read.h"
+#include "ms_text.h"
 
 static double machine_memory(void)
 {
@@ -24,20 +26,18 @@ void ms_input_defaults(ms_input_flags *flags)
 static ms_status parse_size(double *bytes, const char *text, ms_error *err)
 {
     static const char UNITS[] = "kMGT";
-    char number[32];
     const size_t length = strlen(text);
     const char *unit = length ? strchr(UNITS, text[length - 1]) : NULL;
-    double factor = 1;
-    if (length >= sizeof number) {
-        return ms_fail(err, MS_ERR_ARG, "--max-memory %s is not a size like 500M or 8G", text);
-    }
+    const ms_word number = {text, length - (unit != NULL)};
+    double factor = 1, value;
     for (const char *u = UNITS; unit && u <= unit; u++) {
         factor *= 1000;
     }
-    snprintf(number, sizeof number, "%.*s", (int)(length - (unit != NULL)), text);
-    ms_status status = ms_flag_number(bytes, "max-memory", number, 0, 1e18, err);
-    *bytes *= factor;
-    return status;
+    if (number.length == 0 || !ms_word_double(&value, &number) || !(value * factor <= 1e18) || value < 0) {
+        return ms_fail(err, MS_ERR_ARG, "--max-memory '%s' is not a size like 500M or 8G (k, M, G or T bytes)", text);
+    }
+    *bytes = value * factor;
+    return MS_OK;
 }
 
 static ms_status parse_rule(ms_voxel_rule *rule, const char *text, ms_error *err)
@@ -102,9 +102,29 @@ static void say_repairs(const char *path, const ms_mesh_report *r)
     }
 }
 
+/* Inertia goes with the fifth power of a length, which must neither overflow nor vanish. */
+static ms_status check_size(const ms_input *input, ms_error *err)
+{
+    static const double SMALLEST = 1e-50, LARGEST = 1e50;
+    double lo[3], hi[3], side = 0;
+    ms_mesh_box(lo, hi, &input->mesh);
+    for (int a = 0; a < 3; a++) {
+        side = fmax(side, hi[a] - lo[a]);
+    }
+    if (!(side >= SMALLEST && side <= LARGEST)) {
+        return ms_fail(err, MS_ERR_SHAPE, "%s: the mesh is %g long, and %g to %g is allowed; choose another unit",
+                       input->path, side, SMALLEST, LARGEST);
+    }
+    return MS_OK;
+}
+
 static ms_status read_mesh(ms_input *input, ms_error *err)
 {
     ms_status status = ms_mesh_read(&input->mesh, input->path, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    status = check_size(input, err);
     if (status != MS_OK) {
         return status;
     }
@@ -123,6 +143,9 @@ ms_status ms_input_read(ms_input *input, const char *path, ms_error *err)
     const double start = omp_get_wtime();
     memset(input, 0, sizeof *input);
     input->path = path;
+    if (path[0] == '\0') {
+        return ms_fail(err, MS_ERR_IO, "the name of the shape is empty; name a mesh or a volume");
+    }
     ms_status status = ms_file_read(&bytes, path, err);
     if (status != MS_OK) {
         return status;
@@ -141,9 +164,6 @@ ms_status ms_input_read(ms_input *input, const char *path, ms_error *err)
 static ms_status choose_voxel_size(double *h, const ms_input *input, const ms_input_flags *flags, ms_error *err)
 {
     double lo[3], hi[3];
-    if ((flags->cells > 0) + (flags->deq > 0) + (flags->voxel_size > 0) > 1) {
-        return ms_fail(err, MS_ERR_ARG, "--cells, --deq and --voxel-size exclude one another");
-    }
     if (flags->voxel_size > 0) {
         *h = flags->voxel_size;
         return MS_OK;
@@ -171,7 +191,7 @@ static ms_status check_memory(const double n[3], const ms_input_flags *flags, ms
     const double bytes = ms_target_bytes(n);
     if (bytes > flags->max_memory) {
         return ms_fail(err, MS_ERR_LIMIT,
-                       "a grid of %.0fx%.0fx%.0f voxels takes about %.3g GB, more than the %.3g GB allowed; use fewer "
+                       "a grid of %.6gx%.6gx%.6g voxels takes about %.3g GB, more than the %.3g GB allowed; use fewer "
                        "cells or raise --max-memory",
                        n[0], n[1], n[2], bytes / 1e9, flags->max_memory / 1e9);
     }
@@ -204,21 +224,67 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
     return status;
 }
 
+/* Extents of the grid around the voxels of a label; 0: of any. */
+static void label_extents(double n[3], const ms_volume *volume, uint32_t label)
+{
+    const uint32_t *at = volume->label;
+    int lo[3] = {INT_MAX, INT_MAX, INT_MAX}, hi[3] = {-1, -1, -1};
+    for (int k = 0; k < volume->n[2]; k++) {
+        for (int j = 0; j < volume->n[1]; j++) {
+            for (int i = 0; i < volume->n[0]; i++, at++) {
+                const int p[3] = {i, j, k};
+                for (int a = 0; a < 3 && *at != 0 && (label == 0 || *at == label); a++) {
+                    lo[a] = p[a] < lo[a] ? p[a] : lo[a];
+                    hi[a] = p[a] > hi[a] ? p[a] : hi[a];
+                }
+            }
+        }
+    }
+    for (int a = 0; a < 3; a++) {
+        n[a] = hi[a] < 0 ? 0 : hi[a] - lo[a] + 1 + 2 * MS_GRID_HULL;
+    }
+}
+
+static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags, ms_error *err)
+{
+    double n[3];
+    label_extents(n, &input->volume, flags->label);
+    ms_status status = n[0] > 0 ? check_memory(n, flags, err) : MS_OK; /* without voxels the target says why */
+    if (status == MS_OK) {
+        status = ms_target_from_volume(&input->target, &input->volume, flags->label, err);
+        input->target.rule = flags->rule; /* for the union; the voxels of the shape are given */
+    }
+    return status;
+}
+
+ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flags, ms_error *err)
+{
+    const int given = (flags->cells > 0) + (flags->deq > 0) + (flags->voxel_size > 0);
+    if (given > 1) {
+        return ms_fail(err, MS_ERR_ARG, "--cells, --deq and --voxel-size exclude one another");
+    }
+    if (input->volume.label && given > 0) {
+        return ms_fail(err, MS_ERR_ARG,
+                       "%s is a volume with voxels of its own; --cells, --deq and --voxel-size do not apply",
+                       input->path);
+    }
+    if (!input->volume.label && flags->label) {
+        return ms_fail(err, MS_ERR_ARG, "%s is a mesh; --label is for volumes", input->path);
+    }
+    return MS_OK;
+}
+
 ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err)
 {
     if (flags->threads) {
         omp_set_num_threads(flags->threads);
     }
-    if (!input->volume.label) {
-        return target_from_mesh(input, flags, err);
+    input->label = flags->label;
+    ms_status status = ms_input_check_flags(input, flags, err);
+    if (status != MS_OK) {
+        return status;
     }
-    if (flags->cells > 0 || flags->deq > 0 || flags->voxel_size > 0) {
-        return ms_fail(err, MS_ERR_ARG, "%s is a volume with voxels of its own; --cells, --deq and --voxel-size do not apply",
-                       input->path);
-    }
-    const double n[3] = {input->volume.n[0], input->volume.n[1], input->volume.n[2]};
-    ms_status status = check_memory(n, flags, err);
-    return status == MS_OK ? ms_target_from_volume(&input->target, &input->volume, flags->label, err) : status;
+    return input->volume.label ? target_from_volume(input, flags, err) : target_from_mesh(input, flags, err);
 }
 
 void ms_input_free(ms_input *input)

@@ -42,11 +42,15 @@ typedef struct ms_input {
     ms_mesh_report report;
     ms_volume volume; /* empty for a mesh */
     ms_target target; /* after ms_input_target */
+    uint32_t label;   /* that was asked for; 0: none */
     double read_seconds;
 } ms_input;
 
 /** Reads a mesh or a volume; mends a mesh. What was mended is said on stderr. */
 ms_status ms_input_read(ms_input *input, const char *path, ms_error *err);
+
+/** Refuses flags that do not apply to what was read. @return MS_OK; MS_ERR_ARG */
+ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flags, ms_error *err);
 
 /** Makes the target; says the size of the grid on stderr. Refuses open meshes unless allowed. */
 ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err);

@@ -14,13 +14,15 @@
 #include "ms_mss_select.h"
 #include "ms_peaks.h"
 
-enum { SPACING, OFFSET, ORDER, CONFINE, PLANES };
+enum { SPACING, BOOST, OFFSET, ORDER, CONFINE, PLANES };
 enum { ORDER_RADIUS, ORDER_GAIN };
 
 static const ms_option OPTIONS[] = {
     [SPACING] = {"spacing", MS_OPTION_REAL, 0, 0, 1000, NULL, "voxels",
                  "least distance between the centres of any two spheres (delta_min, section 3.4); 0: as large as "
                  "leaves maxima, halved from the largest radius down to 1 voxel (gain: from 2)"},
+    [BOOST] = {"boost", MS_OPTION_INTEGER, 1, 1, 5, NULL, NULL,
+               "where no maximum is left, E* = E + w (E - E~) is tried with w up to this; the paper has w = 1 (eq. 25)"},
     [OFFSET] = {"radius-offset", MS_OPTION_REAL, 0, -2, 2, NULL, "voxels",
                 "added to every radius; the paper adds nothing, 0.5 to 0.75 lowers the mismatch"},
     [ORDER] = {"order", MS_OPTION_CHOICE, ORDER_RADIUS, 0, 0, "radius|gain", NULL,
@@ -53,7 +55,7 @@ static int confine(ms_ball *ball, mss *m)
 {
     const ms_target *target = m->run->target;
     const ms_settings *settings = m->run->settings;
-    double centre[3], radius, allowed = INFINITY;
+    double centre[3], radius, allowed = HUGE_VAL;
     ms_target_from_voxels(centre, &radius, &target->grid, ball->centre, ball->radius);
     if (option(m, CONFINE) != 0) {
         allowed = -ms_closest_signed_distance(target->closest, centre);
@@ -89,8 +91,8 @@ static int place_candidate(mss_candidate *c, mss *m, size_t voxel)
     }
     c->rank = c->ball.radius;
     if (option(m, ORDER) == ORDER_GAIN) {
-        const double e = (double)m->field.e[voxel], e_union = 2 * e - (double)m->field.star[voxel];
-        c->rank = (e - e_union) * e;
+        const double e = (double)m->field.e[voxel]; /* E* - E = w (E - E~) */
+        c->rank = ((double)m->field.star[voxel] - e) / (double)m->field.weight * e;
     }
     return 1;
 }
@@ -134,7 +136,7 @@ static ms_status add_candidates(mss *m, const size_t *voxel, size_t count, ms_er
     for (size_t p = 0; p < count; p++) {
         mss_candidate *next = &m->candidates[m->n_candidates];
         if (place_candidate(next, m, voxel[p])) {
-            next->apart = INFINITY;
+            next->apart = HUGE_VAL;
             m->n_candidates++;
         }
     }
@@ -218,30 +220,6 @@ static ms_status add_spheres(ms_clump *clump, ms_stop_reason *reason, mss *m, co
     return status;
 }
 
-/* One step. Where delta_min is left to us and no maximum is that far from the spheres, it is
- * halved; below a voxel there is nothing more to find. */
-static ms_status step(ms_clump *clump, ms_stop_reason *reason, mss *m, ms_error *err)
-{
-    const size_t most = m->run->stop.spheres ? m->run->stop.spheres : MS_CLUMP_MAX_SPHERES;
-    const size_t left = most - m->field.raster.n_balls;
-    const size_t limit = m->n_candidates < left ? m->n_candidates : left;
-    ms_status status = MS_OK;
-    ms_ball *chosen = malloc((limit + 1) * sizeof *chosen);
-    if (!chosen) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", limit);
-    }
-    const size_t taken = choose(chosen, limit, m);
-    if (taken > 0) {
-        status = add_spheres(clump, reason, m, chosen, taken, err);
-    } else if (option(m, SPACING) == 0 && m->spacing > 1) {
-        m->spacing = fmax(1, m->spacing / 2);
-    } else {
-        *reason = m->too_small ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
-    }
-    free(chosen);
-    return status;
-}
-
 /* delta_min to begin with. */
 static double first_spacing(const mss *m)
 {
@@ -249,6 +227,40 @@ static double first_spacing(const mss *m)
         return option(m, SPACING);
     }
     return option(m, ORDER) == ORDER_GAIN ? 2 : (double)m->field.deepest;
+}
+
+/* No maximum is far enough from the spheres: delta_min is halved, if it is left to us; then
+ * E - E~ gets more weight, if that is asked for; then there is nothing more to find. */
+static ms_status look_closer(ms_stop_reason *reason, mss *m, ms_error *err)
+{
+    if (option(m, SPACING) == 0 && m->spacing > 1) {
+        m->spacing = fmax(1, m->spacing / 2);
+        return MS_OK;
+    }
+    if ((double)m->field.weight < option(m, BOOST)) {
+        m->spacing = first_spacing(m);
+        ms_status status = mss_field_set_weight(&m->field, m->field.weight + 1, err);
+        return status == MS_OK ? update_candidates(m, m->field.raster.n_balls, err) : status;
+    }
+    *reason = m->too_small ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
+    return MS_OK;
+}
+
+/* One step: place what can be placed, or look closer. */
+static ms_status step(ms_clump *clump, ms_stop_reason *reason, mss *m, ms_error *err)
+{
+    const size_t most = m->run->stop.spheres ? m->run->stop.spheres : MS_CLUMP_MAX_SPHERES;
+    const size_t left = most - m->field.raster.n_balls;
+    const size_t limit = m->n_candidates < left ? m->n_candidates : left;
+    ms_ball *chosen = malloc((limit + 1) * sizeof *chosen);
+    if (!chosen) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", limit);
+    }
+    const size_t taken = choose(chosen, limit, m);
+    ms_status status =
+        taken > 0 ? add_spheres(clump, reason, m, chosen, taken, err) : look_closer(reason, m, err);
+    free(chosen);
+    return status;
 }
 
 static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)

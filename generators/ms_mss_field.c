@@ -68,6 +68,7 @@ ms_status mss_field_init(mss_field *field, const ms_target *target, const double
     float deepest = 0;
     memset(field, 0, sizeof *field);
     field->target = target;
+    field->weight = 1;
     field->star = malloc(voxels * sizeof *field->star);
     field->own_e = n_planes ? malloc(voxels * sizeof *field->own_e) : NULL;
     if (!field->star || (n_planes && !field->own_e)) {
@@ -92,6 +93,17 @@ void mss_field_free(mss_field *field)
     ms_raster_free(&field->raster);
     free(field->star);
     free(field->own_e);
+}
+
+/* E* = E + w (E - E~), and back. */
+static float star_of(const mss_field *field, float e, float e_union)
+{
+    return (1 + field->weight) * e - field->weight * e_union;
+}
+
+static float union_of(const mss_field *field, float e, float star)
+{
+    return ((1 + field->weight) * e - star) / field->weight;
 }
 
 /* Which voxels of a part S~ covers. */
@@ -128,7 +140,7 @@ static ms_status update_whole(mss_field *field, ms_error *err)
 #pragma omp parallel for reduction(max : deepest)
     for (size_t v = 0; v < voxels; v++) {
         deepest = field->star[v] > deepest ? field->star[v] : deepest;
-        field->star[v] = 2 * field->e[v] - field->star[v];
+        field->star[v] = star_of(field, field->e[v], field->star[v]);
     }
     field->deepest_union = deepest;
     return status;
@@ -162,11 +174,11 @@ static box changed_box(const mss_field *field)
                 const size_t start = ms_grid_index(grid, 0, j, k);
                 const float *e = field->e + start, *star = field->star + start;
                 int from = reach.lo[0], to = reach.hi[0];
-                while (from < to && 2 * e[from] - star[from] < fmaxf(away, (float)(covered.lo[0] - from) - 0.01f)) {
+                while (from < to && union_of(field, e[from], star[from]) < fmaxf(away, (float)(covered.lo[0] - from) - 0.01f)) {
                     from++;
                 }
                 while (from < to &&
-                       2 * e[to - 1] - star[to - 1] < fmaxf(away, (float)(to - covered.hi[0]) - 0.01f)) {
+                       union_of(field, e[to - 1], star[to - 1]) < fmaxf(away, (float)(to - covered.hi[0]) - 0.01f)) {
                     to--;
                 }
                 if (from < to) {
@@ -229,7 +241,7 @@ static int write_star(mss_field *field, const float *distance, const box *part, 
                 const float d = from[i - part->lo[0]];
                 exact &= d <= (float)depth_in_part(part, grid->n, i, j, k);
                 deepest = d > deepest ? d : deepest;
-                field->star[start + (size_t)i] = 2 * field->e[start + (size_t)i] - d;
+                field->star[start + (size_t)i] = star_of(field, field->e[start + (size_t)i], d);
             }
         }
     }
@@ -280,4 +292,10 @@ ms_status mss_field_add(mss_field *field, const ms_ball *balls, size_t count, ms
         status = update_part(&done, field, &part, &changed, err);
     }
     return done || status != MS_OK ? status : update_whole(field, err);
+}
+
+ms_status mss_field_set_weight(mss_field *field, float weight, ms_error *err)
+{
+    field->weight = weight;
+    return update_whole(field, err);
 }

@@ -1,4 +1,4 @@
-/** The field E* = 2E - E~ of MSS (eq. 25), kept up to date as spheres are added. Private to ms_mss. */
+/** The field E* = E + w (E - E~) of MSS (eq. 25: w = 1), kept up to date as spheres are added. Private to ms_mss. */
 #ifndef MS_MSS_FIELD_H
 #define MS_MSS_FIELD_H
 
@@ -10,6 +10,7 @@ typedef struct mss_field {
     const float *e;    /* E; with planes, no more than the distance to the nearest plane */
     float *own_e;      /* where e is kept if it is not the target's own */
     ms_raster raster;  /* the union of the spheres so far, S~ */
+    float weight;      /* w */
     float *star;       /* E*, in voxels */
     float deepest;     /* largest E */
     float deepest_union; /* largest E~ so far; E~ only grows */
@@ -17,7 +18,7 @@ typedef struct mss_field {
 } mss_field;
 
 /**
- * No spheres yet: E~ = 0, E* = 2E; all of it counts as changed.
+ * No spheres yet: w = 1, E~ = 0, E* = 2E; all of it counts as changed.
  *
  * @param planes (a, b, c, d), a x + b y + c z = d in the mesh's frame, (a, b, c) of unit
  *               length: each is taken as a wall, so that E has its maxima on either side
@@ -31,6 +32,9 @@ ms_status mss_field_init(mss_field *field, const ms_target *target, const double
  * Cost: of a distance transform of the changed part and what surrounds it.
  */
 ms_status mss_field_add(mss_field *field, const ms_ball *balls, size_t count, ms_error *err);
+
+/** Changes w; all of E* counts as changed. Cost: a distance transform of the grid. */
+ms_status mss_field_set_weight(mss_field *field, float weight, ms_error *err);
 
 void mss_field_free(mss_field *field);
 

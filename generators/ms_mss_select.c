@@ -100,7 +100,7 @@ static void keep_apart_now(mss_candidate *c, size_t count, const ms_ball *sphere
 /* Moves to the front those that are farthest from all spheres; how many they are. */
 static size_t gather_farthest(mss_candidate *c, size_t count)
 {
-    double most = -INFINITY;
+    double most = -HUGE_VAL;
     size_t size = 0;
     for (size_t m = 0; m < count; m++) {
         most = fmax(most, c[m].now);
@@ -156,7 +156,7 @@ static size_t gather_central(mss_candidate *c, size_t count, const ms_target *ta
     }
     const size_t size = gather_farthest(c, count);
     for (size_t m = 0; m < count; m++) {
-        c[m].now = INFINITY;
+        c[m].now = HUGE_VAL;
     }
     return size;
 }

@@ -10,7 +10,7 @@ typedef struct mss_candidate {
     ms_ball ball;
     double rank;  /* the larger, the earlier */
     size_t voxel; /* the maximum at voxel resolution */
-    double apart; /* squared distance to the nearest sphere so far; INFINITY if there is none */
+    double apart; /* squared distance to the nearest sphere so far; HUGE_VAL if there is none */
     double now;   /* work space: the same, within a step */
 } mss_candidate;
 

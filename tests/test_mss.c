@@ -102,7 +102,7 @@ static void assert_mirrored(const ms_clump *clump, const ms_target *target, int 
     const ms_grid *grid = &target->grid;
     const double twice_middle = 2 * grid->origin[axis] + grid->h * (grid->n[axis] - 1);
     for (size_t s = 0; s < clump->n_spheres; s++) {
-        double nearest = INFINITY;
+        double nearest = HUGE_VAL;
         for (size_t o = 0; o < clump->n_spheres; o++) {
             double away = fabs(clump->sphere[o].radius - clump->sphere[s].radius);
             for (int a = 0; a < 3; a++) {

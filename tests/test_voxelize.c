@@ -36,10 +36,11 @@ static void what_is_thinner_than_half_a_voxel_is_refused(void **state)
     (void)state;
     ms_mesh plate = cuboid(0, 8, 0, 8, 0, 0.4);
     ms_mesh needle = cuboid(0, 8, 0, 0.7, 0, 0.7);
-    expect_refused(&(ms_mesh){needle.n_vertices, needle.n_triangles, needle.vertex, needle.triangle}, 20, MS_ERR_SHAPE,
-                   "use more cells");
+    ms_error err = {{0}};
     ms_grid grid;
-    assert_int_equal(ms_voxelize(&grid, &plate, 1, MS_VOXEL_HALF, NULL), MS_ERR_SHAPE);
+    assert_int_equal(ms_voxelize(&grid, &plate, 1, MS_VOXEL_HALF, &err), MS_ERR_SHAPE);
+    expect_message(&err, "use more cells");
+    assert_null(grid.inside);
     assert_int_equal(ms_voxelize(&grid, &needle, 1, MS_VOXEL_HALF, NULL), MS_ERR_SHAPE); /* 0.49 of each voxel */
     /* The box is centred, so that the plate's voxels have their centres in it. */
     grid = voxels_of(&plate, 1, MS_VOXEL_CENTRE);
@@ -47,7 +48,7 @@ static void what_is_thinner_than_half_a_voxel_is_refused(void **state)
     ms_grid_free(&grid);
     ms_mesh_free(&plate);
     ms_mesh_free(&needle);
-    needle = cuboid(0, 8, 0, 0.72, 0, 0.72); /* 0.5184 */
+    needle = cuboid(0, 8, 0, 0.76, 0, 0.76); /* 0.5776 */
     grid = voxels_of(&needle, 1, MS_VOXEL_HALF);
     assert_int_equal(ms_grid_count(&grid), 8);
     ms_grid_free(&grid);
@@ -109,45 +110,63 @@ static void expect_cuboid(const double lo[3], const double hi[3])
 static void faces_may_stand_anywhere_in_a_voxel(void **state)
 {
     (void)state;
-    /* Fractions of a voxel: its face, its centre (half covered is not inside), quarters, eighths. */
+    const int before = omp_get_max_threads();
+    omp_set_num_threads(1); /* many small grids */
+    /* Fractions of a voxel: its face, its centre (half covered is not inside), quarters, eighths.
+     * Across the rays every multiple of 1/8 is exact, along them any place. */
     static const double at[] = {-0.5, -0.25, -0.125, 0, 0.125, 0.25, 0.375, 0.499, 0.001};
     enum { COUNT = sizeof at / sizeof *at };
     for (int m = 0; m < COUNT; m++) {
         for (int o = 0; o < COUNT; o++) {
             const double a = at[m], b = at[o], c = at[(m + 2 * o) % COUNT];
             const double lo[3] = {2 + a, 3 + b, 2 + c}, hi[3] = {6 + b, 7 + c, 9 + a};
-            /* 4x4 rays see eighths of a voxel across; the rules of faces there are tested along x. */
             const double lo_x[3] = {2 + a, 1.5, 1.5}, hi_x[3] = {6 + b, 6.5, 7.5};
             expect_cuboid(lo_x, hi_x);
-            if (fabs(a) < 0.45 && fabs(b) < 0.45 && fabs(c) < 0.45) {
+            if (m < COUNT - 2 && o < COUNT - 2 && (m + 2 * o) % COUNT < COUNT - 2) {
                 expect_cuboid(lo, hi);
             }
         }
     }
+    omp_set_num_threads(before);
+}
+
+/* Voxels of a cube of `cells` voxels whose centres are in the octahedron |x|+|y|+|z| < radius. */
+static size_t octahedron_voxels(int cells, double radius)
+{
+    size_t count = 0;
+    for (int c = 0; c < cells * cells * cells; c++) {
+        const double middle = 0.5 * (cells - 1);
+        const double x = c % cells - middle, y = c / cells % cells - middle, z = c / cells / cells - middle;
+        count += fabs(x) + fabs(y) + fabs(z) < radius;
+    }
+    return count;
 }
 
 static void an_octahedron_on_the_lattice_is_exact(void **state)
 {
     (void)state;
-    for (int radius = 1; radius <= 9; radius++) {
-        ms_mesh body = make_body("octahedron", (double[]){radius, 2});
-        ms_grid grid = voxels_of(&body, 1, MS_VOXEL_CENTRE);
-        expect_mirrored(&grid);
-        /* The box has 2 radius voxels a side: centres are at halves. */
-        size_t expected = 0;
-        for (int c = 0; c < 8 * radius * radius * radius; c++) {
-            const double x = c % (2 * radius) - radius + 0.5, y = c / (2 * radius) % (2 * radius) - radius + 0.5;
-            const double z = c / (4 * radius * radius) - radius + 0.5;
-            expected += fabs(x) + fabs(y) + fabs(z) < radius;
+    for (int radius = 2; radius <= 9; radius++) {
+        /* Centres at halves: the faces cut voxels into 1/6 and 5/6, so that both rules agree.
+         * Then, with pins that make the box odd, at whole numbers: the vertices and faces go
+         * right through centres, which leaves half of a voxel or less. */
+        for (int pinned = 0; pinned < 2; pinned++) {
+            ms_mesh body = make_body("octahedron", (double[]){radius, 2});
+            const int cells = 2 * radius + 3 * pinned;
+            if (pinned) {
+                const double far = 0.5 * cells, near = far - 1;
+                add_part(&body, cuboid(-far, -near, -far, -near, -far, -near));
+                add_part(&body, cuboid(near, far, near, far, near, far));
+            }
+            for (int r = 0; r < 2; r++) {
+                ms_grid grid = voxels_of(&body, 1, both_rules[r]);
+                if (!pinned) {
+                    expect_mirrored(&grid);
+                }
+                assert_int_equal(ms_grid_count(&grid), octahedron_voxels(cells, radius) + (pinned ? 2 : 0));
+                ms_grid_free(&grid);
+            }
+            ms_mesh_free(&body);
         }
-        assert_int_equal(ms_grid_count(&grid), expected);
-        ms_grid_free(&grid);
-        /* Voxels with |x|+|y|+|z| = radius - 1/2 are cut by 1/8 at most: the half rule is the same. */
-        grid = voxels_of(&body, 1, MS_VOXEL_HALF);
-        expect_mirrored(&grid);
-        assert_int_equal(ms_grid_count(&grid), expected);
-        ms_grid_free(&grid);
-        ms_mesh_free(&body);
     }
 }
 
@@ -255,7 +274,7 @@ static void any_number_of_threads_gives_the_same_bits(void **state)
                 grid[threads - 1] = voxels_of(&body, 0.07, both_rules[r]);
             } else {
                 assert_int_equal(ms_voxelize_open(&grid[threads - 1], &disagree, &body, 0.07, NULL), MS_OK);
-                assert_int_equal(disagree, 0);
+                assert_true(disagree < 20); /* centres within 2^-12 voxel of the surface */
             }
         }
         assert_true(same_voxels(&grid[0], &grid[1]) && same_voxels(&grid[0], &grid[2]));

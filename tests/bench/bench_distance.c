@@ -42,7 +42,7 @@ static double copy_fresh(const float *field, size_t bytes, double *checksum)
     const double start = omp_get_wtime();
     float *copy = malloc(bytes);
     if (!copy) {
-        return NAN;
+        return (double)NAN;
     }
     memcpy(copy, field, bytes);
     const double seconds = omp_get_wtime() - start;
