@@ -74,12 +74,13 @@ static int line_is_empty(const ms_text *text)
     return !ms_text_word(&word, &ahead);
 }
 
-static int first_word_is_number(const ms_text *text)
+/* A line that begins like a number is no header, even if its first number is misspelt. */
+static int begins_with_number(const ms_text *text)
 {
     ms_text ahead = *text;
     ms_word word;
     double value;
-    return ms_text_word(&word, &ahead) && ms_word_double(&value, &word);
+    return ms_text_word(&word, &ahead) && (strchr("+-.0123456789", *word.start) || ms_word_double(&value, &word));
 }
 
 static ms_status read_sphere(ms_clump *clump, ms_text *text, ms_error *err)
@@ -113,7 +114,7 @@ static ms_status parse(ms_clump *clump, ms_bytes *bytes, const char *name, ms_er
         if (line_is_empty(&text)) {
             continue;
         }
-        const int header = header_allowed && !first_word_is_number(&text);
+        const int header = header_allowed && !begins_with_number(&text);
         header_allowed = 0;
         if (flaw && (!header || first_is_empty)) { /* a nameless first column holds numbers of rows */
             return ms_text_fail(err, &text, "%s", flaw);

@@ -211,9 +211,6 @@ static void add_default_outputs(arguments *a)
 static ms_status settle_outputs(arguments *a, ms_error *err)
 {
     int to_stdout = a->json;
-    if (a->n_outputs == 0) {
-        add_default_outputs(a);
-    }
     for (int o = 0; o < a->n_outputs; o++) {
         if (a->output[o][0] == '\0') {
             return ms_fail(err, MS_ERR_ARG, "--output '' names no file; use - for standard output");
@@ -222,6 +219,9 @@ static ms_status settle_outputs(arguments *a, ms_error *err)
             return MS_ERR_ARG;
         }
         to_stdout += strcmp(a->output[o], "-") == 0;
+    }
+    if (a->n_outputs == 0) {
+        add_default_outputs(a);
     }
     to_stdout += a->target_grid && strcmp(a->target_grid, "-") == 0;
     return to_stdout > 1 ? ms_fail(err, MS_ERR_ARG, "--json and each - write to standard output; choose one of them")

@@ -152,6 +152,12 @@ ms_status ms_input_read(ms_input *input, const char *path, ms_error *err)
     }
     input->checksum = ms_bytes_checksum(&bytes);
     ms_bytes_free(&bytes);
+    if (!ms_volume_is_volume_path(path) && !ms_mesh_is_mesh_path(path)) {
+        return ms_fail(err, MS_ERR_FORMAT,
+                       "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
+                       ".npy, .mhd, .mha, .nrrd and .nhdr",
+                       path);
+    }
     status = ms_volume_is_volume_path(path) ? ms_volume_read(&input->volume, path, err) : read_mesh(input, err);
     input->read_seconds = omp_get_wtime() - start;
     if (status != MS_OK) {

@@ -150,45 +150,48 @@ static void spheres_are_read_from_what_tools_write(void **state)
     }
 }
 
+static const struct {
+    const char *text, *message;
+} malformed[] = {
+    {"", "no spheres"},
+    {"x,y,z,r\n", "no spheres"},
+    {"# nothing\n\n", "no spheres"},
+    {"1,2,3,4\n1,2,3,-4\n", "line 2: sphere (1, 2, 3) with radius -4"},
+    {"1,2,3,0\n", "line 1: sphere"},
+    {"x,y,z,r\n1,2,3,nan\n", "line 2: sphere"},
+    {"1,2,inf,4\n", "line 1: sphere"},
+    {"1,2,3,1e999\n", "line 1: sphere"},
+    {"1,2,3,4\n\n1,2,3\n", "line 3: a sphere (x y z r) needs 4 numbers but the line has 3"},
+    {"1,2,3,4\n5,6,seven,8\n", "line 2: a sphere (x y z r) has 'seven'"},
+    {"x,y,z,r\nx,y,z,r\n1,2,3,4\n", "line 2: a sphere (x y z r) has 'x'"}, /* one header only */
+    {"1,2,3,4\nx,y,z,r\n", "line 2: "},
+    {"1,2,3,4\nand so on\n1,2,3,4\n", "line 2: "},
+    {"1,2,3,4#5\n", "line 1: "},
+    {"1,,3,4,5\n", "line 1: one of the first four columns is empty"},
+    {"1, ;3,4,5\n", "line 1: one of the first four columns is empty"},
+    {",x,y,z,r\n0,1,2,3,4\n", "line 1: one of the first four columns is empty"}, /* numbers of rows */
+    {"1,2,3,4\n,1,2,3,4\n", "line 2: one of the first four columns is empty"},
+    {"x;y;z;r\n1,5;2,5;3,0;0,5\n", "line 2: commas and other"},
+    {"1;2;3;0,5\n", "line 1: commas and other"},
+    {"1;2,5;3;1\n", "line 1: commas and other"},
+    {"1,5 2,5 3,0 0,5\n", "line 1: commas and other"},
+    {"1\t2\t3\t1,5\n", "line 1: commas and other"},
+    {"1.O,2,3,4\n1,2,3,4\n", "line 1: a sphere (x y z r) has '1.O'"}, /* no header: the sphere would be lost */
+    {"0x1,2,3,4\n1,2,3,4\n", "line 1: a sphere (x y z r) has '0x1'"},
+    {"nan,2,3,4\n1,2,3,4\n", "line 1: sphere"},
+};
+
 static void malformed_texts_are_refused_with_the_line(void **state)
 {
     (void)state;
-    static const struct {
-        const char *text, *message;
-    } cases[] = {
-        {"", "no spheres"},
-        {"x,y,z,r\n", "no spheres"},
-        {"# nothing\n\n", "no spheres"},
-        {"1,2,3,4\n1,2,3,-4\n", "line 2: sphere (1, 2, 3) with radius -4"},
-        {"1,2,3,0\n", "line 1: sphere"},
-        {"x,y,z,r\n1,2,3,nan\n", "line 2: sphere"},
-        {"1,2,inf,4\n", "line 1: sphere"},
-        {"1,2,3,1e999\n", "line 1: sphere"},
-        {"1,2,3,4\n\n1,2,3\n", "line 3: a sphere (x y z r) needs 4 numbers but the line has 3"},
-        {"1,2,3,4\n5,6,seven,8\n", "line 2: a sphere (x y z r) has 'seven'"},
-        {"x,y,z,r\nx,y,z,r\n1,2,3,4\n", "line 2: a sphere (x y z r) has 'x'"}, /* one header only */
-        {"1,2,3,4\nx,y,z,r\n", "line 2: "},
-        {"1,2,3,4\nand so on\n1,2,3,4\n", "line 2: "},
-        {"1,2,3,4#5\n", "line 1: "},
-        {"1,,3,4,5\n", "line 1: one of the first four columns is empty"},
-        {"1, ;3,4,5\n", "line 1: one of the first four columns is empty"},
-        {",x,y,z,r\n0,1,2,3,4\n", "line 1: one of the first four columns is empty"}, /* numbers of rows */
-        {"1,2,3,4\n,1,2,3,4\n", "line 2: one of the first four columns is empty"},
-        {"x;y;z;r\n1,5;2,5;3,0;0,5\n", "line 2: commas and other"},
-        {"1;2;3;0,5\n", "line 1: commas and other"},
-        {"1;2,5;3;1\n", "line 1: commas and other"},
-        {"1,5 2,5 3,0 0,5\n", "line 1: commas and other"},
-        {"1\t2\t3\t1,5\n", "line 1: commas and other"},
-        {"0x1,2,3,4\n", "no spheres"}, /* hexadecimal is no number: a header */
-    };
-    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    for (size_t c = 0; c < sizeof malformed / sizeof *malformed; c++) {
         ms_clump clump;
         ms_error err = {{0}};
-        const ms_status status = read_text(&clump, cases[c].text, strlen(cases[c].text), &err);
+        const ms_status status = read_text(&clump, malformed[c].text, strlen(malformed[c].text), &err);
         if (status != MS_ERR_FORMAT) {
-            fail_msg("\"%s\" gives %d", cases[c].text, status);
+            fail_msg("\"%s\" gives %d", malformed[c].text, status);
         }
-        expect_message(&err, cases[c].message);
+        expect_message(&err, malformed[c].message);
         expect_message(&err, "clump.csv");
         assert_null(clump.sphere);
         assert_int_equal(clump.n_spheres, 0);

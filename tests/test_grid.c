@@ -23,7 +23,7 @@ static void bad_extents_are_refused(void **state)
     expect_no_grid(1, 1, MS_GRID_MAX_EXTENT + 1, 1, MS_ERR_LIMIT, "along z");
     expect_no_grid(1, 1, 1, 0, MS_ERR_ARG, "voxel size 0");
     expect_no_grid(1, 1, 1, -2.385, MS_ERR_ARG, "voxel size -2.385");
-    expect_no_grid(1, 1, 1, NAN, MS_ERR_ARG, "voxel size");
+    expect_no_grid(1, 1, 1, (double)NAN, MS_ERR_ARG, "voxel size");
     expect_no_grid(1, 1, 1, HUGE_VAL, MS_ERR_ARG, "voxel size");
 }
 

@@ -171,6 +171,22 @@ static void a_ball_sticks_out_of_a_box(void **state)
     ms_mesh_free(&mesh);
 }
 
+/* A hundredth of the radius, a tenth of a voxel. */
+static void less_than_a_voxel_is_seen(void **state)
+{
+    (void)state;
+    ms_mesh mesh = make_body("ball", (double[]){1, 64});
+    ms_target target = target_of(&mesh, 0.1, MS_VOXEL_HALF);
+    const ms_metrics out = measure_sphere(&target, 0, 0, 0, 1.01), in = measure_sphere(&target, 0, 0, 0, 0.99);
+    expect_close(out.protrusion_max, 0.01, 4e-4);
+    expect_close(out.protrusion_rms, 0.01, 4e-4);
+    expect_close(out.gap_max, 0, 0);
+    expect_close(in.protrusion_max, 0, 0);
+    expect_close(in.gap_max, 0.01, 4e-4);
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
 /* A sphere that others hide has no exposed surface; of equal spheres one counts. */
 static void hidden_surface_does_not_count(void **state)
 {
@@ -278,6 +294,7 @@ int main(void)
         cmocka_unit_test(two_balls_have_the_inertia_of_two_balls),
         cmocka_unit_test(a_block_of_voxels_is_a_cuboid),
         cmocka_unit_test(a_ball_sticks_out_of_a_box),
+        cmocka_unit_test(less_than_a_voxel_is_seen),
         cmocka_unit_test(hidden_surface_does_not_count),
         cmocka_unit_test(spheres_beyond_the_grid_are_counted),
         cmocka_unit_test(what_cannot_be_measured_is_refused),

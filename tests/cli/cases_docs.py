@@ -1,0 +1,71 @@
+"""The documents: every command in the guide runs, the man page and the formats name all there is."""
+import json
+import os
+import re
+import shlex
+import unittest
+
+from support import Case, box_obj, npy
+
+DOCS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs")
+
+
+def document(name):
+    path = os.path.join(DOCS, name)
+    if not os.path.exists(path):
+        raise unittest.SkipTest(f"{path} is missing")
+    with open(path, encoding="utf-8") as f:
+        return f.read()
+
+
+def keys(value):
+    """All keys of nested objects."""
+    if not isinstance(value, dict):
+        return set()
+    return set(value).union(*(keys(inner) for inner in value.values()))
+
+
+class Documents(Case):
+    def test_commands_of_the_guide(self):
+        """In order, in one folder, which holds an open mesh and a scan with two labels."""
+        self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))
+        self.write("scan.npy", npy([1] * 50 + [2] * 950, (10, 10, 10)))
+        commands = re.findall(r"(?m)^ {4,}mskit (.+)$", document("guide.md"))
+        self.assertGreater(len(commands), 20)
+        for command in commands:
+            with self.subTest(command=command):
+                self.mskit(*shlex.split(command))
+        self.assertEqual(self.read("one.csv"), self.read("two.csv"))
+        self.assertEqual(self.read("c.csv"), self.read("d.csv"))
+
+    def test_man_page_names_every_command_and_flag(self):
+        page = document("mskit.1").replace("\\-", "-")
+        overview = self.mskit("--help").out
+        for command in re.findall(r"(?m)^  (\w+) +\w", overview):
+            self.assertRegex(page, rf"(?m)^\.S[SH].*\b{command}\b", f"a section for {command}")
+            for flag in re.findall(r"(--[a-z][a-z-]*)", self.mskit(command, "--help").out.split("usage:")[1]):
+                self.assertIn(flag, page, f"{command} {flag}")
+
+    def test_man_page_names_no_other_flags(self):
+        page = document("mskit.1").replace("\\-", "-")
+        known = {"--version", "--help"}
+        for command in re.findall(r"(?m)^  (\w+) +\w", self.mskit("--help").out):
+            known |= set(re.findall(r"--[a-z][a-z-]*", self.mskit(command, "--help").out))
+        for option in re.findall(r"(?m)^  ([a-z-]+)[= ]", self.mskit("help", "mss").out):
+            known.add("--" + option)
+        for flag in set(re.findall(r"--[a-z][a-z-]*", page)):
+            self.assertIn(flag, known, "the man page names a flag that does not exist")
+
+    def test_formats_name_every_key(self):
+        self.write("box.obj", box_obj((0, 0, 0), (3, 2, 1)))
+        self.write("scan.npy", npy([1] * 1000, (10, 10, 10)))
+        text = document("formats.md")
+        for shape in ("box.obj", "scan.npy"):
+            grid = ("--cells", "20") if shape == "box.obj" else ()
+            self.mskit("generate", shape, *grid, "-n", "2", "-o", "c.json", "-o", "c.csv")
+            records = [json.loads(self.read("c.json")), self.mskit("info", shape, "--json").json,
+                       self.mskit("score", "c.csv", "--target", shape, *grid, "--json").json]
+            for record in records:
+                record.pop("options", None)  # those of a method are on its own page
+                for key in keys(record):
+                    self.assertIn(f"`{key}`", text, f"formats.md does not explain '{key}'")
