@@ -169,6 +169,17 @@ static part triangle_part(const ms_target *target, const ms_clump *clump, size_t
     return sum;
 }
 
+/* Corners stand out the most. */
+static double largest_gap_of_vertices(const ms_mesh *mesh, const ms_clump *clump)
+{
+    double largest = 0;
+#pragma omp parallel for schedule(static) reduction(max : largest)
+    for (size_t v = 0; v < mesh->n_vertices; v++) {
+        largest = fmax(largest, union_distance(clump, mesh->vertex[v]));
+    }
+    return largest;
+}
+
 ms_status ms_surface_gap(ms_standout *out, const ms_target *target, const ms_clump *clump, ms_error *err)
 {
     const size_t triangles = target->mesh->n_triangles, chunks = (triangles + CHUNK - 1) / CHUNK;
@@ -188,6 +199,7 @@ ms_status ms_surface_gap(ms_standout *out, const ms_target *target, const ms_clu
         }
     }
     join_parts(out, parts, chunks);
+    out->max = fmax(out->max, largest_gap_of_vertices(target->mesh, clump));
     free(parts);
     return MS_OK;
 }

@@ -24,7 +24,8 @@ ms_status ms_surface_protrusion(ms_standout *out, const ms_target *target, const
 
 /**
  * The surface of the mesh outside all spheres, by the distance to the nearest sphere.
- * Sampled at one point or more in each triangle, about one for each 4 h^2.
+ * Sampled at one point or more in each triangle, about one for each 4 h^2, and for the
+ * largest distance at the vertices too.
  *
  * @return MS_OK; MS_ERR_NOMEM. Cost: O(samples * n); threads as above.
  */

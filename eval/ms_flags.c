@@ -101,6 +101,7 @@ ms_flags_outcome ms_flags_parse(int *first_word, const ms_command *command, int 
     char name[64];
     snprintf(name, sizeof name, "mskit %s", command->name);
     argv[0] = name; /* getopt's own messages begin with it */
+    unsetenv("POSIXLY_CORRECT"); /* flags may stand anywhere */
     make_tables(&t, command, generator_options);
     while ((found = getopt_long(argc, argv, t.shorts, t.longs, &at)) != -1) {
         if (found == 'h') {

@@ -66,6 +66,10 @@ class Environment(Case):
         self.assertEqual(run["threads"], 1)
         self.assertEqual(self.read("a.csv"), self.read("b.csv"))
 
+    def test_flags_behind_words_whatever_posix_says(self):
+        self.mskit("generate", "box.obj", *RUN, "-o", "b.csv", env={**os.environ, "POSIXLY_CORRECT": "1"})
+        self.assertEqual(self.read("a.csv"), self.read("b.csv"))
+
     def test_a_reader_that_stops_reading(self):
         """As head does: no message, no file left."""
         writer = subprocess.Popen([MSKIT, "shape", "ball", "-o", "-"], cwd=self.dir, stdout=subprocess.PIPE,
