@@ -83,6 +83,28 @@ static int begins_with_number(const ms_text *text)
     return ms_text_word(&word, &ahead) && (strchr("+-.0123456789", *word.start) || ms_word_double(&value, &word));
 }
 
+/* Does the header name three columns x, y, z in some order, but not the first three in this one? */
+static int header_contradicts(const ms_text *text)
+{
+    static const char *const NAMES[] = {"x", "y", "z"};
+    ms_text ahead = *text;
+    ms_word word;
+    int in_order = 0; /* the first columns so far are x, y, z */
+    int run = 0;      /* columns in a row that are x, y or z */
+    for (int column = 0; ms_text_word(&word, &ahead); column++) {
+        int name = 0;
+        while (name < 3 && !ms_word_is(&word, NAMES[name])) {
+            name++;
+        }
+        in_order += name == column && name < 3;
+        run = name < 3 ? run + 1 : 0;
+        if (run == 3 && in_order < 3) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 static ms_status read_sphere(ms_clump *clump, ms_text *text, ms_error *err)
 {
     double v[4];
@@ -118,6 +140,9 @@ static ms_status parse(ms_clump *clump, ms_bytes *bytes, const char *name, ms_er
         header_allowed = 0;
         if (flaw && (!header || first_is_empty)) { /* a nameless first column holds numbers of rows */
             return ms_text_fail(err, &text, "%s", flaw);
+        }
+        if (header && header_contradicts(&text)) {
+            return ms_text_fail(err, &text, "the header names x, y, z in other columns; the first four must be x, y, z, r");
         }
         ms_status status = header ? MS_OK : read_sphere(clump, &text, err);
         if (status != MS_OK) {

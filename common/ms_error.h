@@ -18,7 +18,7 @@ typedef enum ms_status { MS_STATUS_LIST(MS_STATUS_ENUM) } ms_status;
 
 /** The message of a failure: one sentence that names the file, the place and what to do. */
 typedef struct ms_error {
-    char text[512];
+    char text[1024];
 } ms_error;
 
 /** The general text of a status code; never NULL. */

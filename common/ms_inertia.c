@@ -116,6 +116,12 @@ ms_status ms_inertia_mesh(ms_body *body, const ms_mesh *mesh, ms_error *err)
                        volume);
     }
     fill_body(body, &sums, centre);
+    for (int k = 0; k < 3; k++) {
+        if (!isfinite(body->centroid[k]) || !isfinite(body->inertia[k][k])) {
+            *body = (ms_body){0};
+            return ms_fail(err, MS_ERR_SHAPE, "the moments of the mesh overflow; scale it down");
+        }
+    }
     return MS_OK;
 }
 

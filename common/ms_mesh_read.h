@@ -7,8 +7,8 @@
 /**
  * Reads a mesh, in double precision, strictly: a file that does not say exactly one mesh is
  * refused. The format comes from the ending (.stl .obj .ply .off). Polygons are cut into
- * fans; vertices with equal coordinates are welded. What an untrusted header claims is
- * checked against the file's size before anything is allocated.
+ * fans; vertices with equal coordinates are welded, those that no face uses dropped. What an
+ * untrusted header claims is checked against the file's size before anything is allocated.
  *
  * @param[out] mesh the caller frees it; empty on failure
  * @param      path the file

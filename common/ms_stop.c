@@ -8,6 +8,12 @@ ms_stop ms_stop_none(void)
     return (ms_stop){.eta = -1, .dice = -1, .coverage = -1, .inertia = -1, .radius = -1};
 }
 
+int ms_stop_is_none(const ms_stop *stop)
+{
+    return stop->spheres == 0 && stop->eta < 0 && stop->dice < 0 && stop->coverage < 0 && stop->inertia < 0 &&
+           stop->radius < 0;
+}
+
 const char *ms_stop_name(ms_stop_reason reason)
 {
     switch (reason) {

@@ -35,6 +35,9 @@ typedef struct ms_stop {
 /** Nothing asked for. */
 ms_stop ms_stop_none(void);
 
+/** Nonzero if nothing is asked for, so that nothing would end a run. */
+int ms_stop_is_none(const ms_stop *stop);
+
 /** "eta", "exhausted", ... */
 const char *ms_stop_name(ms_stop_reason reason);
 

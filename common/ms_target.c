@@ -7,12 +7,9 @@
 
 #include "ms_distance.h"
 
-/* S: 1, E: 4; a generator: E~ 4, first-cover index 2, flags 1 (measured: docs/validation.md). */
-enum { BYTES_PER_VOXEL = 12 };
-
 double ms_target_bytes(const double n[3])
 {
-    return BYTES_PER_VOXEL * n[0] * n[1] * n[2];
+    return MS_TARGET_BYTES_PER_VOXEL * n[0] * n[1] * n[2];
 }
 
 double ms_target_equivalent_radius(const ms_target *target)

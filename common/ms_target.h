@@ -23,6 +23,9 @@ typedef struct ms_target {
     double voxelize_seconds, distance_seconds;
 } ms_target;
 
+/* S: 1, E: 4; a generator: E~ 4, first-cover index 2, flags 1. */
+enum { MS_TARGET_BYTES_PER_VOXEL = 12 };
+
 /** Bytes that the grid, the fields of the target and of a generator take at their peak. */
 double ms_target_bytes(const double n[3]);
 

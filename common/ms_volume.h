@@ -16,10 +16,11 @@ typedef struct ms_volume {
 } ms_volume;
 
 /**
- * Reads a volume of labels, strictly. Integers of 1 to 4 bytes, bools, and floats whose values are all whole
- * numbers; negative values, fractions and NaN are grey values, not labels, and are refused,
- * as are a volume without any label, voxels that are not cubes and axes that are not
- * aligned. NumPy arrays are indexed [z][y][x] (C order) or [x][y][z] (Fortran order).
+ * Reads a volume of labels, strictly. Integers of 1 to 8 bytes whose values fit 32 bits,
+ * bools, and floats whose values are all whole numbers; negative values, fractions and NaN are
+ * grey values, not labels, and are refused, as are a volume without any label, voxels that are
+ * not cubes and axes that are not aligned. NumPy arrays are indexed [z][y][x] (C order) or
+ * [x][y][z] (Fortran order).
  *
  * @param[out] volume the caller frees it; empty on failure
  * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_SHAPE without a label; MS_ERR_LIMIT; MS_ERR_NOMEM

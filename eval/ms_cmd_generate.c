@@ -1,10 +1,8 @@
 /* mskit generate SHAPE */
-#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,7 +10,7 @@
 #include "ms_file.h"
 #include "ms_generator.h"
 #include "ms_input.h"
-#include "ms_metrics.h"
+#include "ms_record.h"
 #include "ms_report.h"
 #include "ms_text.h"
 #include "ms_write.h"
@@ -56,14 +54,6 @@ typedef struct arguments {
     const char *target_grid;
     int json;
 } arguments;
-
-/* All that a run gave. */
-typedef struct result {
-    ms_clump clump;
-    ms_stop_reason reason;
-    ms_metrics metrics;
-    double generate_seconds, score_seconds;
-} result;
 
 /* Cuts "name=value" in two; `name` has room for 64 characters. */
 static ms_status split_assignment(char name[64], const char **value, const char *text, ms_error *err)
@@ -254,73 +244,16 @@ static ms_status try_outputs(const arguments *a, ms_error *err)
 
 static void show_progress(void *context, size_t spheres, double dice)
 {
-    fprintf(stderr, "\r%s: %zu spheres, D %.4f ", (const char *)context, spheres, dice);
+    fprintf(stderr, "\r%s: %zu spheres, D %.4f ", *(const char *const *)context, spheres, dice);
 }
 
-static json_t *settings_json(const ms_settings *settings)
+static ms_status generate(ms_result *r, const arguments *a, const ms_input *input, ms_error *err)
 {
-    json_t *json = json_object(), *planes = json_array();
-    for (size_t o = 0; settings->options[o].name; o++) {
-        char text[64];
-        if (settings->options[o].type != MS_OPTION_PLANE) {
-            ms_settings_text(text, sizeof text, settings, o);
-            json_object_set_new(json, settings->options[o].name, json_string(text));
-            continue;
-        }
-        for (size_t p = 0; p < settings->n_planes; p++) {
-            const double *q = settings->plane[p];
-            json_array_append_new(planes, json_pack("[f,f,f,f]", q[0], q[1], q[2], q[3]));
-        }
-        json_object_set(json, settings->options[o].name, planes);
-    }
-    json_decref(planes);
-    return json;
-}
-
-static json_t *stop_json(const ms_stop *stop)
-{
-    json_t *json = json_object();
-    const struct {
-        const char *name;
-        double value;
-    } asked[] = {{"eta", stop->eta},           {"dice", stop->dice},     {"coverage", stop->coverage},
-                 {"inertia", stop->inertia}, {"radius", stop->radius}};
-    if (stop->spheres) {
-        json_object_set_new(json, "spheres", json_integer((json_int_t)stop->spheres));
-    }
-    for (size_t m = 0; m < sizeof asked / sizeof *asked; m++) {
-        if (asked[m].value >= 0) {
-            json_object_set_new(json, asked[m].name, json_real(asked[m].value));
-        }
-    }
-    return json;
-}
-
-/* Everything that is needed to repeat the run, and what it gave. */
-static json_t *record_json(const arguments *a, const ms_input *input, const result *r)
-{
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    const double cpu = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-                       1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-    json_t *seconds = json_pack("{s:f,s:f,s:f,s:f,s:f,s:f}", "read", input->read_seconds, "voxelize",
-                                input->target.voxelize_seconds, "distance", input->target.distance_seconds, "generate",
-                                r->generate_seconds, "score", r->score_seconds, "cpu", cpu);
-    return json_pack("{s:s,s:o,s:I,s:o,s:s,s:o,s:o,s:o,s:i,s:I}", "generator", a->generator->name, "options",
-                     settings_json(&a->settings), "seed", (json_int_t)a->seed, "until", stop_json(&a->stop),
-                     "stopped_by", ms_stop_name(r->reason), "input", ms_report_input_json(input), "scores",
-                     ms_report_metrics_json(&r->metrics), "seconds", seconds, "threads", omp_get_max_threads(),
-                     "peak_memory_kb", (json_int_t)usage.ru_maxrss);
-}
-
-static ms_status generate(result *r, const arguments *a, const ms_input *input, ms_error *err)
-{
-    static char name[32];
+    const char *name = a->generator->name;
     const int terminal = isatty(STDERR_FILENO);
     const ms_run run = {.target = &input->target, .stop = a->stop, .settings = &a->settings,
                         .seed = (uint64_t)a->seed, .progress = terminal ? show_progress : NULL,
-                        .progress_context = name};
-    snprintf(name, sizeof name, "%s", a->generator->name);
+                        .progress_context = &name};
     const double start = omp_get_wtime();
     ms_status status = ms_generator_run(&r->clump, &r->reason, a->generator, &run, err);
     const double generated = omp_get_wtime();
@@ -328,12 +261,14 @@ static ms_status generate(result *r, const arguments *a, const ms_input *input, 
         fputc('\n', stderr);
     }
     if (status == MS_OK && r->reason == MS_STOP_EXHAUSTED) {
-        fprintf(stderr, "%s: found no place for a further sphere after %zu; more cells may help, or its options (mskit help %s)\n",
+        fprintf(stderr,
+                "%s: found no place for a further sphere after %zu; more cells may help, or its options (mskit help "
+                "%s)\n",
                 name, r->clump.n_spheres, name);
     }
     if (status == MS_OK) {
         status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump,
-                                    (size_t)(a->input.max_memory / 12), err);
+                                    ms_input_max_voxels(&a->input), err);
     }
     r->generate_seconds = generated - start;
     r->score_seconds = omp_get_wtime() - generated;
@@ -349,7 +284,7 @@ static int writes_to_stdout(const arguments *a)
     return found;
 }
 
-static ms_status write_outputs(const arguments *a, const ms_input *input, const result *r, const char *record,
+static ms_status write_outputs(const arguments *a, const ms_input *input, const ms_result *r, const char *record,
                                ms_error *err)
 {
     FILE *words = writes_to_stdout(a) ? stderr : stdout;
@@ -369,9 +304,9 @@ static ms_status write_outputs(const arguments *a, const ms_input *input, const 
     return status;
 }
 
-static ms_status report(const arguments *a, const ms_input *input, const result *r, ms_error *err)
+static ms_status report(const arguments *a, const ms_input *input, const ms_result *r, ms_error *err)
 {
-    json_t *json = record_json(a, input, r);
+    json_t *json = ms_record_json(a->generator, &a->settings, &a->stop, (uint64_t)a->seed, input, r);
     char *record = json ? json_dumps(json, JSON_COMPACT) : NULL;
     ms_status status;
     if (!record) {
@@ -397,7 +332,7 @@ static int work(const ms_command *command, const arguments *a)
 {
     ms_error err;
     ms_input input;
-    result r;
+    ms_result r;
     memset(&r, 0, sizeof r);
     ms_status status = ms_input_read(&input, a->shape, &err);
     if (status != MS_OK) {
@@ -418,35 +353,31 @@ static int work(const ms_command *command, const arguments *a)
     return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
 }
 
+/* What follows from all flags together. */
+static ms_status settle(arguments *a, ms_error *err)
+{
+    if (ms_stop_is_none(&a->stop)) {
+        a->stop.spheres = DEFAULT_SPHERES;
+    }
+    ms_status status = settle_generator(a, err);
+    return status == MS_OK ? settle_outputs(a, err) : status;
+}
+
 static int run(const ms_command *command, int argc, char **argv)
 {
     arguments a = {.generator_name = "mss", .stop = ms_stop_none(), .seed = 1};
-    int first, code = EXIT_USAGE;
+    int first;
     ms_error err;
     ms_input_defaults(&a.input);
-    switch (ms_flags_parse(&first, command, 1, argc, argv, take_flag, &a)) {
-    case MS_FLAGS_HELPED:
-        code = EXIT_DONE;
-        break;
-    case MS_FLAGS_WRONG:
-        break;
-    case MS_FLAGS_GO_ON:
-        if (argc - first != 1) {
-            ms_wrong_usage(command, "takes one shape");
-            break;
-        }
-        a.shape = argv[first];
-        if (a.stop.spheres == 0 && a.stop.eta < 0 && a.stop.dice < 0 && a.stop.coverage < 0 && a.stop.inertia < 0 &&
-            a.stop.radius < 0) {
-            a.stop.spheres = DEFAULT_SPHERES;
-        }
-        if (settle_generator(&a, &err) != MS_OK || settle_outputs(&a, &err) != MS_OK) {
-            ms_wrong_usage(command, err.text);
-            break;
-        }
-        code = work(command, &a);
-        break;
+    int code = ms_flags_parse(&first, command, 1, argc, argv, take_flag, &a);
+    if (code != MS_FLAGS_GO_ON) {
+        return code;
     }
+    if (argc - first != 1) {
+        return ms_wrong_usage(command, "takes one shape");
+    }
+    a.shape = argv[first];
+    code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_wrong_usage(command, err.text);
     ms_settings_free(&a.settings);
     return code;
 }

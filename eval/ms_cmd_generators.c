@@ -29,13 +29,9 @@ static int run_generators(const ms_command *command, int argc, char **argv)
 {
     int first, json = 0;
     ms_error err;
-    switch (ms_flags_parse(&first, command, 0, argc, argv, take_json, &json)) {
-    case MS_FLAGS_HELPED:
-        return EXIT_DONE;
-    case MS_FLAGS_WRONG:
-        return EXIT_USAGE;
-    case MS_FLAGS_GO_ON:
-        break;
+    const int code = ms_flags_parse(&first, command, 0, argc, argv, take_json, &json);
+    if (code != MS_FLAGS_GO_ON) {
+        return code;
     }
     if (first < argc) {
         return ms_wrong_usage(command, "takes no words");
@@ -93,13 +89,9 @@ static int run_help(const ms_command *command, int argc, char **argv)
 {
     int first;
     ms_error err;
-    switch (ms_flags_parse(&first, command, 0, argc, argv, take_none, NULL)) {
-    case MS_FLAGS_HELPED:
-        return EXIT_DONE;
-    case MS_FLAGS_WRONG:
-        return EXIT_USAGE;
-    case MS_FLAGS_GO_ON:
-        break;
+    const int code = ms_flags_parse(&first, command, 0, argc, argv, take_none, NULL);
+    if (code != MS_FLAGS_GO_ON) {
+        return code;
     }
     if (argc - first != 1) {
         return ms_wrong_usage(command, "takes the name of one generator or command");

@@ -167,13 +167,9 @@ static int run(const ms_command *command, int argc, char **argv)
     ms_input input;
     facts f;
     ms_input_defaults(&a.input);
-    switch (ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a)) {
-    case MS_FLAGS_HELPED:
-        return EXIT_DONE;
-    case MS_FLAGS_WRONG:
-        return EXIT_USAGE;
-    case MS_FLAGS_GO_ON:
-        break;
+    const int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
+    if (code != MS_FLAGS_GO_ON) {
+        return code;
     }
     if (argc - first != 1) {
         return ms_wrong_usage(command, "takes one shape");

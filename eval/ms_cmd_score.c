@@ -55,8 +55,7 @@ static ms_status report(const arguments *a, const ms_input *input, const ms_clum
     if (!curve) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu scores", clump->n_spheres);
     }
-    const size_t max_voxels = (size_t)(a->input.max_memory / 12);
-    ms_status status = ms_metrics_compute(&metrics, curve, &input->target, clump, max_voxels, err);
+    ms_status status = ms_metrics_compute(&metrics, curve, &input->target, clump, ms_input_max_voxels(&a->input), err);
     if (status == MS_OK && a->curve) {
         print_curve(curve, clump->n_spheres);
     } else if (status == MS_OK && a->json) {
@@ -79,13 +78,9 @@ static int run(const ms_command *command, int argc, char **argv)
     ms_input input;
     ms_clump clump;
     ms_input_defaults(&a.input);
-    switch (ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a)) {
-    case MS_FLAGS_HELPED:
-        return EXIT_DONE;
-    case MS_FLAGS_WRONG:
-        return EXIT_USAGE;
-    case MS_FLAGS_GO_ON:
-        break;
+    const int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
+    if (code != MS_FLAGS_GO_ON) {
+        return code;
     }
     if (argc - first != 1 || !a.target) {
         return ms_wrong_usage(command, "takes one clump file and --target SHAPE");

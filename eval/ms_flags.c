@@ -92,8 +92,8 @@ static const char *name_of_letter(const ms_command *command, int letter)
     return "";
 }
 
-ms_flags_outcome ms_flags_parse(int *first_word, const ms_command *command, int generator_options, int argc,
-                                char **argv, ms_flag_handler handler, void *context)
+int ms_flags_parse(int *first_word, const ms_command *command, int generator_options, int argc, char **argv,
+                   ms_flag_handler handler, void *context)
 {
     tables t;
     int found, at = 0;
@@ -106,16 +106,16 @@ ms_flags_outcome ms_flags_parse(int *first_word, const ms_command *command, int 
     while ((found = getopt_long(argc, argv, t.shorts, t.longs, &at)) != -1) {
         if (found == 'h') {
             print_help(command);
-            return MS_FLAGS_HELPED;
+            return EXIT_DONE;
         }
         if (found == '?') {
             print_choices(command, &t); /* getopt has said what is wrong */
-            return MS_FLAGS_WRONG;
+            return EXIT_USAGE;
         }
         const char *flag = found == 0 ? t.longs[at].name : name_of_letter(command, found);
         if (handler(context, flag, optarg, &err) != MS_OK) {
             ms_wrong_usage(command, err.text);
-            return MS_FLAGS_WRONG;
+            return EXIT_USAGE;
         }
     }
     *first_word = optind;

@@ -33,18 +33,19 @@ typedef struct ms_command {
  */
 typedef ms_status (*ms_flag_handler)(void *context, const char *name, const char *value, ms_error *err);
 
-/** What parsing leaves to do. */
-typedef enum ms_flags_outcome { MS_FLAGS_GO_ON, MS_FLAGS_HELPED, MS_FLAGS_WRONG } ms_flags_outcome;
+/* What ms_flags_parse returns where there is work to do. */
+enum { MS_FLAGS_GO_ON = -1 };
 
 /**
- * Parses the flags of a command; --help prints the help and ends. Flags may stand anywhere;
- * words move behind them.
+ * Parses the flags of a command; --help prints the help. Flags may stand anywhere; words move
+ * behind them.
  *
  * @param[out] first_word index in argv of the first word that is no flag
  * @param      generator_options nonzero: options of generators are flags too
+ * @return MS_FLAGS_GO_ON, or the exit code with which the command is over
  */
-ms_flags_outcome ms_flags_parse(int *first_word, const ms_command *command, int generator_options, int argc,
-                                char **argv, ms_flag_handler handler, void *context);
+int ms_flags_parse(int *first_word, const ms_command *command, int generator_options, int argc, char **argv,
+                   ms_flag_handler handler, void *context);
 
 /** Prints "mskit NAME: message" to stderr. @return EXIT_FAILED */
 int ms_fail_command(const ms_command *command, const ms_error *err);

@@ -293,6 +293,11 @@ ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error
     return input->volume.label ? target_from_volume(input, flags, err) : target_from_mesh(input, flags, err);
 }
 
+size_t ms_input_max_voxels(const ms_input_flags *flags)
+{
+    return (size_t)(flags->max_memory / MS_TARGET_BYTES_PER_VOXEL);
+}
+
 void ms_input_free(ms_input *input)
 {
     ms_target_free(&input->target);

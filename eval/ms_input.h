@@ -55,6 +55,9 @@ ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flag
 /** Makes the target; says the size of the grid on stderr. Refuses open meshes unless allowed. */
 ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err);
 
+/** The largest grid that the memory allowed admits. */
+size_t ms_input_max_voxels(const ms_input_flags *flags);
+
 void ms_input_free(ms_input *input);
 
 #endif

@@ -31,9 +31,9 @@ void ms_report_metrics(FILE *stream, const ms_metrics *m, const ms_target *targe
         fprintf(stream, "  %-34s none: the spheres cover no voxel\n", "inertia of the union");
         return;
     }
-    fprintf(stream, "  %-34s %+.2f %% %+.2f %% %+.2f %%\n", "principal moments of the union", 100 * m->inertia.moment[0],
+    fprintf(stream, "  %-34s %+.2f %% %+.2f %% %+.2f %%\n", "error of principal moments", 100 * m->inertia.moment[0],
             100 * m->inertia.moment[1], 100 * m->inertia.moment[2]);
-    fprintf(stream, "  %-34s %.2f %%, axes turned %.2f degrees\n", "mean inertia error (Yuan)",
+    fprintf(stream, "  %-34s %.2f %%, axes turned %.2f degrees\n", "their weighted mean (Yuan)",
             100 * m->inertia.weighted, m->inertia.angle);
 }
 

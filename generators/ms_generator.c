@@ -30,8 +30,7 @@ ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_gen
     const ms_stop *stop = &run->stop;
     memset(clump, 0, sizeof *clump);
     *reason = MS_STOP_NOT;
-    if (stop->spheres == 0 && stop->eta < 0 && stop->dice < 0 && stop->coverage < 0 && stop->inertia < 0 &&
-        stop->radius < 0) {
+    if (ms_stop_is_none(stop)) {
         return ms_fail(err, MS_ERR_ARG, "nothing says when to stop; give a number of spheres or a measure");
     }
     if (stop->spheres > MS_CLUMP_MAX_SPHERES) {

@@ -20,7 +20,7 @@ enum { ORDER_RADIUS, ORDER_GAIN };
 static const ms_option OPTIONS[] = {
     [SPACING] = {"spacing", MS_OPTION_REAL, 0, 0, 1000, NULL, "voxels",
                  "least distance between the centres of any two spheres (delta_min, section 3.4); 0: as large as "
-                 "leaves maxima, halved from the largest radius down to 1 voxel (gain: from 2)"},
+                 "leaves maxima, halved from the largest radius down to 1 voxel (gain: from 2), spheres smaller across waiting"},
     [BOOST] = {"boost", MS_OPTION_INTEGER, 1, 1, 5, NULL, NULL,
                "where no maximum is left, E* = E + w (E - E~) is tried with w up to this; the paper has w = 1 (eq. 25)"},
     [OFFSET] = {"radius-offset", MS_OPTION_REAL, 0, -2, 2, NULL, "voxels",
@@ -194,9 +194,13 @@ static ms_status accept(ms_clump *clump, ms_stop_reason *reason, mss *m, size_t 
 /* Chooses the spheres of a step; a mean of several candidates may have less room than they had. */
 static size_t choose(ms_ball *chosen, size_t limit, mss *m)
 {
-    const size_t taken =
-        mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball, m->field.raster.n_balls,
-                   m->spacing, option(m, ORDER) == ORDER_GAIN, m->run->target);
+    /* Where delta_min is ours to choose, spheres smaller across than it is wait until it has shrunk:
+     * else every speck of noise in a corner, being far from all spheres, would come early. */
+    const mss_rule rule = {.spacing = m->spacing,
+                           .least_radius = option(m, SPACING) == 0 ? m->spacing / 2 : 0,
+                           .one_set = option(m, ORDER) == ORDER_GAIN};
+    const size_t taken = mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball,
+                                    m->field.raster.n_balls, &rule, m->run->target);
     size_t kept = 0;
     for (size_t c = 0; c < taken; c++) {
         chosen[kept] = chosen[c];

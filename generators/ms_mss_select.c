@@ -106,7 +106,7 @@ static size_t gather_farthest(mss_candidate *c, size_t count)
         most = fmax(most, c[m].now);
     }
     for (size_t m = 0; m < count; m++) {
-        if (c[m].now >= most - EQUAL * (1 + fabs(most))) {
+        if (!(c[m].now < most - EQUAL * (1 + fabs(most)))) {
             const mss_candidate swap = c[m];
             c[m] = c[size];
             c[size++] = swap;
@@ -115,12 +115,12 @@ static size_t gather_farthest(mss_candidate *c, size_t count)
     return size;
 }
 
-/* Moves to the front those that keep their distance; how many they are. */
-static size_t gather_eligible(mss_candidate *c, size_t count, double spacing)
+/* Moves to the front those that keep their distance and are large enough; how many they are. */
+static size_t gather_eligible(mss_candidate *c, size_t count, double spacing, double least_radius)
 {
     size_t size = 0;
     for (size_t m = 0; m < count; m++) {
-        if (c[m].now >= spacing * spacing) {
+        if (c[m].now >= spacing * spacing && c[m].ball.radius >= least_radius) {
             const mss_candidate swap = c[m];
             c[m] = c[size];
             c[size++] = swap;
@@ -179,16 +179,16 @@ static size_t place_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size
 }
 
 /* Chooses among candidates of one rank; `chosen` is the end of p.step. */
-static size_t select_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size_t count, placed p, double spacing,
-                            int one_set, const ms_target *target)
+static size_t select_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size_t count, placed p,
+                            const mss_rule *rule, const ms_target *target)
 {
     size_t taken = 0;
     for (size_t s = 0; s < p.n_step; s++) {
         keep_apart_now(c, count, &p.step[s]);
     }
-    while ((count = gather_eligible(c, count, spacing)) > 0 && taken < limit && !(one_set && taken)) {
+    while ((count = gather_eligible(c, count, rule->spacing, 0)) > 0 && taken < limit && !(rule->one_set && taken)) {
         const size_t set = p.n_earlier + p.n_step ? gather_farthest(c, count) : gather_central(c, count, target);
-        const size_t placed_now = place_equals(chosen + taken, limit - taken, c, set, &p, spacing, target);
+        const size_t placed_now = place_equals(chosen + taken, limit - taken, c, set, &p, rule->spacing, target);
         c += set; /* placed, or merged into one that is */
         count -= set;
         for (size_t s = 0; s < placed_now; s++) {
@@ -201,23 +201,22 @@ static size_t select_equals(ms_ball *chosen, size_t limit, mss_candidate *c, siz
 }
 
 size_t mss_select(ms_ball *chosen, size_t limit, mss_candidate *candidates, size_t count, const ms_ball *spheres,
-                  size_t n_spheres, double spacing, int one_set, const ms_target *target)
+                  size_t n_spheres, const mss_rule *rule, const ms_target *target)
 {
     size_t taken = 0;
     for (size_t m = 0; m < count; m++) {
         candidates[m].now = candidates[m].apart;
     }
-    count = gather_eligible(candidates, count, spacing);
+    count = gather_eligible(candidates, count, rule->spacing, rule->least_radius);
     qsort(candidates, count, sizeof *candidates, by_rank);
-    for (size_t from = 0; from < count && taken < limit && !(one_set && taken);) {
+    for (size_t from = 0; from < count && taken < limit && !(rule->one_set && taken);) {
         const double least = candidates[from].rank - EQUAL * (1 + fabs(candidates[from].rank));
         size_t to = from + 1;
         while (to < count && candidates[to].rank >= least) {
             to++;
         }
         const placed p = {spheres, chosen, n_spheres, taken};
-        taken += select_equals(chosen + taken, limit - taken, candidates + from, to - from, p, spacing, one_set,
-                               target);
+        taken += select_equals(chosen + taken, limit - taken, candidates + from, to - from, p, rule, target);
         from = to;
     }
     return taken;

@@ -14,25 +14,31 @@ typedef struct mss_candidate {
     double now;   /* work space: the same, within a step */
 } mss_candidate;
 
+/** What is demanded of the spheres of a step. */
+typedef struct mss_rule {
+    double spacing;      /* delta_min, in voxels */
+    double least_radius; /* smaller ones wait for a later step; in voxels */
+    int one_set;         /* only the first set of equals (mirror images of one another) */
+} mss_rule;
+
 /** Takes note of a new sphere in the distances `apart`. */
 void mss_keep_apart(mss_candidate *candidates, size_t count, const ms_ball *sphere);
 
 /**
- * Chooses spheres in descending rank, none closer than `spacing` to another.
+ * Chooses spheres in descending rank, none closer than the spacing to another.
  *
  * Candidates of equal rank (mirror images; plateaus) are taken farthest from the spheres so
  * far first; the first sphere of all nearest to the target's centroid. Of those that are
- * equally far, those closer than `spacing` to one another are replaced by their mean, so that
+ * equally far, those closer than the spacing to one another are replaced by their mean, so that
  * a pair across a plane of symmetry becomes one sphere on it. A symmetric target thus gives
  * symmetric spheres, unless the limit falls among equals: then the lower voxel index wins.
  *
  * @param[out]    chosen     room for `limit` balls
  * @param[in,out] candidates reordered
  * @param         spheres    those placed before
- * @param         one_set    nonzero: only the first set of equals (mirror images of one another)
  * @return how many were chosen
  */
 size_t mss_select(ms_ball *chosen, size_t limit, mss_candidate *candidates, size_t count, const ms_ball *spheres,
-                  size_t n_spheres, double spacing, int one_set, const ms_target *target);
+                  size_t n_spheres, const mss_rule *rule, const ms_target *target);
 
 #endif

@@ -153,6 +153,9 @@ static void spheres_are_read_from_what_tools_write(void **state)
 static const struct {
     const char *text, *message;
 } malformed[] = {
+    {"id,x,y,z,r\n1,2,3,4,5\n", "line 1"},
+    {"r x y z\n1 2 3 4\n", "line 1"},
+    {"y,x,z,r\n1,2,3,4\n", "line 1"},
     {"", "no spheres"},
     {"x,y,z,r\n", "no spheres"},
     {"# nothing\n\n", "no spheres"},

@@ -1,0 +1,62 @@
+#include "ms_record.h"
+
+#include <omp.h>
+#include <sys/resource.h>
+
+#include "ms_report.h"
+
+static json_t *settings_json(const ms_settings *settings)
+{
+    json_t *json = json_object(), *planes = json_array();
+    for (size_t o = 0; settings->options[o].name; o++) {
+        char text[64];
+        if (settings->options[o].type != MS_OPTION_PLANE) {
+            ms_settings_text(text, sizeof text, settings, o);
+            json_object_set_new(json, settings->options[o].name, json_string(text));
+            continue;
+        }
+        for (size_t p = 0; p < settings->n_planes; p++) {
+            const double *q = settings->plane[p];
+            json_array_append_new(planes, json_pack("[f,f,f,f]", q[0], q[1], q[2], q[3]));
+        }
+        json_object_set(json, settings->options[o].name, planes);
+    }
+    json_decref(planes);
+    return json;
+}
+
+static json_t *stop_json(const ms_stop *stop)
+{
+    json_t *json = json_object();
+    const struct {
+        const char *name;
+        double value;
+    } asked[] = {{"eta", stop->eta},           {"dice", stop->dice},     {"coverage", stop->coverage},
+                 {"inertia", stop->inertia}, {"radius", stop->radius}};
+    if (stop->spheres) {
+        json_object_set_new(json, "spheres", json_integer((json_int_t)stop->spheres));
+    }
+    for (size_t m = 0; m < sizeof asked / sizeof *asked; m++) {
+        if (asked[m].value >= 0) {
+            json_object_set_new(json, asked[m].name, json_real(asked[m].value));
+        }
+    }
+    return json;
+}
+
+json_t *ms_record_json(const ms_generator *generator, const ms_settings *settings, const ms_stop *stop, uint64_t seed,
+                       const ms_input *input, const ms_result *r)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    const double cpu = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+                       1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+    json_t *seconds = json_pack("{s:f,s:f,s:f,s:f,s:f,s:f}", "read", input->read_seconds, "voxelize",
+                                input->target.voxelize_seconds, "distance", input->target.distance_seconds, "generate",
+                                r->generate_seconds, "score", r->score_seconds, "cpu", cpu);
+    return json_pack("{s:s,s:o,s:I,s:o,s:s,s:o,s:o,s:o,s:i,s:I}", "generator", generator->name, "options",
+                     settings_json(settings), "seed", (json_int_t)seed, "until", stop_json(stop),
+                     "stopped_by", ms_stop_name(r->reason), "input", ms_report_input_json(input), "scores",
+                     ms_report_metrics_json(&r->metrics), "seconds", seconds, "threads", omp_get_max_threads(),
+                     "peak_memory_kb", (json_int_t)usage.ru_maxrss);
+}
