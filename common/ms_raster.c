@@ -10,6 +10,9 @@
 /* Half the diagonal of a voxel: a ball's surface farther from the centre misses the voxel. */
 static const double HALF_DIAGONAL = 0.86602540378443871;
 
+/* Samples on a ball's surface but for rounding belong to it, so that mirror images agree. */
+static const double ON_SURFACE = 1e-9;
+
 /* Sample points per voxel and axis, at -3/8, -1/8, 1/8, 3/8 from the centre: 64 bits in all. */
 enum { SAMPLES = 4, HALF_OF_SAMPLES = 32 };
 
@@ -74,7 +77,7 @@ static uint64_t ball_mask(int *centre, const ms_ball *ball, int i, int j, int k)
     if (away > reach * reach) {
         return 0;
     }
-    const double square = ball->radius * ball->radius;
+    const double square = ball->radius * ball->radius + ON_SURFACE;
     *centre |= away <= square;
     return sample_mask(dx, dy, dz, square);
 }

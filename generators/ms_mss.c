@@ -125,7 +125,7 @@ static ms_status add_candidates(mss *m, const size_t *voxel, size_t count, ms_er
 {
     const size_t first = m->n_candidates;
     if (m->n_candidates + count > m->room) {
-        const size_t room = 2 * (m->n_candidates + count);
+        const size_t room = m->n_candidates + m->n_candidates / 2 + count;
         mss_candidate *grown = realloc(m->candidates, room * sizeof *grown);
         if (!grown) {
             return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu maxima; use fewer cells", room);
@@ -191,22 +191,39 @@ static ms_status accept(ms_clump *clump, ms_stop_reason *reason, mss *m, size_t 
     return MS_OK;
 }
 
-/* Chooses the spheres of a step; a mean of several candidates may have less room than they had. */
+/* The radius at the mean of several maxima: that of E there, if that is less (mss_rule). */
+static int fit_mean(ms_ball *ball, void *context)
+{
+    mss *m = context;
+    const ms_grid *grid = &m->run->target->grid;
+    ms_peak at = {.value = 0};
+    for (int a = 0; a < 3; a++) {
+        at.voxel[a] = (int)rint(ball->centre[a]);
+        at.shift[a] = ball->centre[a] - at.voxel[a];
+    }
+    if (!(m->field.e[ms_grid_index(grid, at.voxel[0], at.voxel[1], at.voxel[2])] > 0)) {
+        return 0;
+    }
+    ball->radius = fmin(ball->radius, ms_peaks_value(&at, m->field.e, grid->n) + option(m, OFFSET));
+    return confine(ball, m);
+}
+
+/* The spheres of a step. Where delta_min is ours to choose, spheres smaller across than it is
+ * wait until it has shrunk: else every speck of noise in a corner, being far from all spheres,
+ * would come early. */
 static size_t choose(ms_ball *chosen, size_t limit, mss *m)
 {
-    /* Where delta_min is ours to choose, spheres smaller across than it is wait until it has shrunk:
-     * else every speck of noise in a corner, being far from all spheres, would come early. */
+    const int automatic = option(m, SPACING) == 0;
     const mss_rule rule = {.spacing = m->spacing,
-                           .least_radius = option(m, SPACING) == 0 ? m->spacing / 2 : 0,
-                           .one_set = option(m, ORDER) == ORDER_GAIN};
-    const size_t taken = mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball,
-                                    m->field.raster.n_balls, &rule, m->run->target);
-    size_t kept = 0;
-    for (size_t c = 0; c < taken; c++) {
-        chosen[kept] = chosen[c];
-        kept += confine(&chosen[kept], m);
-    }
-    return kept;
+                           .least_radius = automatic ? m->spacing / 2 : 0,
+                           .one_set = option(m, ORDER) == ORDER_GAIN,
+                           .may_wait = automatic && m->spacing > 1,
+                           .fit = fit_mean,
+                           .context = m};
+    double centroid[3], unused;
+    ms_target_to_voxels(centroid, &unused, &m->run->target->grid, m->run->target->body.centroid, 0);
+    return mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball, m->field.raster.n_balls,
+                      centroid, &rule);
 }
 
 /* Adds the spheres of a step to S~ and to the clump, and finds the new maxima. */
@@ -255,6 +272,10 @@ static ms_status step(ms_clump *clump, ms_stop_reason *reason, mss *m, ms_error 
 {
     const size_t most = m->run->stop.spheres ? m->run->stop.spheres : MS_CLUMP_MAX_SPHERES;
     const size_t left = most - m->field.raster.n_balls;
+    if (left == 0) { /* as many as a clump can have */
+        *reason = MS_STOP_SPHERES;
+        return MS_OK;
+    }
     const size_t limit = m->n_candidates < left ? m->n_candidates : left;
     ms_ball *chosen = malloc((limit + 1) * sizeof *chosen);
     if (!chosen) {

@@ -27,43 +27,34 @@ static int by_voxel(const void *first, const void *second)
     return a->voxel < b->voxel ? -1 : a->voxel > b->voxel;
 }
 
-/* E between voxels, for a place that is no maximum. */
-static double interpolate(const ms_target *target, const double at[3])
+/* Squared distances from here on keep the spacing: on a lattice many are equal to it but for rounding. */
+static double least_square(double spacing)
 {
-    const ms_grid *grid = &target->grid;
-    int base[3];
-    double part[3], sum = 0;
-    for (int a = 0; a < 3; a++) {
-        base[a] = (int)floor(at[a]);
-        part[a] = at[a] - base[a];
-    }
-    for (int corner = 0; corner < 8; corner++) {
-        const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
-        const double weight = (i ? part[0] : 1 - part[0]) * (j ? part[1] : 1 - part[1]) * (k ? part[2] : 1 - part[2]);
-        if (weight > 0) {
-            sum += weight * (double)target->distance[ms_grid_index(grid, base[0] + i, base[1] + j, base[2] + k)];
-        }
-    }
-    return sum;
+    return spacing * spacing * (1 - 1e-9);
 }
 
-/* The mean of a cluster. Members in one place (a plateau of two voxels, refined) keep their radius. */
-static ms_ball mean_ball(const mss_candidate *cluster, size_t count, const ms_target *target)
+/* The mean of a cluster, with the least radius of its members. */
+static ms_ball mean_ball(const mss_candidate *cluster, size_t count)
 {
     ms_ball mean = {{0, 0, 0}, cluster[0].ball.radius};
-    double spread = 0;
-    for (int a = 0; a < 3; a++) {
-        for (size_t m = 0; m < count; m++) {
+    for (size_t m = 0; m < count; m++) {
+        for (int a = 0; a < 3; a++) {
             mean.centre[a] += cluster[m].ball.centre[a] / (double)count;
         }
-    }
-    for (size_t m = 0; m < count; m++) {
-        spread = fmax(spread, squared_distance(mean.centre, cluster[m].ball.centre));
-    }
-    if (spread > EQUAL) {
-        mean.radius = fmin(mean.radius, interpolate(target, mean.centre));
+        mean.radius = fmin(mean.radius, cluster[m].ball.radius);
     }
     return mean;
+}
+
+/* Refined maxima of a plateau of two voxels stand in one place. */
+static int in_one_place(const mss_candidate *cluster, size_t count)
+{
+    for (size_t m = 1; m < count; m++) {
+        if (squared_distance(cluster[m].ball.centre, cluster[0].ball.centre) > EQUAL) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Moves all that hang together with the first candidate by steps below `spacing` to the
@@ -73,7 +64,7 @@ static size_t gather_cluster(mss_candidate *c, size_t count, double spacing)
     size_t size = 1;
     for (size_t done = 0; done < size; done++) {
         for (size_t m = size; m < count; m++) {
-            if (squared_distance(c[done].ball.centre, c[m].ball.centre) < spacing * spacing) {
+            if (squared_distance(c[done].ball.centre, c[m].ball.centre) < least_square(spacing)) {
                 const mss_candidate swap = c[m];
                 c[m] = c[size];
                 c[size++] = swap;
@@ -120,7 +111,7 @@ static size_t gather_eligible(mss_candidate *c, size_t count, double spacing, do
 {
     size_t size = 0;
     for (size_t m = 0; m < count; m++) {
-        if (c[m].now >= spacing * spacing && c[m].ball.radius >= least_radius) {
+        if (c[m].now >= least_square(spacing) && c[m].ball.radius >= least_radius) {
             const mss_candidate swap = c[m];
             c[m] = c[size];
             c[size++] = swap;
@@ -139,7 +130,7 @@ static int too_close(const ms_ball *ball, const placed *p, double spacing)
 {
     for (size_t s = 0; s < p->n_earlier + p->n_step; s++) {
         const ms_ball *other = s < p->n_earlier ? &p->earlier[s] : &p->step[s - p->n_earlier];
-        if (squared_distance(ball->centre, other->centre) < spacing * spacing) {
+        if (squared_distance(ball->centre, other->centre) < least_square(spacing)) {
             return 1;
         }
     }
@@ -147,10 +138,8 @@ static int too_close(const ms_ball *ball, const placed *p, double spacing)
 }
 
 /* Of equals, the first sphere of all is the one nearest to the centroid. */
-static size_t gather_central(mss_candidate *c, size_t count, const ms_target *target)
+static size_t gather_central(mss_candidate *c, size_t count, const double centroid[3])
 {
-    double centroid[3], unused;
-    ms_target_to_voxels(centroid, &unused, &target->grid, target->body.centroid, 0);
     for (size_t m = 0; m < count; m++) {
         c[m].now = -squared_distance(c[m].ball.centre, centroid);
     }
@@ -161,35 +150,48 @@ static size_t gather_central(mss_candidate *c, size_t count, const ms_target *ta
     return size;
 }
 
-/* Places the first `count` candidates, equals in rank and distance: clusters as their mean.
- * What is placed goes behind p->step. */
+/* Places balls behind p->step that keep their distance. */
+static void place(ms_ball *chosen, size_t *taken, size_t limit, const ms_ball *ball, const placed *p,
+                  const mss_rule *rule)
+{
+    const placed now = {p->earlier, p->step, p->n_earlier, p->n_step + *taken};
+    if (*taken < limit && !too_close(ball, &now, rule->spacing)) {
+        chosen[(*taken)++] = *ball;
+    }
+}
+
+/* Places the first `count` candidates, equals in rank and distance: clusters as their mean. */
 static size_t place_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size_t count, const placed *p,
-                           double spacing, const ms_target *target)
+                           const mss_rule *rule)
 {
     size_t taken = 0;
     qsort(c, count, sizeof *c, by_voxel);
-    for (size_t at = 0; at < count && taken < limit;) {
-        const size_t size = gather_cluster(c + at, count - at, spacing);
-        const placed now = {p->earlier, p->step, p->n_earlier, p->n_step + taken};
-        chosen[taken] = mean_ball(c + at, size, target);
-        taken += !too_close(&chosen[taken], &now, spacing);
-        at += size;
+    for (size_t at = 0, size; at < count && taken < limit; at += size) {
+        size = gather_cluster(c + at, count - at, rule->spacing);
+        ms_ball mean = mean_ball(c + at, size);
+        if (in_one_place(c + at, size) || rule->fit(&mean, rule->context)) {
+            place(chosen, &taken, limit, &mean, p, rule);
+        } else if (!rule->may_wait) {
+            for (size_t m = 0; m < size; m++) {
+                place(chosen, &taken, limit, &c[at + m].ball, p, rule);
+            }
+        }
     }
     return taken;
 }
 
 /* Chooses among candidates of one rank; `chosen` is the end of p.step. */
 static size_t select_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size_t count, placed p,
-                            const mss_rule *rule, const ms_target *target)
+                            const double centroid[3], const mss_rule *rule)
 {
     size_t taken = 0;
     for (size_t s = 0; s < p.n_step; s++) {
         keep_apart_now(c, count, &p.step[s]);
     }
     while ((count = gather_eligible(c, count, rule->spacing, 0)) > 0 && taken < limit && !(rule->one_set && taken)) {
-        const size_t set = p.n_earlier + p.n_step ? gather_farthest(c, count) : gather_central(c, count, target);
-        const size_t placed_now = place_equals(chosen + taken, limit - taken, c, set, &p, rule->spacing, target);
-        c += set; /* placed, or merged into one that is */
+        const size_t set = p.n_earlier + p.n_step ? gather_farthest(c, count) : gather_central(c, count, centroid);
+        const size_t placed_now = place_equals(chosen + taken, limit - taken, c, set, &p, rule);
+        c += set; /* placed, merged into one that is, or waiting */
         count -= set;
         for (size_t s = 0; s < placed_now; s++) {
             keep_apart_now(c, count, &chosen[taken + s]);
@@ -201,7 +203,7 @@ static size_t select_equals(ms_ball *chosen, size_t limit, mss_candidate *c, siz
 }
 
 size_t mss_select(ms_ball *chosen, size_t limit, mss_candidate *candidates, size_t count, const ms_ball *spheres,
-                  size_t n_spheres, const mss_rule *rule, const ms_target *target)
+                  size_t n_spheres, const double centroid[3], const mss_rule *rule)
 {
     size_t taken = 0;
     for (size_t m = 0; m < count; m++) {
@@ -216,7 +218,7 @@ size_t mss_select(ms_ball *chosen, size_t limit, mss_candidate *candidates, size
             to++;
         }
         const placed p = {spheres, chosen, n_spheres, taken};
-        taken += select_equals(chosen + taken, limit - taken, candidates + from, to - from, p, rule, target);
+        taken += select_equals(chosen + taken, limit - taken, candidates + from, to - from, p, centroid, rule);
         from = to;
     }
     return taken;

@@ -3,7 +3,6 @@
 #define MS_MSS_SELECT_H
 
 #include "ms_raster.h"
-#include "ms_target.h"
 
 /** A maximum of E* where a sphere may be placed; in voxels. */
 typedef struct mss_candidate {
@@ -19,6 +18,13 @@ typedef struct mss_rule {
     double spacing;      /* delta_min, in voxels */
     double least_radius; /* smaller ones wait for a later step; in voxels */
     int one_set;         /* only the first set of equals (mirror images of one another) */
+    int may_wait;        /* delta_min will shrink: a set that cannot be placed whole waits for that */
+    /**
+     * Sets the radius of the mean of a cluster, no larger than it has; 0 if there is no room for
+     * a sphere.
+     */
+    int (*fit)(ms_ball *ball, void *context);
+    void *context;
 } mss_rule;
 
 /** Takes note of a new sphere in the distances `apart`. */
@@ -30,15 +36,17 @@ void mss_keep_apart(mss_candidate *candidates, size_t count, const ms_ball *sphe
  * Candidates of equal rank (mirror images; plateaus) are taken farthest from the spheres so
  * far first; the first sphere of all nearest to the target's centroid. Of those that are
  * equally far, those closer than the spacing to one another are replaced by their mean, so that
- * a pair across a plane of symmetry becomes one sphere on it. A symmetric target thus gives
+ * a pair across a plane of symmetry becomes one sphere on it; where the mean has no room (it
+ * may lie in a gap) they wait, or the lowest voxel index wins. A symmetric target thus gives
  * symmetric spheres, unless the limit falls among equals: then the lower voxel index wins.
  *
  * @param[out]    chosen     room for `limit` balls
  * @param[in,out] candidates reordered
  * @param         spheres    those placed before
+ * @param         centroid   of the target, in voxels
  * @return how many were chosen
  */
 size_t mss_select(ms_ball *chosen, size_t limit, mss_candidate *candidates, size_t count, const ms_ball *spheres,
-                  size_t n_spheres, const mss_rule *rule, const ms_target *target);
+                  size_t n_spheres, const double centroid[3], const mss_rule *rule);
 
 #endif

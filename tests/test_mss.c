@@ -123,12 +123,12 @@ static void assert_mirrored(const ms_clump *clump, const ms_target *target, int 
 static void symmetric_targets_give_symmetric_clumps(void **state)
 {
     (void)state;
-    static const char *const KINDS[] = {"ellipsoid", "torus", "cube", "tablet"};
-    static const char *const OPTIONS[] = {"spacing=4", "spacing=0", "order=gain spacing=3"};
+    static const char *const KINDS[] = {"ellipsoid", "torus", "cube", "tablet", "box"};
+    static const char *const OPTIONS[] = {"spacing=4", "spacing=0", "order=gain spacing=3", "confine=on boost=2"};
     for (size_t kind = 0; kind < sizeof KINDS / sizeof *KINDS; kind++) {
         ms_mesh mesh;
         make_shape(&mesh, KINDS[kind], "");
-        for (int cells = 20; cells <= 25; cells += 5) {
+        for (int cells = 18; cells <= 25; cells += 7) {
             ms_target target;
             make_target(&target, &mesh, cells, MS_VOXEL_HALF);
             for (size_t o = 0; o < sizeof OPTIONS / sizeof *OPTIONS; o++) {
@@ -175,6 +175,56 @@ static void two_balls_are_found(void **state)
     }
     ms_clump_free(&o.clump);
     ms_target_free(&target);
+}
+
+/* Two plates with a gap between them, and a bar: the mean of mirrored maxima lies in the gap.
+ * Whatever the number asked for, the run gives it, and prefixes agree. */
+static void gaps_do_not_swallow_spheres(void **state)
+{
+    (void)state;
+    enum { N = 24 };
+    static uint32_t label[N * N * N];
+    for (size_t v = 0; v < N * N * N; v++) {
+        const size_t i = v % N, j = v / N % N, k = v / N / N;
+        const int plates = i >= 4 && i < 20 && j >= 4 && j < 16 && ((k >= 4 && k < 8) || (k >= 10 && k < 14));
+        label[v] = plates || (i >= 4 && i < 20 && j >= 18 && j < 20 && k >= 4 && k < 6);
+    }
+    const ms_volume volume = {.n = {N, N, N}, .spacing = 1, .label = label};
+    static const char *const OPTIONS[] = {"spacing=9", "spacing=7", "spacing=0"};
+    ms_target target;
+    ms_error err;
+    assert_int_equal(ms_target_from_volume(&target, &volume, 0, &err), MS_OK);
+    for (size_t o = 0; o < sizeof OPTIONS / sizeof *OPTIONS; o++) {
+        outcome all = run_mss(&target, at_most(300), OPTIONS[o]);
+        assert_true(all.clump.n_spheres >= 4);
+        for (size_t n = 1; n <= 4; n++) {
+            outcome some = run_mss(&target, at_most(n), OPTIONS[o]);
+            assert_int_equal(some.clump.n_spheres, n);
+            assert_memory_equal(some.clump.sphere, all.clump.sphere, n * sizeof *some.clump.sphere);
+            ms_clump_free(&some.clump);
+        }
+        ms_clump_free(&all.clump);
+    }
+    ms_target_free(&target);
+}
+
+/* Every radius grows by the offset, those of means too. */
+static void offset_reaches_every_sphere(void **state)
+{
+    (void)state;
+    ms_mesh mesh;
+    ms_target target;
+    make_shape(&mesh, "box", "a=3 b=2 c=1");
+    make_target(&target, &mesh, 20, MS_VOXEL_HALF);
+    outcome plain = run_mss(&target, at_most(3), "spacing=4");
+    outcome more = run_mss(&target, at_most(3), "spacing=4 radius-offset=0.5");
+    for (size_t s = 0; s < 3; s++) {
+        assert_close((more.clump.sphere[s].radius - plain.clump.sphere[s].radius) / target.grid.h, 0.5, 1e-9);
+    }
+    ms_clump_free(&plain.clump);
+    ms_clump_free(&more.clump);
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
 }
 
 static void confined_spheres_stay_inside(void **state)
@@ -287,6 +337,8 @@ int main(void)
         cmocka_unit_test(field_equals_recomputation),
         cmocka_unit_test(symmetric_targets_give_symmetric_clumps),
         cmocka_unit_test(two_balls_are_found),
+        cmocka_unit_test(gaps_do_not_swallow_spheres),
+        cmocka_unit_test(offset_reaches_every_sphere),
         cmocka_unit_test(confined_spheres_stay_inside),
         cmocka_unit_test(planes_are_not_crossed),
         cmocka_unit_test(spacing_is_kept),
