@@ -160,6 +160,16 @@ static void transform_plane(uint32_t *plane, const int n[3], const lines *w)
     }
 }
 
+/* The integers on the way become floats, zeros too. */
+static void write_background(float *roots, int width, int n, size_t stride)
+{
+    for (int k = 0; k < n; k++) {
+        for (int c = 0; c < width; c++) {
+            roots[(size_t)k * stride + (size_t)c] = 0;
+        }
+    }
+}
+
 /* The pass along z of all lines with one y, and the roots. `row` is voxel (0, y, 0). */
 static void transform_slice(uint32_t *row, float *roots, const int n[3], const lines *w)
 {
@@ -167,7 +177,8 @@ static void transform_slice(uint32_t *row, float *roots, const int n[3], const l
     for (int i = 0; i < n[0]; i += BLOCK) {
         const int width = block_width(n[0], i);
         if (!transform_block(row + i, width, n[2], stride, w)) {
-            continue; /* 0 is the same bits as an integer and as a float */
+            write_background(roots + i, width, n[2], stride);
+            continue;
         }
         for (int k = 0; k < n[2]; k++) {
             for (int c = 0; c < width; c++) {

@@ -36,16 +36,23 @@ void ms_raster_free(ms_raster *raster)
         free(raster->first);
         free(raster->ball);
         free(raster->tally);
+        free(raster->buried);
         memset(raster, 0, sizeof *raster);
     }
 }
+
+/* Earlier balls that may share a border voxel with each new one, one list behind the other. */
+typedef struct neighbours {
+    size_t *start; /* of each new ball; one more at the end */
+    uint16_t *ball;
+    size_t used, capacity;
+} neighbours;
 
 /* What one thread has to know and to count while it works through planes. */
 typedef struct worker {
     ms_raster *raster;
     size_t from;                    /* the first new ball */
-    const size_t *neighbour_start;  /* of each new ball, into neighbour */
-    const uint16_t *neighbour;      /* earlier balls whose border voxels it may share */
+    const neighbours *neighbours; /* earlier balls whose border voxels each new one may share */
     ms_tally *tally;                /* of the new balls */
     int lo[3], hi[3];               /* box of what was covered */
 } worker;
@@ -92,9 +99,9 @@ static int covers_half(const worker *w, size_t b, int i, int j, int k)
     if (mask == 0 && !centre) {
         return 0; /* nothing new in this voxel */
     }
-    const size_t *range = w->neighbour_start + (b - w->from);
+    const size_t *range = w->neighbours->start + (b - w->from);
     for (size_t at = range[0]; at < range[1] && __builtin_popcountll(mask) <= HALF_OF_SAMPLES; at++) {
-        mask |= ball_mask(&centre, &w->raster->ball[w->neighbour[at]], i, j, k);
+        mask |= ball_mask(&centre, &w->raster->ball[w->neighbours->ball[at]], i, j, k);
     }
     return __builtin_popcountll(mask) + centre > HALF_OF_SAMPLES;
 }
@@ -194,42 +201,60 @@ static void cover_plane(worker *w, size_t b, int k)
     }
 }
 
-/* For each new ball, the earlier ones that may share a border voxel with it. */
-static ms_status find_neighbours(size_t **start, uint16_t **neighbour, const ms_raster *raster, size_t from,
-                                 ms_error *err)
+static int add_neighbour(neighbours *list, size_t ball)
 {
-    const size_t count = raster->n_balls - from;
-    size_t capacity = 16 * count + 16, used = 0;
-    *start = malloc((count + 1) * sizeof **start);
-    *neighbour = malloc(capacity * sizeof **neighbour);
-    for (size_t b = from; *start && *neighbour && b < raster->n_balls; b++) {
-        const ms_ball *ball = &raster->ball[b];
-        (*start)[b - from] = used;
-        for (size_t other = 0; other < b; other++) {
-            const ms_ball *o = &raster->ball[other];
-            const double dx = o->centre[0] - ball->centre[0], dy = o->centre[1] - ball->centre[1];
-            const double dz = o->centre[2] - ball->centre[2];
-            const double reach = o->radius + ball->radius + 2 * HALF_DIAGONAL;
-            if (dx * dx + dy * dy + dz * dz > reach * reach) {
-                continue;
-            }
-            if (used == capacity) {
-                uint16_t *grown = realloc(*neighbour, (capacity *= 2) * sizeof *grown);
-                if (!grown) {
-                    free(*neighbour);
-                }
-                *neighbour = grown;
-                if (!grown) {
-                    break;
-                }
-            }
-            (*neighbour)[used++] = (uint16_t)other;
+    if (list->used == list->capacity) {
+        const size_t capacity = 2 * list->capacity + 256;
+        uint16_t *grown = realloc(list->ball, capacity * sizeof *grown);
+        if (!grown) {
+            return 0;
+        }
+        list->ball = grown;
+        list->capacity = capacity;
+    }
+    list->ball[list->used++] = (uint16_t)ball;
+    return 1;
+}
+
+/* Lists the neighbours of one ball. One that lies within another covers nothing of its own and
+ * is buried: it gets no list and stands in none. @return 0 without memory */
+static int list_neighbours(neighbours *list, ms_raster *raster, size_t b)
+{
+    const ms_ball *ball = &raster->ball[b];
+    const size_t before = list->used;
+    for (size_t other = 0; other < b; other++) {
+        const ms_ball *o = &raster->ball[other];
+        const double dx = o->centre[0] - ball->centre[0], dy = o->centre[1] - ball->centre[1];
+        const double dz = o->centre[2] - ball->centre[2], away = dx * dx + dy * dy + dz * dz;
+        const double reach = o->radius + ball->radius + 2 * HALF_DIAGONAL, depth = o->radius - ball->radius;
+        if (raster->buried[other] || away > reach * reach) {
+            continue;
+        }
+        if (depth >= 0 && away <= depth * depth) {
+            raster->buried[b] = 1;
+            list->used = before;
+            return 1;
+        }
+        if (!add_neighbour(list, other)) {
+            return 0;
         }
     }
-    if (!*start || !*neighbour) {
+    return 1;
+}
+
+static ms_status find_neighbours(neighbours *list, ms_raster *raster, size_t from, ms_error *err)
+{
+    const size_t count = raster->n_balls - from;
+    *list = (neighbours){.start = malloc((count + 1) * sizeof *list->start)};
+    int complete = list->start != NULL;
+    for (size_t b = from; complete && b < raster->n_balls; b++) {
+        list->start[b - from] = list->used;
+        complete = list_neighbours(list, raster, b);
+    }
+    if (!complete) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the neighbours of %zu spheres", count);
     }
-    (*start)[count] = used;
+    list->start[count] = list->used;
     return MS_OK;
 }
 
@@ -253,13 +278,16 @@ static ms_status append(ms_raster *raster, const ms_ball *balls, size_t count, m
         raster->ball = ball ? ball : raster->ball;
         ms_tally *tally = ball ? realloc(raster->tally, capacity * sizeof *tally) : NULL;
         raster->tally = tally ? tally : raster->tally;
-        if (!ball || !tally) {
+        uint8_t *buried = tally ? realloc(raster->buried, capacity) : NULL;
+        raster->buried = buried ? buried : raster->buried;
+        if (!buried) {
             return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", needed);
         }
         raster->capacity = capacity;
     }
     memcpy(raster->ball + raster->n_balls, balls, count * sizeof *balls);
     memset(raster->tally + raster->n_balls, 0, count * sizeof *raster->tally);
+    memset(raster->buried + raster->n_balls, 0, count);
     raster->n_balls = needed;
     return MS_OK;
 }
@@ -288,8 +316,7 @@ static void merge(ms_raster *raster, const worker *w)
     }
 }
 
-static ms_status cover(ms_raster *raster, size_t first_new, const size_t *start, const uint16_t *neighbour,
-                       ms_error *err)
+static ms_status cover(ms_raster *raster, size_t first_new, const neighbours *list, ms_error *err)
 {
     int from, to, out_of_memory = 0;
     plane_range(&from, &to, raster, first_new);
@@ -299,14 +326,16 @@ static ms_status cover(ms_raster *raster, size_t first_new, const size_t *start,
     }
 #pragma omp parallel reduction(| : out_of_memory)
     {
-        worker w = {.raster = raster, .from = first_new, .neighbour_start = start, .neighbour = neighbour,
+        worker w = {.raster = raster, .from = first_new, .neighbours = list,
                     .lo = {INT_MAX, INT_MAX, INT_MAX}, .hi = {INT_MIN, INT_MIN, INT_MIN}};
         w.tally = calloc(raster->n_balls - first_new, sizeof *w.tally);
         out_of_memory = !w.tally;
 #pragma omp for schedule(dynamic, 1)
         for (int k = from; k < to; k++) {
             for (size_t b = first_new; w.tally && b < raster->n_balls; b++) {
-                cover_plane(&w, b, k);
+                if (!raster->buried[b]) {
+                    cover_plane(&w, b, k);
+                }
             }
         }
         if (w.tally) {
@@ -325,8 +354,7 @@ static ms_status cover(ms_raster *raster, size_t first_new, const size_t *start,
 ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err)
 {
     const size_t first_new = raster->n_balls;
-    size_t *start = NULL;
-    uint16_t *neighbour = NULL;
+    neighbours list = {0};
     memset(raster->lo, 0, sizeof raster->lo);
     memset(raster->hi, 0, sizeof raster->hi);
     if (count == 0) {
@@ -334,12 +362,12 @@ ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, m
     }
     ms_status status = append(raster, balls, count, err);
     if (status == MS_OK) {
-        status = find_neighbours(&start, &neighbour, raster, first_new, err);
+        status = find_neighbours(&list, raster, first_new, err);
     }
     if (status == MS_OK) {
-        status = cover(raster, first_new, start, neighbour, err);
+        status = cover(raster, first_new, &list, err);
     }
-    free(start);
-    free(neighbour);
+    free(list.start);
+    free(list.ball);
     return status;
 }

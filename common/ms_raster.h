@@ -28,6 +28,7 @@ typedef struct ms_raster {
     uint16_t *first; /* one per voxel of the grid */
     size_t n_balls, capacity;
     ms_ball *ball;
+    uint8_t *buried; /* one per ball: 1 if it lies within an earlier one */
     ms_tally *tally; /* one per ball: sums over the voxels that it is the first to cover */
     int lo[3], hi[3]; /* box lo <= (i,j,k) < hi of the voxels that the last ms_raster_add covered; empty: lo = hi */
 } ms_raster;
@@ -48,6 +49,8 @@ ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule 
  *
  * Parts of spheres beyond the grid are not counted: use a grid that holds them
  * (ms_grid_enlarge).
+ *
+ * After a failure the raster is of no more use but to be freed.
  *
  * @return MS_OK; MS_ERR_ARG for a radius or place that is not finite or a radius below 0;
  *         MS_ERR_LIMIT above MS_CLUMP_MAX_SPHERES; MS_ERR_NOMEM

@@ -40,7 +40,7 @@ static double squared_distance(const double a[3], const double b[3])
     return x * x + y * y + z * z;
 }
 
-/* The spheres that may hide a part of sphere s, as indices; all others, if one holds it whole. */
+/* The spheres that may hide a part of sphere s, as indices. */
 static size_t find_neighbours(uint32_t *neighbour, const ms_clump *clump, size_t s)
 {
     const ms_sphere *sphere = &clump->sphere[s];

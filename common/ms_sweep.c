@@ -206,7 +206,30 @@ static void cover_beyond(int32_t *row, const sweep *s, int32_t at, int weight)
     row[voxel + 1] += weight * part;
 }
 
-/* Sorts the crossings by ray, and those of a ray along it: they are few. */
+static int by_place(const void *first, const void *second)
+{
+    const crossing *a = first, *b = second;
+    return (a->at > b->at) - (a->at < b->at);
+}
+
+/* Crossings of one ray; their order at one place does not matter. They are few, but for heaps of bodies. */
+static void sort_along(crossing *c, size_t count)
+{
+    if (count > 16) {
+        qsort(c, count, sizeof *c, by_place);
+        return;
+    }
+    for (size_t m = 1; m < count; m++) {
+        const crossing here = c[m];
+        size_t to = m;
+        for (; to > 0 && c[to - 1].at > here.at; to--) {
+            c[to] = c[to - 1];
+        }
+        c[to] = here;
+    }
+}
+
+/* Sorts the crossings by ray, and those of a ray along it. */
 static void sort_crossings(plane_work *w, size_t rays)
 {
     memset(w->start, 0, (rays + 1) * sizeof *w->start);
@@ -221,13 +244,8 @@ static void sort_crossings(plane_work *w, size_t rays)
     }
     memmove(w->start, w->start + 1, rays * sizeof *w->start);
     w->start[rays] = (uint32_t)w->count;
-    for (size_t m = 1; m < w->count; m++) {
-        const crossing here = w->sorted[m];
-        size_t to = m;
-        for (; to > 0 && w->sorted[to - 1].ray == here.ray && w->sorted[to - 1].at > here.at; to--) {
-            w->sorted[to] = w->sorted[to - 1];
-        }
-        w->sorted[to] = here;
+    for (size_t ray = 0; ray < rays; ray++) {
+        sort_along(w->sorted + w->start[ray], w->start[ray + 1] - w->start[ray]);
     }
 }
 

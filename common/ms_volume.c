@@ -7,7 +7,8 @@
 
 typedef struct format {
     const char *ending;
-    ms_status (*parse)(ms_volume *volume, const ms_bytes *bytes, const char *path, ms_error *err);
+    ms_status (*parse)(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+                                ms_error *err);
 } format;
 
 static const format *find_format(const char *path)
@@ -34,7 +35,7 @@ int ms_volume_is_volume_path(const char *path)
     return find_format(path) != NULL;
 }
 
-ms_status ms_volume_read(ms_volume *volume, const char *path, ms_error *err)
+ms_status ms_volume_read(ms_volume *volume, const char *path, size_t max_voxels, ms_error *err)
 {
     ms_bytes bytes;
     const format *found = find_format(path);
@@ -50,7 +51,7 @@ ms_status ms_volume_read(ms_volume *volume, const char *path, ms_error *err)
     if (bytes.size == 0) {
         status = ms_fail(err, MS_ERR_FORMAT, "%s: is empty (0 bytes); save the volume again", path);
     } else {
-        status = found->parse(volume, &bytes, path, err);
+        status = found->parse(volume, &bytes, path, max_voxels, err);
     }
     ms_bytes_free(&bytes);
     return status;

@@ -23,9 +23,10 @@ typedef struct ms_volume {
  * [x][y][z] (Fortran order).
  *
  * @param[out] volume the caller frees it; empty on failure
+ * @param      max_voxels more are refused before they are unpacked; SIZE_MAX: any number
  * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_SHAPE without a label; MS_ERR_LIMIT; MS_ERR_NOMEM
  */
-ms_status ms_volume_read(ms_volume *volume, const char *path, ms_error *err);
+ms_status ms_volume_read(ms_volume *volume, const char *path, size_t max_voxels, ms_error *err);
 
 /** Nonzero if the path ends like a volume that ms_volume_read takes. */
 int ms_volume_is_volume_path(const char *path);

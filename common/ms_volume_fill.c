@@ -9,9 +9,9 @@
 /* Spacings that programs have written with six digits still count as equal. */
 #define CUBE_TOLERANCE 1e-5
 
-ms_volume_header ms_volume_header_start(void)
+ms_volume_header ms_volume_header_start(size_t max_voxels)
 {
-    return (ms_volume_header){.spacing = {1.0, 1.0, 1.0}};
+    return (ms_volume_header){.spacing = {1.0, 1.0, 1.0}, .max_voxels = max_voxels};
 }
 
 ms_status ms_volume_data_size(size_t *size, const ms_volume_header *header, const char *path, ms_error *err)
@@ -30,6 +30,10 @@ ms_status ms_volume_data_size(size_t *size, const ms_volume_header *header, cons
                 path, (long long)n[0], (long long)n[1], (long long)n[2]);
         }
         product *= (size_t)n[axis];
+    }
+    if (product > header->max_voxels) {
+        return ms_fail(err, MS_ERR_LIMIT, "%s: its %lld x %lld x %lld voxels are more than the %zu allowed; crop it, or "
+            "allow more memory", path, (long long)n[0], (long long)n[1], (long long)n[2], header->max_voxels);
     }
     *size = product * header->sample.size;
     return MS_OK;

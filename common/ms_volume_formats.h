@@ -11,11 +11,15 @@
  * @param[out] volume the caller frees it; empty on failure
  * @param      bytes  of the file, with the 0 byte behind them
  * @param      path   for messages, and the folder of a separate data file
+ * @param      max_voxels more are refused before they are unpacked
  * @return as ms_volume_read
  */
-ms_status ms_volume_parse_npy(ms_volume *volume, const ms_bytes *bytes, const char *path, ms_error *err);
-ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const char *path, ms_error *err);
-ms_status ms_volume_parse_nrrd(ms_volume *volume, const ms_bytes *bytes, const char *path, ms_error *err);
+ms_status ms_volume_parse_npy(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+                                ms_error *err);
+ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+                                ms_error *err);
+ms_status ms_volume_parse_nrrd(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+                                ms_error *err);
 
 typedef enum ms_sample_kind { MS_SAMPLE_BOOL, MS_SAMPLE_UNSIGNED, MS_SAMPLE_SIGNED, MS_SAMPLE_FLOAT } ms_sample_kind;
 
@@ -35,10 +39,11 @@ typedef struct ms_volume_header {
     ms_sample sample;
     int big_endian;
     ms_volume_coding coding;
+    size_t max_voxels;
 } ms_volume_header;
 
 /** Nothing known but what the formats say of a missing field: spacing 1, origin 0, raw, little endian. */
-ms_volume_header ms_volume_header_start(void);
+ms_volume_header ms_volume_header_start(size_t max_voxels);
 
 /**
  * Checks the header against the bytes of its voxels and turns them into labels.

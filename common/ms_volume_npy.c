@@ -227,7 +227,8 @@ static ms_status find_header(size_t *start, size_t *end, const ms_bytes *bytes, 
     return MS_OK;
 }
 
-ms_status ms_volume_parse_npy(ms_volume *volume, const ms_bytes *bytes, const char *path, ms_error *err)
+ms_status ms_volume_parse_npy(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+                                ms_error *err)
 {
     size_t start = 0;
     size_t end = 0;
@@ -238,7 +239,7 @@ ms_status ms_volume_parse_npy(ms_volume *volume, const ms_bytes *bytes, const ch
     }
     const char *file = (const char *)bytes->data;
     dictionary dict = {.start = file, .at = file + start, .end = file + end, .path = path};
-    dict.header = ms_volume_header_start();
+    dict.header = ms_volume_header_start(max_voxels);
     status = parse_dictionary(&dict, err);
     if (status) {
         return status;

@@ -315,11 +315,12 @@ static ms_status fill(ms_volume *volume, const nrrd *image, const uint8_t *data,
     return ms_volume_fill(volume, &image->header, data + skip, size - skip, path, err);
 }
 
-ms_status ms_volume_parse_nrrd(ms_volume *volume, const ms_bytes *bytes, const char *path, ms_error *err)
+ms_status ms_volume_parse_nrrd(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+                                ms_error *err)
 {
     ms_text text;
     ms_bytes beside = {0};
-    nrrd image = {.header = ms_volume_header_start()};
+    nrrd image = {.header = ms_volume_header_start(max_voxels)};
     *volume = (ms_volume){0};
     ms_text_start(&text, bytes, path);
     ms_status status = parse_header(&image, &text, err);

@@ -334,7 +334,7 @@ static int work(const ms_command *command, const arguments *a)
     ms_input input;
     ms_result r;
     memset(&r, 0, sizeof r);
-    ms_status status = ms_input_read(&input, a->shape, &err);
+    ms_status status = ms_input_read(&input, a->shape, &a->input, &err);
     if (status != MS_OK) {
         return ms_fail_command(command, &err);
     }

@@ -174,7 +174,7 @@ static int run(const ms_command *command, int argc, char **argv)
     if (argc - first != 1) {
         return ms_wrong_usage(command, "takes one shape");
     }
-    ms_status status = ms_input_read(&input, argv[first], &err);
+    ms_status status = ms_input_read(&input, argv[first], &a.input, &err);
     if (status != MS_OK) {
         return ms_fail_command(command, &err);
     }

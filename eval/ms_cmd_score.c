@@ -92,7 +92,7 @@ static int run(const ms_command *command, int argc, char **argv)
     if (status != MS_OK) {
         return ms_fail_command(command, &err);
     }
-    status = ms_input_read(&input, a.target, &err);
+    status = ms_input_read(&input, a.target, &a.input, &err);
     if (status == MS_OK) {
         status = ms_input_target(&input, &a.input, &err);
         if (status == MS_OK) {

@@ -50,7 +50,7 @@ int ms_flags_parse(int *first_word, const ms_command *command, int generator_opt
 /** Prints "mskit NAME: message" to stderr. @return EXIT_FAILED */
 int ms_fail_command(const ms_command *command, const ms_error *err);
 
-/** The same with a hint at --help. @return EXIT_USAGE */
+/** The same with the usage of the command. @return EXIT_USAGE */
 int ms_wrong_usage(const ms_command *command, const char *message);
 
 /** A number that the user wrote. @return MS_OK; MS_ERR_ARG if it is none from lo to hi */

@@ -137,7 +137,7 @@ static ms_status read_mesh(ms_input *input, ms_error *err)
     return MS_OK;
 }
 
-ms_status ms_input_read(ms_input *input, const char *path, ms_error *err)
+ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err)
 {
     ms_bytes bytes;
     const double start = omp_get_wtime();
@@ -158,7 +158,7 @@ ms_status ms_input_read(ms_input *input, const char *path, ms_error *err)
                        ".npy, .mhd, .mha, .nrrd and .nhdr",
                        path);
     }
-    status = ms_volume_is_volume_path(path) ? ms_volume_read(&input->volume, path, err) : read_mesh(input, err);
+    status = ms_volume_is_volume_path(path) ? ms_volume_read(&input->volume, path, ms_input_max_voxels(flags), err) : read_mesh(input, err);
     input->read_seconds = omp_get_wtime() - start;
     if (status != MS_OK) {
         ms_input_free(input);

@@ -47,7 +47,7 @@ typedef struct ms_input {
 } ms_input;
 
 /** Reads a mesh or a volume; mends a mesh. What was mended is said on stderr. */
-ms_status ms_input_read(ms_input *input, const char *path, ms_error *err);
+ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err);
 
 /** Refuses flags that do not apply to what was read. @return MS_OK; MS_ERR_ARG */
 ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flags, ms_error *err);

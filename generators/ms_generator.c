@@ -30,6 +30,9 @@ ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_gen
     const ms_stop *stop = &run->stop;
     memset(clump, 0, sizeof *clump);
     *reason = MS_STOP_NOT;
+    if (!run->target || !run->settings || run->settings->options != generator->options) {
+        return ms_fail(err, MS_ERR_ARG, "%s needs a target and the settings of its own options", generator->name);
+    }
     if (ms_stop_is_none(stop)) {
         return ms_fail(err, MS_ERR_ARG, "nothing says when to stop; give a number of spheres or a measure");
     }

@@ -49,7 +49,7 @@ const ms_generator *ms_generator_find(const char *name, ms_error *err);
  * Runs a generator: checks what every generator would have to check, then calls it.
  *
  * @return MS_OK with at least one sphere; MS_ERR_ARG if nothing ends the run (no stop rule);
- *         MS_ERR_SHAPE if no sphere could be placed (the message says which rule was in the way)
+ *         MS_ERR_SHAPE if no sphere could be placed (the message names what ended the run)
  */
 ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
                            const ms_run *run, ms_error *err);

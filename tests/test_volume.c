@@ -8,7 +8,7 @@ static void expect_refused(const char *path, ms_status status, const char *messa
 {
     ms_volume volume;
     ms_error err = {{0}};
-    assert_int_equal(ms_volume_read(&volume, path, &err), status);
+    assert_int_equal(ms_volume_read(&volume, path, SIZE_MAX, &err), status);
     expect_message(&err, path);
     expect_message(&err, message);
     assert_null(volume.label);
@@ -54,7 +54,7 @@ static void data_beside_a_header_are_read(void **state)
         ms_volume volume;
         write_file(raw, folder, "my voxels.raw", voxels.data, voxels.size);
         write_file(path, folder, headers[i][0], headers[i][1], strlen(headers[i][1]));
-        assert_int_equal(ms_volume_read(&volume, path, NULL), MS_OK);
+        assert_int_equal(ms_volume_read(&volume, path, SIZE_MAX, NULL), MS_OK);
         assert_true(volume.n[0] == NX && volume.n[1] == NY && volume.n[2] == NZ && volume.spacing == 0.5);
         assert_true(volume.origin[0] == 1.0 && volume.origin[1] == 2.0 && volume.origin[2] == 3.0);
         assert_int_equal(volume.label[7], known_label(7, 100));
@@ -81,7 +81,7 @@ static void shared_volumes_are_the_same(void **state)
         uint32_t largest = 0;
         snprintf(name, sizeof name, "nmc_ct_labels.%s", endings[i]);
         shared_path(path, name);
-        if (ms_volume_read(&volume, path, &err) != MS_OK) {
+        if (ms_volume_read(&volume, path, SIZE_MAX, &err) != MS_OK) {
             fail_msg("%s", err.text);
         }
         assert_true(volume.n[0] == 128 && volume.n[1] == 128 && volume.n[2] == 128 && volume.spacing == 1.0);

@@ -7,7 +7,8 @@
 
 enum { NX = 2, NY = 3, NZ = 4, N_VOXELS = NX * NY * NZ };
 
-typedef ms_status volume_parser(ms_volume *volume, const ms_bytes *bytes, const char *path, ms_error *err);
+typedef ms_status volume_parser(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+                                ms_error *err);
 
 /* No symmetry that would hide two axes in the wrong order; fits into a bool where asked. */
 static inline uint32_t known_label(int i, uint32_t largest)
@@ -34,7 +35,7 @@ static inline ms_status parse_volume(
     ms_volume *volume, volume_parser *parse, const sample *from, const char *path, ms_error *err)
 {
     ms_bytes bytes = copy_bytes(from->data, from->size);
-    ms_status status = parse(volume, &bytes, path, err);
+    ms_status status = parse(volume, &bytes, path, SIZE_MAX, err);
     ms_bytes_free(&bytes);
     return status;
 }

@@ -5,7 +5,8 @@
 #include "fuzz.h"
 #include "ms_volume_formats.h"
 
-typedef ms_status fuzz_volume_parser(ms_volume *volume, const ms_bytes *bytes, const char *path, ms_error *err);
+typedef ms_status fuzz_volume_parser(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+                                ms_error *err);
 
 static inline void fuzz_check_volume(const ms_volume *volume)
 {
@@ -27,7 +28,7 @@ static inline int fuzz_volume(fuzz_volume_parser *parse, const uint8_t *data, si
     ms_volume volume;
     ms_error err = {{0}};
     ms_bytes bytes = fuzz_bytes(data, size);
-    ms_status status = parse(&volume, &bytes, "fuzz", &err);
+    ms_status status = parse(&volume, &bytes, "fuzz", SIZE_MAX, &err);
     if (status == MS_OK) {
         fuzz_check_volume(&volume);
     } else {
