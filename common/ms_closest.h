@@ -4,6 +4,8 @@
 
 #include "ms_mesh.h"
 
+MS_C_BEGIN
+
 /** Opaque; read-only after building, so that threads may share one. */
 typedef struct ms_closest ms_closest;
 
@@ -36,5 +38,7 @@ double ms_closest_distance(double nearest[3], const ms_closest *closest, const d
 double ms_closest_signed_distance(const ms_closest *closest, const double point[3]);
 
 void ms_closest_free(ms_closest *closest);
+
+MS_C_END
 
 #endif

@@ -6,6 +6,8 @@
 
 #include "ms_error.h"
 
+MS_C_BEGIN
+
 /* First-cover indices are 16 bits wide, and 65535 says "none". */
 enum { MS_CLUMP_MAX_SPHERES = 65534 };
 
@@ -48,5 +50,7 @@ double ms_clump_smallest_radius(const ms_clump *clump);
 ms_status ms_clump_read(ms_clump *clump, const char *path, ms_error *err);
 
 void ms_clump_free(ms_clump *clump);
+
+MS_C_END
 
 #endif

@@ -6,6 +6,8 @@
 
 #include "ms_error.h"
 
+MS_C_BEGIN
+
 /**
  * Distance, in voxels, from each voxel's centre to the nearest background voxel's centre:
  * 0 in the background, INFINITY throughout if there is no background at all. Each value is
@@ -21,5 +23,7 @@
  * Cost: O(voxels), two sweeps over memory; all cores; the same bits at any number of threads.
  */
 ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms_error *err);
+
+MS_C_END
 
 #endif

@@ -2,6 +2,17 @@
 #ifndef MS_ERROR_H
 #define MS_ERROR_H
 
+/* Public headers serve C++ too, as most DEM engines are written in it. */
+#ifdef __cplusplus
+#define MS_C_BEGIN extern "C" {
+#define MS_C_END }
+#else
+#define MS_C_BEGIN
+#define MS_C_END
+#endif
+
+MS_C_BEGIN
+
 /* The one list from which the codes and their texts are made. */
 #define MS_STATUS_LIST(X)                                  \
     X(MS_OK, "success")                                    \
@@ -40,5 +51,7 @@ const char *ms_status_text(ms_status status);
  * @param      format as printf; cut at the size of the message
  */
 ms_status ms_fail(ms_error *err, ms_status status, const char *format, ...) MS_PRINTF(3, 4);
+
+MS_C_END
 
 #endif

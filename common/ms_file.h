@@ -7,6 +7,8 @@
 
 #include "ms_error.h"
 
+MS_C_BEGIN
+
 /** The bytes of a file, with a 0 byte behind the last so that text can be scanned. */
 typedef struct ms_bytes {
     uint8_t *data;
@@ -45,5 +47,7 @@ ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err);
 
 /** The ending of a path after its last dot, in lower case; "" if none or too long for `out`. */
 void ms_file_ending(char out[16], const char *path);
+
+MS_C_END
 
 #endif

@@ -7,6 +7,8 @@
 
 #include "ms_error.h"
 
+MS_C_BEGIN
+
 /* Layers of background around the shape (MSS eq. 6). */
 enum { MS_GRID_HULL = 2 };
 
@@ -55,5 +57,7 @@ ms_status ms_grid_enlarge(ms_grid *out, const ms_grid *grid, const double lo[3],
 size_t ms_grid_count(const ms_grid *grid);
 
 void ms_grid_free(ms_grid *grid);
+
+MS_C_END
 
 #endif

@@ -4,6 +4,8 @@
 
 #include "ms_mesh.h"
 
+MS_C_BEGIN
+
 /** A body of unit density: mass = volume. */
 typedef struct ms_body {
     double volume;
@@ -49,5 +51,7 @@ double ms_mesh_area(const ms_mesh *mesh);
  * @return MS_OK; MS_ERR_ARG if an element is not finite
  */
 ms_status ms_inertia_principal(ms_principal *principal, const ms_body *body, ms_error *err);
+
+MS_C_END
 
 #endif

@@ -7,6 +7,8 @@
 
 #include "ms_error.h"
 
+MS_C_BEGIN
+
 /** Indexed triangles. A zeroed struct is an empty mesh. */
 typedef struct ms_mesh {
     size_t n_vertices;
@@ -67,5 +69,7 @@ ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err);
 
 /** Frees the arrays and empties the struct; NULL is allowed. */
 void ms_mesh_free(ms_mesh *mesh);
+
+MS_C_END
 
 #endif

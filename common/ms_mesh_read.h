@@ -4,6 +4,8 @@
 
 #include "ms_mesh.h"
 
+MS_C_BEGIN
+
 /**
  * Reads a mesh, in double precision, strictly: a file that does not say exactly one mesh is
  * refused. The format comes from the ending (.stl .obj .ply .off). Polygons are cut into
@@ -21,5 +23,7 @@ ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err);
 
 /** Nonzero if the path ends like a mesh that ms_mesh_read takes. */
 int ms_mesh_is_mesh_path(const char *path);
+
+MS_C_END
 
 #endif

@@ -4,6 +4,8 @@
 
 #include "ms_mesh.h"
 
+MS_C_BEGIN
+
 /**
  * Writes a mesh to a temporary name beside `path` and renames it there when it is whole.
  * STL holds single precision; the text formats restore the doubles.
@@ -13,5 +15,7 @@
  *         STL; MS_ERR_LIMIT; MS_ERR_NOMEM; MS_ERR_IO
  */
 ms_status ms_mesh_write(const ms_mesh *mesh, const char *path, ms_error *err);
+
+MS_C_END
 
 #endif

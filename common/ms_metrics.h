@@ -5,6 +5,8 @@
 #include "ms_clump.h"
 #include "ms_target.h"
 
+MS_C_BEGIN
+
 /** Measures of S (target) and U (union) on the grid. */
 typedef struct ms_score {
     double eta;        /* sum |S-U| / sum S          MSS eq. 7 */
@@ -56,5 +58,7 @@ typedef struct ms_metrics {
  */
 ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
                              size_t max_voxels, ms_error *err);
+
+MS_C_END
 
 #endif

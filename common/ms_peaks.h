@@ -7,6 +7,8 @@
 
 #include "ms_error.h"
 
+MS_C_BEGIN
+
 /** A local maximum, refined along each axis. */
 typedef struct ms_peak {
     int voxel[3];    /* (i*, j*, k*): the maximum at voxel resolution */
@@ -45,5 +47,7 @@ void ms_peaks_refine(ms_peak *peak, const float *field, const int n[3], size_t v
  * field falls away from a ridge on both sides; of the three axes the largest (eq. 24).
  */
 double ms_peaks_value(const ms_peak *peak, const float *field, const int n[3]);
+
+MS_C_END
 
 #endif

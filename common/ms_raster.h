@@ -9,6 +9,8 @@
 #include "ms_tally.h"
 #include "ms_voxelize.h"
 
+MS_C_BEGIN
+
 /* First-cover index of a voxel that no sphere covers. */
 #define MS_RASTER_NONE UINT16_MAX
 
@@ -59,5 +61,7 @@ ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule 
 ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err);
 
 void ms_raster_free(ms_raster *raster);
+
+MS_C_END
 
 #endif

@@ -4,6 +4,8 @@
 
 #include "ms_mesh.h"
 
+MS_C_BEGIN
+
 /** One parameter of a kind of shape: the name that the user writes, its range, a help text. */
 typedef struct ms_shape_parameter {
     const char *name;
@@ -43,5 +45,7 @@ const ms_shape_kind *ms_shape_find(const char *name, ms_error *err);
  * @return MS_OK; MS_ERR_ARG if a value is out of range or two contradict; MS_ERR_NOMEM
  */
 ms_status ms_shape_make(ms_mesh *mesh, const ms_shape_kind *kind, const double *value, ms_error *err);
+
+MS_C_END
 
 #endif

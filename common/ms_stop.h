@@ -7,6 +7,8 @@
 #include "ms_metrics.h"
 #include "ms_target.h"
 
+MS_C_BEGIN
+
 /* Why a run ended; the names are those that --until takes. */
 #define MS_STOP_LIST(X)      \
     X(MS_STOP_NOT, "not")    \
@@ -55,5 +57,7 @@ ms_status ms_stop_set(ms_stop *stop, const char *measure, double value, ms_error
  * @return the first reason in the order of the list; MS_STOP_NOT
  */
 ms_stop_reason ms_stop_reached(const ms_stop *stop, const ms_target *target, const ms_tally *sum, size_t n);
+
+MS_C_END
 
 #endif

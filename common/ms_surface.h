@@ -5,6 +5,8 @@
 #include "ms_clump.h"
 #include "ms_target.h"
 
+MS_C_BEGIN
+
 /** Distances over a surface, counted 0 where it does not stand out. */
 typedef struct ms_standout {
     double max; /* largest */
@@ -30,5 +32,7 @@ ms_status ms_surface_protrusion(ms_standout *out, const ms_target *target, const
  * @return MS_OK; MS_ERR_NOMEM. Cost: O(samples * n); threads as above.
  */
 ms_status ms_surface_gap(ms_standout *out, const ms_target *target, const ms_clump *clump, ms_error *err);
+
+MS_C_END
 
 #endif

@@ -7,6 +7,8 @@
 #include "ms_grid.h"
 #include "ms_inertia.h"
 
+MS_C_BEGIN
+
 /** Sums over a set of voxels; exact, in voxel indices. */
 typedef struct ms_tally {
     int64_t inside;    /* voxels inside the target */
@@ -20,5 +22,7 @@ void ms_tally_add(ms_tally *sum, const ms_tally *part);
 
 /** Volume, centroid and inertia of the voxels as cubes of unit density; zeros if there are none. */
 void ms_tally_body(ms_body *body, const ms_tally *sum, const ms_grid *grid);
+
+MS_C_END
 
 #endif

@@ -109,9 +109,7 @@ ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed
     return status;
 }
 
-/* The box lo <= (i,j,k) < hi of a label (0: any); how many labels there are is known to be
- * one if *other stays 0. */
-static int label_box(int lo[3], int hi[3], uint32_t *other, const ms_volume *volume, uint32_t label)
+int ms_target_label_box(int lo[3], int hi[3], uint32_t *other, const ms_volume *volume, uint32_t label)
 {
     const uint32_t *at = volume->label;
     uint32_t seen = label;
@@ -161,7 +159,7 @@ ms_status ms_target_from_volume(ms_target *target, const ms_volume *volume, uint
     double origin[3];
     uint32_t other;
     memset(target, 0, sizeof *target);
-    if (!label_box(lo, hi, &other, volume, label)) {
+    if (!ms_target_label_box(lo, hi, &other, volume, label)) {
         return ms_fail(err, MS_ERR_SHAPE, "no voxel of the volume has the label %u", label);
     }
     if (other) {

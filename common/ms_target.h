@@ -10,6 +10,8 @@
 #include "ms_volume.h"
 #include "ms_voxelize.h"
 
+MS_C_BEGIN
+
 typedef struct ms_target {
     const ms_mesh *mesh; /* borrowed; NULL for a volume */
     int closed;          /* the mesh bounds a body; 1 for a volume */
@@ -42,6 +44,15 @@ ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed
                               ms_error *err);
 
 /**
+ * The box lo <= (i,j,k) < hi of the voxels of a label.
+ *
+ * @param[out] other another label in the volume, 0 if there is none; only sought for label 0
+ * @param      label 0: any
+ * @return 0 if no voxel has the label
+ */
+int ms_target_label_box(int lo[3], int hi[3], uint32_t *other, const ms_volume *volume, uint32_t label);
+
+/**
  * Takes the voxels of one label of a volume, with a hull of background, on the volume's own
  * lattice.
  *
@@ -60,5 +71,7 @@ void ms_target_from_voxels(double out_centre[3], double *out_radius, const ms_gr
                            double radius);
 
 void ms_target_free(ms_target *target);
+
+MS_C_END
 
 #endif

@@ -7,6 +7,8 @@
 
 #include "ms_error.h"
 
+MS_C_BEGIN
+
 /** Labels on a regular grid of cubic voxels; 0 is background. */
 typedef struct ms_volume {
     int n[3];          /* extents x, y, z; x fastest in memory */
@@ -32,5 +34,7 @@ ms_status ms_volume_read(ms_volume *volume, const char *path, size_t max_voxels,
 int ms_volume_is_volume_path(const char *path);
 
 void ms_volume_free(ms_volume *volume);
+
+MS_C_END
 
 #endif

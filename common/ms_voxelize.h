@@ -5,6 +5,8 @@
 #include "ms_grid.h"
 #include "ms_mesh.h"
 
+MS_C_BEGIN
+
 /** When a voxel counts as inside. One rule per run, for target and union alike. */
 typedef enum ms_voxel_rule {
     MS_VOXEL_HALF,  /* more than half of it is covered (MSS eq. 5) */
@@ -44,5 +46,7 @@ ms_status ms_voxelize(ms_grid *grid, const ms_mesh *mesh, double h, ms_voxel_rul
  * @return as ms_voxelize
  */
 ms_status ms_voxelize_open(ms_grid *grid, size_t *disagree, const ms_mesh *mesh, double h, ms_error *err);
+
+MS_C_END
 
 #endif

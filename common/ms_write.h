@@ -7,6 +7,8 @@
 #include "ms_clump.h"
 #include "ms_grid.h"
 
+MS_C_BEGIN
+
 /** A format of clump files. A table of them ends with a NULL name. */
 typedef struct ms_format {
     const char *name;    /* what --format takes; also the file ending */
@@ -33,5 +35,7 @@ ms_status ms_write_clump(const ms_clump *clump, const char *path, const ms_forma
 
 /** Writes a grid as VTK structured points (binary), 1 inside, for ParaView. */
 ms_status ms_write_grid(const ms_grid *grid, const char *path, ms_error *err);
+
+MS_C_END
 
 #endif

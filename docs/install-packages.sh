@@ -8,6 +8,9 @@ for package in $packages; do
 done
 [ -n "$missing" ] || exit 0
 as_root=""
-[ "$(id -u)" -eq 0 ] || as_root="sudo"
+if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "as root, install:$missing" >&2; exit 1; }
+    as_root="sudo"
+fi
 $as_root apt-get update
 $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing

@@ -20,7 +20,8 @@ enum { MAX_OUTPUTS = 16, MAX_SETTINGS = 256, DEFAULT_SPHERES = 50 };
 static const ms_flag FLAGS[] = {
     {"generator", 'g', "NAME", "the method (mss); mskit generators lists them"},
     {"spheres", 'n', "N", "at most N spheres (50, if no --until is given)"},
-    {"until", 0, "MEASURE=VALUE", "end when eta, dice, coverage or inertia is as good, or spheres would be smaller than radius; may be repeated"},
+    {"until", 0, "MEASURE=VALUE",
+     "end when eta, dice, coverage or inertia is as good, or spheres would be smaller than radius; may be repeated"},
     {"set", 0, "OPTION=VALUE", "an option of the method (mskit help NAME); --OPTION VALUE does the same"},
     {"seed", 0, "S", "seed of methods that draw random numbers (1)"},
     {"output", 'o', "FILE", "csv, json or vtk by its ending, - for standard output; may be repeated"},
@@ -218,13 +219,24 @@ static ms_status settle_outputs(arguments *a, ms_error *err)
                          : MS_OK;
 }
 
+/* Are both the same file? */
+static int same_file(const char *a, const char *b)
+{
+    struct stat first, second;
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
+}
+
 /* Can this file be made? A device or a pipe is not tried, since that would be noticed at its other end. */
-static ms_status try_output(const char *path, ms_error *err)
+static ms_status try_output(const char *shape, const char *path, ms_error *err)
 {
     ms_output output;
     struct stat info;
     if (strcmp(path, "-") == 0 || (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))) {
         return MS_OK;
+    }
+    if (same_file(shape, path)) {
+        return ms_fail(err, MS_ERR_ARG, "%s is the shape itself; it is not overwritten", path);
     }
     ms_status status = ms_output_open(&output, path, err);
     if (status == MS_OK) {
@@ -235,9 +247,9 @@ static ms_status try_output(const char *path, ms_error *err)
 
 static ms_status try_outputs(const arguments *a, ms_error *err)
 {
-    ms_status status = a->target_grid ? try_output(a->target_grid, err) : MS_OK;
+    ms_status status = a->target_grid ? try_output(a->shape, a->target_grid, err) : MS_OK;
     for (int o = 0; o < a->n_outputs && status == MS_OK; o++) {
-        status = try_output(a->output[o], err);
+        status = try_output(a->shape, a->output[o], err);
     }
     return status;
 }

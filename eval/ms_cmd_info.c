@@ -134,7 +134,8 @@ static void print_facts(const facts *f)
 static json_t *facts_json(const facts *f)
 {
     const ms_mesh_report *r = &f->input->report;
-    json_t *json = json_pack("{s:o,s:[f,f,f],s:[f,f,f],s:o,s:o,s:o}", "path", ms_report_text(f->input->path), "box_lo", f->lo[0],
+    json_t *json = json_pack("{s:o,s:[f,f,f],s:[f,f,f],s:o,s:o,s:o}", "path",
+                             ms_report_text(f->input->path), "box_lo", f->lo[0],
                              f->lo[1], f->lo[2], "box_hi", f->hi[0], f->hi[1], f->hi[2], "area",
                              ms_report_number(f->area), "equivalent_diameter",
                              ms_report_number(equivalent_diameter(f)), "sphericity", ms_report_number(sphericity(f)));

@@ -158,7 +158,9 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
                        ".npy, .mhd, .mha, .nrrd and .nhdr",
                        path);
     }
-    status = ms_volume_is_volume_path(path) ? ms_volume_read(&input->volume, path, ms_input_max_voxels(flags), err) : read_mesh(input, err);
+    status = ms_volume_is_volume_path(path)
+                 ? ms_volume_read(&input->volume, path, ms_input_max_voxels(flags), err)
+                 : read_mesh(input, err);
     input->read_seconds = omp_get_wtime() - start;
     if (status != MS_OK) {
         ms_input_free(input);
@@ -230,32 +232,16 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
     return status;
 }
 
-/* Extents of the grid around the voxels of a label; 0: of any. */
-static void label_extents(double n[3], const ms_volume *volume, uint32_t label)
-{
-    const uint32_t *at = volume->label;
-    int lo[3] = {INT_MAX, INT_MAX, INT_MAX}, hi[3] = {-1, -1, -1};
-    for (int k = 0; k < volume->n[2]; k++) {
-        for (int j = 0; j < volume->n[1]; j++) {
-            for (int i = 0; i < volume->n[0]; i++, at++) {
-                const int p[3] = {i, j, k};
-                for (int a = 0; a < 3 && *at != 0 && (label == 0 || *at == label); a++) {
-                    lo[a] = p[a] < lo[a] ? p[a] : lo[a];
-                    hi[a] = p[a] > hi[a] ? p[a] : hi[a];
-                }
-            }
-        }
-    }
-    for (int a = 0; a < 3; a++) {
-        n[a] = hi[a] < 0 ? 0 : hi[a] - lo[a] + 1 + 2 * MS_GRID_HULL;
-    }
-}
-
 static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags, ms_error *err)
 {
-    double n[3];
-    label_extents(n, &input->volume, flags->label);
-    ms_status status = n[0] > 0 ? check_memory(n, flags, err) : MS_OK; /* without voxels the target says why */
+    int lo[3], hi[3];
+    uint32_t other;
+    ms_status status = MS_OK;
+    if (ms_target_label_box(lo, hi, &other, &input->volume, flags->label)) { /* without voxels the target says why */
+        const double n[3] = {hi[0] - lo[0] + 2 * MS_GRID_HULL, hi[1] - lo[1] + 2 * MS_GRID_HULL,
+                             hi[2] - lo[2] + 2 * MS_GRID_HULL};
+        status = check_memory(n, flags, err);
+    }
     if (status == MS_OK) {
         status = ms_target_from_volume(&input->target, &input->volume, flags->label, err);
         input->target.rule = flags->rule; /* for the union; the voxels of the shape are given */

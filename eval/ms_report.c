@@ -86,7 +86,8 @@ json_t *ms_report_input_json(const ms_input *input)
     char checksum[20];
     const ms_grid *grid = &input->target.grid;
     snprintf(checksum, sizeof checksum, "%016" PRIx64, input->checksum);
-    json_t *json = json_pack("{s:o,s:s,s:s,s:[i,i,i],s:f,s:o,s:I}", "path", ms_report_text(input->path), "fnv1a", checksum, "rule",
+    json_t *json = json_pack("{s:o,s:s,s:s,s:[i,i,i],s:f,s:o,s:I}", "path",
+                             ms_report_text(input->path), "fnv1a", checksum, "rule",
                              input->target.rule == MS_VOXEL_HALF ? "half" : "centre", "grid", grid->n[0], grid->n[1],
                              grid->n[2], "voxel_size", grid->h, "grid_origin", vector(grid->origin), "voxels",
                              (json_int_t)input->target.voxels);

@@ -9,6 +9,8 @@
 #include "ms_stop.h"
 #include "ms_target.h"
 
+MS_C_BEGIN
+
 /** Is told how far a run has come; `spheres` so far, D so far (NAN if unknown). */
 typedef void (*ms_progress)(void *context, size_t spheres, double dice);
 
@@ -53,5 +55,7 @@ const ms_generator *ms_generator_find(const char *name, ms_error *err);
  */
 ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
                            const ms_run *run, ms_error *err);
+
+MS_C_END
 
 #endif

@@ -20,9 +20,11 @@ enum { ORDER_RADIUS, ORDER_GAIN };
 static const ms_option OPTIONS[] = {
     [SPACING] = {"spacing", MS_OPTION_REAL, 0, 0, 1000, NULL, "voxels",
                  "least distance between the centres of any two spheres (delta_min, section 3.4); 0: as large as "
-                 "leaves maxima, halved from the largest radius down to 1 voxel (gain: from 2), spheres smaller across waiting"},
+                 "leaves maxima, halved from the largest radius down to 1 voxel (gain: from 2), spheres smaller "
+                 "across waiting"},
     [BOOST] = {"boost", MS_OPTION_INTEGER, 1, 1, 5, NULL, NULL,
-               "where no maximum is left, E* = E + w (E - E~) is tried with w up to this; the paper has w = 1 (eq. 25)"},
+               "where no maximum is left, E* = E + w (E - E~) is tried with w up to this; the paper has w = 1 "
+               "(eq. 25)"},
     [OFFSET] = {"radius-offset", MS_OPTION_REAL, 0, -2, 2, NULL, "voxels",
                 "added to every radius; the paper adds nothing, 0.5 to 0.75 lowers the mismatch"},
     [ORDER] = {"order", MS_OPTION_CHOICE, ORDER_RADIUS, 0, 0, "radius|gain", NULL,
@@ -294,7 +296,8 @@ static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run 
     if (run->settings->value[CONFINE] != 0 && (!run->target->closest || !run->target->closed)) {
         return ms_fail(err, MS_ERR_ARG, "confine needs a closed mesh; this shape is a volume or an open mesh");
     }
-    ms_status status = mss_field_init(&m.field, run->target, (const double(*)[4])run->settings->plane, run->settings->n_planes, err);
+    ms_status status = mss_field_init(&m.field, run->target, (const double(*)[4])run->settings->plane,
+                                      run->settings->n_planes, err);
     if (status == MS_OK) {
         m.spacing = first_spacing(&m);
         status = update_candidates(&m, 0, err);

@@ -4,6 +4,10 @@
 
 #include "ms_generator.h"
 
+MS_C_BEGIN
+
 extern const ms_generator ms_generator_mss;
+
+MS_C_END
 
 #endif

@@ -174,7 +174,8 @@ static box changed_box(const mss_field *field)
                 const size_t start = ms_grid_index(grid, 0, j, k);
                 const float *e = field->e + start, *star = field->star + start;
                 int from = reach.lo[0], to = reach.hi[0];
-                while (from < to && union_of(field, e[from], star[from]) < fmaxf(away, (float)(covered.lo[0] - from) - 0.01f)) {
+                while (from < to &&
+                       union_of(field, e[from], star[from]) < fmaxf(away, (float)(covered.lo[0] - from) - 0.01f)) {
                     from++;
                 }
                 while (from < to &&

@@ -6,6 +6,8 @@
 
 #include "ms_error.h"
 
+MS_C_BEGIN
+
 typedef enum ms_option_type {
     MS_OPTION_FLAG,   /* on or off */
     MS_OPTION_INTEGER,
@@ -51,5 +53,7 @@ const ms_option *ms_option_find(const ms_option *options, const char *name);
 void ms_settings_text(char *out, size_t size, const ms_settings *settings, size_t option);
 
 void ms_settings_free(ms_settings *settings);
+
+MS_C_END
 
 #endif

@@ -295,6 +295,34 @@ static void bad_balls_are_refused(void **state)
     ms_grid_free(&grid);
 }
 
+/* Balls within others change nothing: all the same prefixes, however many there are. */
+static void buried_balls_cover_nothing(void **state)
+{
+    (void)state;
+    uint64_t seed = 5;
+    ms_grid grid = empty_grid(24, 24, 24, 1);
+    fill_random(&grid, &seed);
+    ms_ball *balls = malloc(30000 * sizeof *balls);
+    assert_non_null(balls);
+    random_balls(balls, 4, grid.n, 8, &seed);
+    for (int b = 4; b < 30000; b++) {
+        balls[b] = balls[b % 4];
+        balls[b].radius *= 1 - 0.2 * (b % 3);
+    }
+    ms_raster raster = raster_of(&grid, MS_VOXEL_HALF);
+    add_balls(&raster, balls, 4);
+    expect_first(&raster);
+    int64_t covered = 0;
+    add_balls(&raster, balls + 4, 29996);
+    for (int b = 4; b < 30000; b++) {
+        covered += raster.tally[b].inside + raster.tally[b].outside;
+    }
+    assert_int_equal(covered, 0);
+    ms_raster_free(&raster);
+    ms_grid_free(&grid);
+    free(balls);
+}
+
 static void threads_change_nothing(void **state)
 {
     (void)state;
@@ -328,6 +356,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(threads_change_nothing),
+        cmocka_unit_test(buried_balls_cover_nothing),
         cmocka_unit_test(unions_agree_with_brute_force),
         cmocka_unit_test(balls_on_the_lattice_are_symmetric),
         cmocka_unit_test(the_number_of_calls_does_not_matter),

@@ -59,6 +59,10 @@ static void data_beside_a_header_are_read(void **state)
         assert_true(volume.origin[0] == 1.0 && volume.origin[1] == 2.0 && volume.origin[2] == 3.0);
         assert_int_equal(volume.label[7], known_label(7, 100));
         ms_volume_free(&volume);
+        assert_int_equal(ms_volume_read(&volume, path, N_VOXELS, NULL), MS_OK);
+        ms_volume_free(&volume);
+        assert_int_equal(ms_volume_read(&volume, path, N_VOXELS - 1, NULL), MS_ERR_LIMIT);
+        assert_null(volume.label);
         write_file(raw, folder, "my voxels.raw", voxels.data, voxels.size - 1);
         expect_refused(path, MS_ERR_FORMAT, "23");
         unlink(raw);

@@ -227,6 +227,22 @@ static void two_cubes_unite_and_stay_apart(void **state)
     }
 }
 
+/* More faces on each ray than are sorted by insertion: a staircase of slabs that overlap. */
+static void a_heap_of_bodies_unites(void **state)
+{
+    (void)state;
+    enum { SLABS = 120 };
+    ms_mesh mesh = cuboid(0, 3, 0, 4, 0, 4);
+    for (int s = 1; s < SLABS; s++) {
+        const double x = (s * 37 % SLABS) * 0.25; /* out of order */
+        add_part(&mesh, cuboid(x, x + 3, 0, 4, 0, 4));
+    }
+    ms_grid grid = voxels_of(&mesh, 0.25, MS_VOXEL_HALF);
+    assert_int_equal(ms_grid_count(&grid), (SLABS - 1 + 12) * 16 * 16);
+    ms_grid_free(&grid);
+    ms_mesh_free(&mesh);
+}
+
 /* By 24x24x24 points in each voxel, of the ellipsoid itself. */
 static void an_ellipsoid_agrees_with_dense_points(void **state)
 {
@@ -317,6 +333,7 @@ int main(void)
         cmocka_unit_test(what_bodies_share_counts_once),
         cmocka_unit_test(what_is_wound_inward_takes_away),
         cmocka_unit_test(two_cubes_unite_and_stay_apart),
+        cmocka_unit_test(a_heap_of_bodies_unites),
         cmocka_unit_test(an_ellipsoid_agrees_with_dense_points),
         cmocka_unit_test(a_ball_with_small_holes_is_nearly_whole),
         cmocka_unit_test(a_box_without_a_lid_is_whole),

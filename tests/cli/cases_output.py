@@ -111,6 +111,14 @@ class Streams(Output):
                 self.assertNotIn(sign, result.out + result.err, f"{sign!r} in the output of {args}")
         self.assertNotIn("spheres, D", result.err)
 
+    def test_the_shape_is_not_overwritten(self):
+        self.shape("cube", name="cube.ply")
+        before = self.read("cube.ply")
+        for args in (("--target-grid", "cube.ply"), ("-o", "cube.ply", "--format", "csv")):
+            result = self.mskit("generate", "cube.ply", "-n", "1", "--cells", "10", *args, code=1)
+            self.assert_says(result, "cube.ply", "not overwritten")
+            self.assertEqual(self.read("cube.ply"), before)
+
     def test_a_full_device_is_an_error(self):
         if not os.path.exists("/dev/full"):
             self.skipTest("there is no /dev/full here")
