@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "ms_clump.h"
+#include "ms_clump_parse.h"
 #include "ms_file.h"
 #include "ms_text.h"
 
@@ -156,17 +157,24 @@ static ms_status parse(ms_clump *clump, ms_bytes *bytes, const char *name, ms_er
     return MS_OK;
 }
 
+ms_status ms_clump_parse(ms_clump *clump, ms_bytes *bytes, const char *name, ms_error *err)
+{
+    memset(clump, 0, sizeof *clump);
+    ms_status status = parse(clump, bytes, name, err);
+    if (status != MS_OK) {
+        ms_clump_free(clump);
+    }
+    return status;
+}
+
 ms_status ms_clump_read(ms_clump *clump, const char *path, ms_error *err)
 {
     ms_bytes bytes;
     memset(clump, 0, sizeof *clump);
     ms_status status = ms_file_read(&bytes, path, err);
     if (status == MS_OK) {
-        status = parse(clump, &bytes, path, err);
+        status = ms_clump_parse(clump, &bytes, path, err);
         ms_bytes_free(&bytes);
-    }
-    if (status != MS_OK) {
-        ms_clump_free(clump);
     }
     return status;
 }
