@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "ms_bvh.h"
+#include "ms_vector.h"
 
 struct ms_closest {
     ms_bvh bvh;
@@ -34,11 +35,6 @@ void ms_closest_free(ms_closest *closest)
     }
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Where on a triangle: at a corner, on an edge, or within. */
 typedef enum region { CORNER_A, CORNER_B, CORNER_C, EDGE, FACE } region;
 
@@ -52,8 +48,8 @@ typedef struct place {
    point's projection lies. ap, bp, cp run from the corners to the point. */
 static place nearest_place(const ms_bvh_triangle *t, const double ap[3])
 {
-    double d1 = dot(t->ab, ap);
-    double d2 = dot(t->ac, ap);
+    double d1 = ms_dot(t->ab, ap);
+    double d2 = ms_dot(t->ac, ap);
     if (d1 <= 0 && d2 <= 0) {
         return (place){0, 0, CORNER_A};
     }
@@ -62,8 +58,8 @@ static place nearest_place(const ms_bvh_triangle *t, const double ap[3])
         bp[k] = ap[k] - t->ab[k];
         cp[k] = ap[k] - t->ac[k];
     }
-    double d3 = dot(t->ab, bp);
-    double d4 = dot(t->ac, bp);
+    double d3 = ms_dot(t->ab, bp);
+    double d4 = ms_dot(t->ac, bp);
     if (d3 >= 0 && d4 <= d3) {
         return (place){1, 0, CORNER_B};
     }
@@ -71,8 +67,8 @@ static place nearest_place(const ms_bvh_triangle *t, const double ap[3])
     if (vc <= 0 && d1 >= 0 && d3 <= 0) {
         return (place){d1 / (d1 - d3), 0, EDGE};
     }
-    double d5 = dot(t->ab, cp);
-    double d6 = dot(t->ac, cp);
+    double d5 = ms_dot(t->ab, cp);
+    double d6 = ms_dot(t->ac, cp);
     if (d6 >= 0 && d5 <= d6) {
         return (place){0, 1, CORNER_C};
     }
@@ -113,9 +109,9 @@ static place nearest_on_edges(const ms_bvh_triangle *t, const double ap[3])
         bc[k] = t->ac[k] - t->ab[k];
         bp[k] = ap[k] - t->ab[k];
     }
-    double along_bc = clamp_to_unit(dot(bc, bp) / dot(bc, bc));
-    const place tried[4] = {{clamp_to_unit(dot(t->ab, ap) / dot(t->ab, t->ab)), 0, EDGE},
-                            {0, clamp_to_unit(dot(t->ac, ap) / dot(t->ac, t->ac)), EDGE},
+    double along_bc = clamp_to_unit(ms_dot(bc, bp) / ms_dot(bc, bc));
+    const place tried[4] = {{clamp_to_unit(ms_dot(t->ab, ap) / ms_dot(t->ab, t->ab)), 0, EDGE},
+                            {0, clamp_to_unit(ms_dot(t->ac, ap) / ms_dot(t->ac, t->ac)), EDGE},
                             {1 - along_bc, along_bc, EDGE},
                             nearest_place(t, ap)};
     int best = 0;
@@ -168,13 +164,13 @@ static double side_by_triangle(const ms_bvh_triangle *t, const double ap[3], con
         from[k] = ap[k] - offset[k];
         bc[k] = t->ac[k] - t->ab[k];
     }
-    double twice_area = sqrt(dot(normal, normal));
+    double twice_area = sqrt(ms_dot(normal, normal));
     if (t->sliver || !(twice_area > 0)) {
         return 0;
     }
-    double cosine = at == CORNER_A ? dot(t->ab, t->ac) : at == CORNER_B ? -dot(t->ab, bc) : dot(t->ac, bc);
+    double cosine = at == CORNER_A ? ms_dot(t->ab, t->ac) : at == CORNER_B ? -ms_dot(t->ab, bc) : ms_dot(t->ac, bc);
     double angle = at == FACE ? 2 * M_PI : at == EDGE ? M_PI : atan2(twice_area, cosine);
-    return angle * dot(normal, from) / twice_area;
+    return angle * ms_dot(normal, from) / twice_area;
 }
 
 static void search_leaf(search *s, uint32_t first, uint32_t count)

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ms_vector.h"
+
 ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err)
 {
     if (clump->n_spheres == MS_CLUMP_MAX_SPHERES) {
@@ -24,9 +26,8 @@ ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err)
 
 static int overlap(const ms_sphere *a, const ms_sphere *b)
 {
-    const double x = a->centre[0] - b->centre[0], y = a->centre[1] - b->centre[1], z = a->centre[2] - b->centre[2];
     const double reach = a->radius + b->radius;
-    return x * x + y * y + z * z < reach * reach;
+    return ms_squared_distance(a->centre, b->centre) < reach * reach;
 }
 
 ms_status ms_clump_pieces(size_t *pieces, const ms_clump *clump, ms_error *err)

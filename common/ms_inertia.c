@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "ms_vector.h"
+
 /* A sum that carries its own rounding error along (Neumaier 1974). */
 typedef struct sum {
     double value, carry;
@@ -143,15 +145,6 @@ double ms_mesh_area(const ms_mesh *mesh)
     return total(&area);
 }
 
-static void cross_product(double out[3], const double a[3], const double b[3])
-{
-    for (int k = 0; k < 3; k++) {
-        int i = (k + 1) % 3;
-        int j = (k + 2) % 3;
-        out[k] = a[i] * b[j] - a[j] * b[i];
-    }
-}
-
 #define TIE 1e-9
 
 static void make_largest_component_positive(double axis[3])
@@ -194,13 +187,13 @@ static void settle_axes(ms_principal *principal)
     }
     if (first_tie) {
         first_axis_across(axis[0], axis[2]);
-        cross_product(axis[1], axis[2], axis[0]);
+        ms_cross(axis[1], axis[2], axis[0]);
     } else if (last_tie) {
         first_axis_across(axis[1], axis[0]);
     }
     make_largest_component_positive(axis[0]);
     make_largest_component_positive(axis[1]);
-    cross_product(axis[2], axis[0], axis[1]);
+    ms_cross(axis[2], axis[0], axis[1]);
 }
 
 /* GSL's solver takes any finite matrix whose squares do not overflow. */

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "ms_mesh_orient.h"
+#include "ms_vector.h"
 
 /* A side of a crowded edge, by the angle of its triangle around the edge. */
 typedef struct spoke {
@@ -20,20 +21,6 @@ static int compare_spokes(const void *a, const void *b)
     return (x->side > y->side) - (x->side < y->side);
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross_product(double out[3], const double a[3], const double b[3])
-{
-    for (int k = 0; k < 3; k++) {
-        int i = (k + 1) % 3;
-        int j = (k + 2) % 3;
-        out[k] = a[i] * b[j] - a[j] * b[i];
-    }
-}
-
 /* Two vectors across `axis` that make a right-handed frame with it, of equal length. */
 static void frame_across(double u[3], double v[3], const double axis[3])
 {
@@ -45,9 +32,9 @@ static void frame_across(double u[3], double v[3], const double axis[3])
     }
     double helper[3] = {0};
     helper[least] = 1;
-    double length = sqrt(dot(axis, axis));
-    cross_product(u, helper, axis);
-    cross_product(v, axis, u);
+    double length = sqrt(ms_dot(axis, axis));
+    ms_cross(u, helper, axis);
+    ms_cross(v, axis, u);
     for (int k = 0; k < 3; k++) {
         u[k] *= length;
     }
@@ -73,7 +60,7 @@ static void place_spokes(spoke *list, uint32_t n, const uint32_t *side, const ms
             arm[k] = opposite[k] - low[k];
         }
         int rises = ms_side_rises(mesh, side[s]);
-        list[s] = (spoke){atan2(dot(arm, v), dot(arm, u)), side[s], rises == (inside_out != 0)};
+        list[s] = (spoke){atan2(ms_dot(arm, v), ms_dot(arm, u)), side[s], rises == (inside_out != 0)};
     }
     qsort(list, n, sizeof *list, compare_spokes);
 }

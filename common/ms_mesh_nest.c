@@ -3,6 +3,7 @@
 
 #include "ms_bvh.h"
 #include "ms_mesh_orient.h"
+#include "ms_vector.h"
 
 enum { SAMPLES = 32, DIRECTIONS = 8 };
 
@@ -60,18 +61,6 @@ static void add_hit(ray *r, uint32_t shell, int touches)
     r->hits[r->n_hits++] = (hit){shell, touches};
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross_product(double out[3], const double a[3], const double b[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* Moeller & Trumbore 1997. */
 static void meet_triangle(ray *r, const ms_bvh_triangle *t)
 {
@@ -81,19 +70,19 @@ static void meet_triangle(ray *r, const ms_bvh_triangle *t)
     if (shell == r->own_shell) {
         return;
     }
-    cross_product(p, r->along, t->ac);
-    double det = dot(t->ab, p);
+    ms_cross(p, r->along, t->ac);
+    double det = ms_dot(t->ab, p);
     /* Seen edge-on: only its edges can be met, and its neighbours tell that. */
-    if (fabs(det) <= 1e-12 * sqrt(dot(t->ab, t->ab) * dot(t->ac, t->ac))) {
+    if (fabs(det) <= 1e-12 * sqrt(ms_dot(t->ab, t->ab) * ms_dot(t->ac, t->ac))) {
         return;
     }
     for (int k = 0; k < 3; k++) {
         s[k] = r->from[k] - t->a[k];
     }
-    cross_product(q, s, t->ab);
-    double u = dot(s, p) / det;
-    double v = dot(r->along, q) / det;
-    double distance = dot(t->ac, q) / det;
+    ms_cross(q, s, t->ab);
+    double u = ms_dot(s, p) / det;
+    double v = ms_dot(r->along, q) / det;
+    double distance = ms_dot(t->ac, q) / det;
     double inside = fmin(fmin(u, v), 1 - u - v);
     if (inside < -margin || distance < -1e-9 * r->bvh->size) {
         return;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "ms_clump.h"
+#include "ms_vector.h"
 
 /* Half the diagonal of a voxel: a ball's surface farther from the centre misses the voxel. */
 static const double HALF_DIAGONAL = 0.86602540378443871;
@@ -224,8 +225,7 @@ static int list_neighbours(neighbours *list, ms_raster *raster, size_t b)
     const size_t before = list->used;
     for (size_t other = 0; other < b; other++) {
         const ms_ball *o = &raster->ball[other];
-        const double dx = o->centre[0] - ball->centre[0], dy = o->centre[1] - ball->centre[1];
-        const double dz = o->centre[2] - ball->centre[2], away = dx * dx + dy * dy + dz * dz;
+        const double away = ms_squared_distance(o->centre, ball->centre);
         const double reach = o->radius + ball->radius + 2 * HALF_DIAGONAL, depth = o->radius - ball->radius;
         if (raster->buried[other] || away > reach * reach) {
             continue;

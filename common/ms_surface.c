@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ms_vector.h"
+
 /* Triangles are taken in chunks of this size, whatever the number of threads, so that sums
  * are always made in the same order. */
 enum { CHUNK = 512 };
@@ -34,12 +36,6 @@ static void join_parts(ms_standout *out, const part *parts, size_t count)
     out->rms = sum.area > 0 ? sqrt(sum.square / sum.area) : 0;
 }
 
-static double squared_distance(const double a[3], const double b[3])
-{
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x * x + y * y + z * z;
-}
-
 /* The spheres that may hide a part of sphere s, as indices. */
 static size_t find_neighbours(uint32_t *neighbour, const ms_clump *clump, size_t s)
 {
@@ -48,7 +44,7 @@ static size_t find_neighbours(uint32_t *neighbour, const ms_clump *clump, size_t
     for (size_t o = 0; o < clump->n_spheres; o++) {
         const ms_sphere *other = &clump->sphere[o];
         const double reach = sphere->radius + other->radius;
-        if (o != s && squared_distance(sphere->centre, other->centre) < reach * reach) {
+        if (o != s && ms_squared_distance(sphere->centre, other->centre) < reach * reach) {
             neighbour[count++] = (uint32_t)o;
         }
     }
@@ -60,7 +56,7 @@ static int hidden(const double point[3], const ms_clump *clump, size_t s, const 
 {
     for (size_t at = 0; at < count; at++) {
         const ms_sphere *other = &clump->sphere[neighbour[at]];
-        const double reach = other->radius, away = squared_distance(point, other->centre);
+        const double reach = other->radius, away = ms_squared_distance(point, other->centre);
         if (away < reach * reach * (1 - 1e-12) || (neighbour[at] < s && away <= reach * reach * (1 + 1e-12))) {
             return 1;
         }
@@ -136,7 +132,7 @@ static double union_distance(const ms_clump *clump, const double point[3])
     double least = HUGE_VAL;
     for (size_t s = 0; s < clump->n_spheres; s++) {
         const ms_sphere *sphere = &clump->sphere[s];
-        const double reach = sphere->radius + least, away = squared_distance(point, sphere->centre);
+        const double reach = sphere->radius + least, away = ms_squared_distance(point, sphere->centre);
         if (away < reach * reach) {
             least = sqrt(away) - sphere->radius;
         }

@@ -3,14 +3,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "ms_vector.h"
+
 /* Ranks and distances of mirror images agree but for rounding. */
 static const double EQUAL = 1e-6;
-
-static double squared_distance(const double a[3], const double b[3])
-{
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x * x + y * y + z * z;
-}
 
 static int by_rank(const void *first, const void *second)
 {
@@ -50,7 +46,7 @@ static ms_ball mean_ball(const mss_candidate *cluster, size_t count)
 static int in_one_place(const mss_candidate *cluster, size_t count)
 {
     for (size_t m = 1; m < count; m++) {
-        if (squared_distance(cluster[m].ball.centre, cluster[0].ball.centre) > EQUAL) {
+        if (ms_squared_distance(cluster[m].ball.centre, cluster[0].ball.centre) > EQUAL) {
             return 0;
         }
     }
@@ -64,7 +60,7 @@ static size_t gather_cluster(mss_candidate *c, size_t count, double spacing)
     size_t size = 1;
     for (size_t done = 0; done < size; done++) {
         for (size_t m = size; m < count; m++) {
-            if (squared_distance(c[done].ball.centre, c[m].ball.centre) < least_square(spacing)) {
+            if (ms_squared_distance(c[done].ball.centre, c[m].ball.centre) < least_square(spacing)) {
                 const mss_candidate swap = c[m];
                 c[m] = c[size];
                 c[size++] = swap;
@@ -77,14 +73,14 @@ static size_t gather_cluster(mss_candidate *c, size_t count, double spacing)
 void mss_keep_apart(mss_candidate *candidates, size_t count, const ms_ball *sphere)
 {
     for (size_t m = 0; m < count; m++) {
-        candidates[m].apart = fmin(candidates[m].apart, squared_distance(candidates[m].ball.centre, sphere->centre));
+        candidates[m].apart = fmin(candidates[m].apart, ms_squared_distance(candidates[m].ball.centre, sphere->centre));
     }
 }
 
 static void keep_apart_now(mss_candidate *c, size_t count, const ms_ball *sphere)
 {
     for (size_t m = 0; m < count; m++) {
-        c[m].now = fmin(c[m].now, squared_distance(c[m].ball.centre, sphere->centre));
+        c[m].now = fmin(c[m].now, ms_squared_distance(c[m].ball.centre, sphere->centre));
     }
 }
 
@@ -130,7 +126,7 @@ static int too_close(const ms_ball *ball, const placed *p, double spacing)
 {
     for (size_t s = 0; s < p->n_earlier + p->n_step; s++) {
         const ms_ball *other = s < p->n_earlier ? &p->earlier[s] : &p->step[s - p->n_earlier];
-        if (squared_distance(ball->centre, other->centre) < least_square(spacing)) {
+        if (ms_squared_distance(ball->centre, other->centre) < least_square(spacing)) {
             return 1;
         }
     }
@@ -141,7 +137,7 @@ static int too_close(const ms_ball *ball, const placed *p, double spacing)
 static size_t gather_central(mss_candidate *c, size_t count, const double centroid[3])
 {
     for (size_t m = 0; m < count; m++) {
-        c[m].now = -squared_distance(c[m].ball.centre, centroid);
+        c[m].now = -ms_squared_distance(c[m].ball.centre, centroid);
     }
     const size_t size = gather_farthest(c, count);
     for (size_t m = 0; m < count; m++) {
