@@ -254,23 +254,35 @@ static ms_status try_outputs(const arguments *a, ms_error *err)
     return status;
 }
 
+/* A line on the terminal, kept up to date. */
+typedef struct progress_line {
+    const char *name;
+    double shown; /* when */
+} progress_line;
+
 static void show_progress(void *context, size_t spheres, double dice)
 {
-    fprintf(stderr, "\r%s: %zu spheres, D %.4f ", *(const char *const *)context, spheres, dice);
+    progress_line *line = context;
+    const double now = omp_get_wtime();
+    if (now - line->shown > 0.1) {
+        line->shown = now;
+        fprintf(stderr, "\r%s: %zu spheres, D %.4f ", line->name, spheres, dice);
+    }
 }
 
 static ms_status generate(ms_result *r, const arguments *a, const ms_input *input, ms_error *err)
 {
     const char *name = a->generator->name;
     const int terminal = isatty(STDERR_FILENO);
+    progress_line line = {.name = name};
     const ms_run run = {.target = &input->target, .stop = a->stop, .settings = &a->settings,
                         .seed = (uint64_t)a->seed, .progress = terminal ? show_progress : NULL,
-                        .progress_context = &name};
+                        .progress_context = &line};
     const double start = omp_get_wtime();
     ms_status status = ms_generator_run(&r->clump, &r->reason, a->generator, &run, err);
     const double generated = omp_get_wtime();
-    if (terminal) {
-        fputc('\n', stderr);
+    if (terminal && line.shown > 0) {
+        fputs("\r\033[K", stderr); /* clears it */
     }
     if (status == MS_OK && r->reason == MS_STOP_EXHAUSTED) {
         fprintf(stderr,

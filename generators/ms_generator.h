@@ -11,7 +11,7 @@
 
 MS_C_BEGIN
 
-/** Is told how far a run has come; `spheres` so far, D so far (NAN if unknown). */
+/** Is told, often, how far a run has come: `spheres` so far, D of the last step (NAN if unknown). */
 typedef void (*ms_progress)(void *context, size_t spheres, double dice);
 
 /** All that a generator is given. Everything is borrowed. */

@@ -210,6 +210,15 @@ static int fit_mean(ms_ball *ball, void *context)
     return confine(ball, m);
 }
 
+static void report(size_t chosen, void *context)
+{
+    const mss *m = context;
+    if (m->run->progress) {
+        m->run->progress(m->run->progress_context, m->field.raster.n_balls + chosen,
+                         ms_score_of(&m->sum, m->run->target->voxels).dice);
+    }
+}
+
 /* The spheres of a step. Where delta_min is ours to choose, spheres smaller across than it is
  * wait until it has shrunk: else every speck of noise in a corner, being far from all spheres,
  * would come early. */
@@ -221,6 +230,7 @@ static size_t choose(ms_ball *chosen, size_t limit, mss *m)
                            .one_set = option(m, ORDER) == ORDER_GAIN,
                            .may_wait = automatic && m->spacing > 1,
                            .fit = fit_mean,
+                           .report = report,
                            .context = m};
     double centroid[3], unused;
     ms_target_to_voxels(centroid, &unused, &m->run->target->grid, m->run->target->body.centroid, 0);
@@ -304,9 +314,7 @@ static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run 
     }
     while (status == MS_OK && *reason == MS_STOP_NOT) {
         status = step(clump, reason, &m, err);
-        if (run->progress) {
-            run->progress(run->progress_context, clump->n_spheres, ms_score_of(&m.sum, run->target->voxels).dice);
-        }
+        report(0, &m);
     }
     mss_field_free(&m.field);
     free(m.candidates);

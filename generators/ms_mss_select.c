@@ -194,6 +194,7 @@ static size_t select_equals(ms_ball *chosen, size_t limit, mss_candidate *c, siz
         }
         taken += placed_now;
         p.n_step += placed_now;
+        rule->report(p.n_step, rule->context);
     }
     return taken;
 }

@@ -24,6 +24,7 @@ typedef struct mss_rule {
      * a sphere.
      */
     int (*fit)(ms_ball *ball, void *context);
+    void (*report)(size_t chosen, void *context); /* how many spheres the step has so far */
     void *context;
 } mss_rule;
 
