@@ -32,23 +32,27 @@ int ms_mesh_is_mesh_path(const char *path)
     return find_format(path) != NULL;
 }
 
-ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err)
+ms_status ms_mesh_parse(ms_mesh *mesh, const ms_bytes *bytes, const char *path, ms_error *err)
 {
-    ms_bytes bytes;
     const format *found = find_format(path);
     *mesh = (ms_mesh){0};
     if (!found) {
         return ms_fail(err, MS_ERR_FORMAT,
             "%s: its ending names no mesh format; meshes are read from .stl, .obj, .ply and .off", path);
     }
-    ms_status status = ms_file_read(&bytes, path, err);
-    if (status) {
-        return status;
+    if (bytes->size == 0) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: is empty (0 bytes); export the mesh again", path);
     }
-    if (bytes.size == 0) {
-        status = ms_fail(err, MS_ERR_FORMAT, "%s: is empty (0 bytes); export the mesh again", path);
-    } else {
-        status = found->parse(mesh, &bytes, path, err);
+    return found->parse(mesh, bytes, path, err);
+}
+
+ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err)
+{
+    ms_bytes bytes = {0};
+    *mesh = (ms_mesh){0};
+    ms_status status = find_format(path) ? ms_file_read(&bytes, path, err) : MS_OK; /* without one, parse says so */
+    if (status == MS_OK) {
+        status = ms_mesh_parse(mesh, &bytes, path, err);
     }
     ms_bytes_free(&bytes);
     return status;

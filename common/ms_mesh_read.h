@@ -2,6 +2,7 @@
 #ifndef MS_MESH_READ_H
 #define MS_MESH_READ_H
 
+#include "ms_file.h"
 #include "ms_mesh.h"
 
 MS_C_BEGIN
@@ -20,6 +21,9 @@ MS_C_BEGIN
  * Cost: O(file size).
  */
 ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err);
+
+/** The same from the bytes of a file that was read already; the path tells the format and stands in messages. */
+ms_status ms_mesh_parse(ms_mesh *mesh, const ms_bytes *bytes, const char *path, ms_error *err);
 
 /** Nonzero if the path ends like a mesh that ms_mesh_read takes. */
 int ms_mesh_is_mesh_path(const char *path);

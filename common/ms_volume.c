@@ -35,23 +35,27 @@ int ms_volume_is_volume_path(const char *path)
     return find_format(path) != NULL;
 }
 
-ms_status ms_volume_read(ms_volume *volume, const char *path, size_t max_voxels, ms_error *err)
+ms_status ms_volume_parse(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels, ms_error *err)
 {
-    ms_bytes bytes;
     const format *found = find_format(path);
     *volume = (ms_volume){0};
     if (!found) {
         return ms_fail(err, MS_ERR_FORMAT,
             "%s: its ending names no volume format; volumes are read from .npy, .mhd, .mha, .nrrd and .nhdr", path);
     }
-    ms_status status = ms_file_read(&bytes, path, err);
-    if (status) {
-        return status;
+    if (bytes->size == 0) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: is empty (0 bytes); save the volume again", path);
     }
-    if (bytes.size == 0) {
-        status = ms_fail(err, MS_ERR_FORMAT, "%s: is empty (0 bytes); save the volume again", path);
-    } else {
-        status = found->parse(volume, &bytes, path, max_voxels, err);
+    return found->parse(volume, bytes, path, max_voxels, err);
+}
+
+ms_status ms_volume_read(ms_volume *volume, const char *path, size_t max_voxels, ms_error *err)
+{
+    ms_bytes bytes = {0};
+    *volume = (ms_volume){0};
+    ms_status status = find_format(path) ? ms_file_read(&bytes, path, err) : MS_OK; /* without one, parse says so */
+    if (status == MS_OK) {
+        status = ms_volume_parse(volume, &bytes, path, max_voxels, err);
     }
     ms_bytes_free(&bytes);
     return status;

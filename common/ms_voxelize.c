@@ -56,7 +56,7 @@ static ms_status alloc_around(ms_grid *grid, const ms_mesh *mesh, double h, ms_e
 /* Frees the grid where the voxelisation failed or holds nothing. */
 static ms_status finish(ms_grid *grid, ms_status status, ms_error *err)
 {
-    if (status == MS_OK && ms_grid_count(grid) == 0) {
+    if (status == MS_OK && !memchr(grid->inside, 1, ms_grid_voxels(grid))) {
         status = ms_fail(err, MS_ERR_SHAPE, "no voxel of size %g is inside the shape; use more cells", grid->h);
     }
     if (status != MS_OK) {

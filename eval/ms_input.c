@@ -118,23 +118,26 @@ static ms_status check_size(const ms_input *input, ms_error *err)
     return MS_OK;
 }
 
-static ms_status read_mesh(ms_input *input, ms_error *err)
+/* Puts the file in front of a message that does not know it. */
+static ms_status name_file(ms_error *err, ms_status status, const ms_input *input, const ms_error *cause)
 {
-    ms_status status = ms_mesh_read(&input->mesh, input->path, err);
-    if (status != MS_OK) {
-        return status;
-    }
-    status = check_size(input, err);
-    if (status != MS_OK) {
-        return status;
-    }
+    return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", input->path, cause->text);
+}
+
+static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, ms_error *err)
+{
     ms_error cause;
-    status = ms_mesh_repair(&input->mesh, &input->report, &cause);
-    if (status != MS_OK) {
-        return ms_fail(err, status, "%s: %s", input->path, cause.text);
+    ms_status status = ms_mesh_parse(&input->mesh, bytes, input->path, err);
+    if (status == MS_OK) {
+        status = check_size(input, err);
     }
-    say_repairs(input->path, &input->report);
-    return MS_OK;
+    if (status == MS_OK) {
+        status = name_file(err, ms_mesh_repair(&input->mesh, &input->report, &cause), input, &cause);
+    }
+    if (status == MS_OK) {
+        say_repairs(input->path, &input->report);
+    }
+    return status;
 }
 
 ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err)
@@ -151,16 +154,17 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
         return status;
     }
     input->checksum = ms_bytes_checksum(&bytes);
-    ms_bytes_free(&bytes);
-    if (!ms_volume_is_volume_path(path) && !ms_mesh_is_mesh_path(path)) {
-        return ms_fail(err, MS_ERR_FORMAT,
-                       "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
-                       ".npy, .mhd, .mha, .nrrd and .nhdr",
-                       path);
+    if (ms_volume_is_volume_path(path)) {
+        status = ms_volume_parse(&input->volume, &bytes, path, ms_input_max_voxels(flags), err);
+    } else if (ms_mesh_is_mesh_path(path)) {
+        status = parse_mesh(input, &bytes, err);
+    } else {
+        status = ms_fail(err, MS_ERR_FORMAT,
+                         "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
+                         ".npy, .mhd, .mha, .nrrd and .nhdr",
+                         path);
     }
-    status = ms_volume_is_volume_path(path)
-                 ? ms_volume_read(&input->volume, path, ms_input_max_voxels(flags), err)
-                 : read_mesh(input, err);
+    ms_bytes_free(&bytes);
     input->read_seconds = omp_get_wtime() - start;
     if (status != MS_OK) {
         ms_input_free(input);
@@ -178,10 +182,11 @@ static ms_status choose_voxel_size(double *h, const ms_input *input, const ms_in
     }
     if (flags->deq > 0) {
         ms_body body;
+        ms_error cause;
         if (!input->report.closed) {
             return ms_fail(err, MS_ERR_ARG, "--deq needs the volume of a closed mesh; use --cells or --voxel-size");
         }
-        ms_status status = ms_inertia_mesh(&body, &input->mesh, err);
+        ms_status status = name_file(err, ms_inertia_mesh(&body, &input->mesh, &cause), input, &cause);
         *h = cbrt(6 * body.volume / acos(-1.0)) / flags->deq;
         return status;
     }
@@ -210,6 +215,7 @@ static ms_status check_memory(const double n[3], const ms_input_flags *flags, ms
 static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, ms_error *err)
 {
     double h = 0, n[3];
+    ms_error cause;
     if (!input->report.closed && !flags->allow_open) {
         return ms_fail(err, MS_ERR_SHAPE,
                        "%s: the mesh is open: %zu edges belong to one triangle only, %zu to an odd number; close it, "
@@ -223,7 +229,8 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
     ms_voxelize_extents(n, &input->mesh, h);
     status = check_memory(n, flags, err);
     if (status == MS_OK) {
-        status = ms_target_from_mesh(&input->target, &input->mesh, input->report.closed, h, flags->rule, err);
+        status = ms_target_from_mesh(&input->target, &input->mesh, input->report.closed, h, flags->rule, &cause);
+        status = name_file(err, status, input, &cause);
     }
     if (status == MS_OK && !input->report.closed) {
         fprintf(stderr, "%s: the mesh is open (%zu open edges); the three axes disagreed on %zu of %zu voxels\n",
@@ -236,6 +243,7 @@ static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags
 {
     int lo[3], hi[3];
     uint32_t other;
+    ms_error cause;
     ms_status status = MS_OK;
     if (ms_target_label_box(lo, hi, &other, &input->volume, flags->label)) { /* without voxels the target says why */
         const double n[3] = {hi[0] - lo[0] + 2 * MS_GRID_HULL, hi[1] - lo[1] + 2 * MS_GRID_HULL,
@@ -243,7 +251,8 @@ static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags
         status = check_memory(n, flags, err);
     }
     if (status == MS_OK) {
-        status = ms_target_from_volume(&input->target, &input->volume, flags->label, err);
+        status = ms_target_from_volume(&input->target, &input->volume, flags->label, &cause);
+        status = name_file(err, status, input, &cause);
         input->target.rule = flags->rule; /* for the union; the voxels of the shape are given */
     }
     return status;

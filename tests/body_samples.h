@@ -183,4 +183,20 @@ static inline ms_body body_of(const ms_mesh *mesh)
     return body;
 }
 
+static inline double volume_of(const ms_mesh *mesh)
+{
+    return body_of(mesh).volume;
+}
+
+/** A closed mesh with so many shells, cavities and turned triangles. */
+static inline void expect_report(const ms_mesh_report *r, size_t shells, size_t cavities, size_t flipped)
+{
+    assert_true(r->closed);
+    assert_int_equal(r->odd_edges, 0);
+    assert_int_equal(r->shells, shells);
+    assert_int_equal(r->cavities, cavities);
+    assert_int_equal(r->bodies, shells - cavities);
+    assert_int_equal(r->flipped, flipped);
+}
+
 #endif

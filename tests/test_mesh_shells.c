@@ -6,21 +6,6 @@ static ms_mesh ball(double r, int fineness)
     return make_body("ball", (double[]){r, fineness});
 }
 
-static double volume_of(const ms_mesh *mesh)
-{
-    return body_of(mesh).volume;
-}
-
-static void expect_report(const ms_mesh_report *r, size_t shells, size_t cavities, size_t flipped)
-{
-    assert_true(r->closed);
-    assert_int_equal(r->odd_edges, 0);
-    assert_int_equal(r->shells, shells);
-    assert_int_equal(r->cavities, cavities);
-    assert_int_equal(r->bodies, shells - cavities);
-    assert_int_equal(r->flipped, flipped);
-}
-
 static void cavities_are_wound_inward(void **state)
 {
     (void)state;
