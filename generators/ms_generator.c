@@ -4,9 +4,11 @@
 #include <string.h>
 
 #include "ms_mss.h"
+#include "ms_setcover.h"
 
 const ms_generator *const ms_generators[] = {
     &ms_generator_mss,
+    &ms_generator_setcover,
     NULL,
 };
 

@@ -8,7 +8,7 @@
 #include "ms_generator.h"
 #include "ms_metrics.h"
 
-static const char *const CONTRACTED[] = {"mss"};
+static const char *const CONTRACTED[] = {"mss", "setcover"};
 
 typedef struct outcome {
     ms_clump clump;

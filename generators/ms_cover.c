@@ -1,0 +1,287 @@
+/*
+ * What is not covered yet is kept as bits, 64 voxels of a row in a word. A ball is a run of
+ * bits in each of its rows: counting them costs one root and one or two words a row, and no
+ * list of voxels per candidate is kept.
+ */
+#include "ms_cover.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "ms_vector.h"
+
+enum { WORD = 64 };
+
+
+/* A candidate and what it would cover. */
+typedef struct entry {
+    uint64_t gain;    /* exact when it was counted, an upper bound since */
+    uint32_t index;   /* of the candidate */
+    uint32_t counted; /* how many balls had been taken by then */
+} entry;
+
+struct ms_cover {
+    int n[3];
+    size_t words;   /* per row */
+    uint64_t *left; /* voxels not yet covered, rows along x; one word more, so that a window may overhang */
+    const ms_ball *candidate;
+    int connected;
+    uint32_t n_taken;
+    /* A heap, the best first, and behind it those that touch no ball taken so far (connected). */
+    entry *entry;
+    size_t n_heap, n_entries;
+};
+
+static int popcount(uint64_t x)
+{
+    x -= x >> 1 & 0x5555555555555555u;
+    x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
+    x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+    return (int)(x * 0x0101010101010101u >> 56);
+}
+
+/* The least whole number not below the value, from 0 to n. */
+static int round_up(double value, int n)
+{
+    if (!(value > 0)) {
+        return 0;
+    }
+    return value >= n ? n : (int)value + ((int)value < value);
+}
+
+/* One more than the largest whole number not above the value, from 0 to n. */
+static int beyond(double value, int n)
+{
+    if (!(value >= 0)) {
+        return 0;
+    }
+    return value >= n ? n : (int)value + 1;
+}
+
+/* Bits from..to-1 of a word, cut to the word. */
+static uint64_t run_mask(int from, int to)
+{
+    const uint64_t above = from > 0 ? (from < WORD ? UINT64_MAX << from : 0) : UINT64_MAX;
+    const uint64_t below = to < WORD ? (to > 0 ? UINT64_MAX >> (WORD - to) : 0) : UINT64_MAX;
+    return above & below;
+}
+
+/* Counts the bits that are left in the slab of a ball that is 64 voxels wide from x = base on; takes
+ * them, if asked to. Most rows of a ball have nothing left, and are passed over before their
+ * chord is known. Voxels are chosen by the same operations, to the bit, as in ms_raster by the rule
+ * CENTRE. */
+static inline size_t walk_slab(ms_cover *cover, const ms_ball *ball, int base, int take)
+{
+    const double x = ball->centre[0], y = ball->centre[1], z = ball->centre[2], r = ball->radius;
+    const int planes = beyond(z + r, cover->n[2]), shift = base % WORD;
+    size_t sum = 0;
+    for (int k = round_up(z - r, cover->n[2]); k < planes; k++) {
+        const double dz = k - z, disc = r * r - dz * dz;
+        if (!(disc >= 0)) {
+            continue;
+        }
+        const double reach = sqrt(disc);
+        const int rows = beyond(y + reach, cover->n[1]);
+        int j = round_up(y - reach, cover->n[1]);
+        uint64_t *word = cover->left + cover->words * ((size_t)j + (size_t)cover->n[1] * (size_t)k) + base / WORD;
+        for (; j < rows; j++, word += cover->words) {
+            const uint64_t window = word[0] >> shift | word[1] << 1 << (WORD - 1 - shift);
+            const double dy = j - y, rest = r * r - (dy * dy + dz * dz);
+            if (window == 0 || !(rest >= 0)) {
+                continue;
+            }
+            const double chord = sqrt(rest);
+            const uint64_t run =
+                window & run_mask(round_up(x - chord, cover->n[0]) - base, beyond(x + chord, cover->n[0]) - base);
+            sum += (size_t)popcount(run);
+            if (take) {
+                word[0] &= ~(run << shift);
+                word[1] &= ~(run >> 1 >> (WORD - 1 - shift));
+            }
+        }
+    }
+    return sum;
+}
+
+/* The voxels of a ball that are left. */
+static inline size_t walk(ms_cover *cover, const ms_ball *ball, int take)
+{
+    const double x = ball->centre[0], r = ball->radius;
+    size_t sum = 0;
+    if (r > 0) {
+        const int end = beyond(x + r, cover->n[0]);
+        for (int base = round_up(x - r, cover->n[0]); base < end; base += WORD) {
+            sum += walk_slab(cover, ball, base, take);
+        }
+    }
+    return sum;
+}
+
+/* Is a the better one? No two candidates are equal. */
+static int before(const ms_cover *cover, const entry *a, const entry *b)
+{
+    if (a->gain != b->gain) {
+        return a->gain > b->gain;
+    }
+    const double r = cover->candidate[a->index].radius, s = cover->candidate[b->index].radius;
+    return r != s ? r > s : a->index < b->index;
+}
+
+static void sift_down(ms_cover *cover, size_t at)
+{
+    const entry moved = cover->entry[at];
+    size_t child;
+    while ((child = 2 * at + 1) < cover->n_heap) {
+        if (child + 1 < cover->n_heap && before(cover, &cover->entry[child + 1], &cover->entry[child])) {
+            child++;
+        }
+        if (!before(cover, &cover->entry[child], &moved)) {
+            break;
+        }
+        cover->entry[at] = cover->entry[child];
+        at = child;
+    }
+    cover->entry[at] = moved;
+}
+
+static void sift_up(ms_cover *cover, size_t at)
+{
+    const entry moved = cover->entry[at];
+    while (at > 0 && before(cover, &moved, &cover->entry[(at - 1) / 2])) {
+        cover->entry[at] = cover->entry[(at - 1) / 2];
+        at = (at - 1) / 2;
+    }
+    cover->entry[at] = moved;
+}
+
+/* Removes the first of the heap; the last of those that wait fills the gap behind it. */
+static void drop_first(ms_cover *cover)
+{
+    cover->entry[0] = cover->entry[--cover->n_heap];
+    cover->entry[cover->n_heap] = cover->entry[--cover->n_entries];
+    if (cover->n_heap > 1) {
+        sift_down(cover, 0);
+    }
+}
+
+static int overlap(const ms_ball *a, const ms_ball *b)
+{
+    const double reach = a->radius + b->radius;
+    return ms_squared_distance(a->centre, b->centre) < reach * reach;
+}
+
+/* Those that wait and overlap the ball enter the heap. */
+static void admit(ms_cover *cover, const ms_ball *ball)
+{
+    for (size_t e = cover->n_heap; e < cover->n_entries; e++) {
+        if (overlap(&cover->candidate[cover->entry[e].index], ball)) {
+            const entry swap = cover->entry[e];
+            cover->entry[e] = cover->entry[cover->n_heap];
+            cover->entry[cover->n_heap] = swap;
+            sift_up(cover, cover->n_heap++);
+        }
+    }
+}
+
+static void take_first(ms_cover *cover)
+{
+    const uint32_t index = cover->entry[0].index;
+    const ms_ball *ball = &cover->candidate[index];
+    walk(cover, ball, 1);
+    drop_first(cover);
+    cover->n_taken++;
+    if (cover->connected) {
+        if (cover->n_taken == 1) {
+            cover->n_heap = 0;
+        }
+        admit(cover, ball);
+    }
+}
+
+size_t ms_cover_next(size_t *which, ms_cover *cover)
+{
+    while (cover->n_heap > 0) {
+        entry *first = &cover->entry[0];
+        if (first->counted == cover->n_taken) {
+            const size_t gain = first->gain;
+            *which = first->index;
+            take_first(cover);
+            return gain;
+        }
+        first->gain = walk(cover, &cover->candidate[first->index], 0);
+        first->counted = cover->n_taken;
+        if (first->gain == 0) {
+            drop_first(cover);
+        } else {
+            sift_down(cover, 0);
+        }
+    }
+    return 0;
+}
+
+static void fill(ms_cover *cover, const ms_grid *grid)
+{
+    const ptrdiff_t rows = (ptrdiff_t)grid->n[1] * grid->n[2];
+#pragma omp parallel for schedule(static)
+    for (ptrdiff_t row = 0; row < rows; row++) {
+        const uint8_t *inside = grid->inside + (size_t)grid->n[0] * (size_t)row;
+        uint64_t *word = cover->left + cover->words * (size_t)row;
+        for (int i = 0; i < grid->n[0]; i++) {
+            word[i / WORD] |= (uint64_t)(inside[i] != 0) << i % WORD;
+        }
+    }
+}
+
+static void count_all(ms_cover *cover, size_t count)
+{
+#pragma omp parallel for schedule(dynamic, 64)
+    for (size_t c = 0; c < count; c++) {
+        cover->entry[c] = (entry){.gain = walk(cover, &cover->candidate[c], 0), .index = (uint32_t)c};
+    }
+    for (size_t c = 0; c < count; c++) {
+        if (cover->entry[c].gain > 0) {
+            cover->entry[cover->n_entries++] = cover->entry[c];
+        }
+    }
+    cover->n_heap = cover->n_entries;
+    for (size_t at = cover->n_heap / 2; at-- > 0;) {
+        sift_down(cover, at);
+    }
+}
+
+ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *candidate, size_t count, int connected,
+                         ms_error *err)
+{
+    *out = NULL;
+    if (count > UINT32_MAX) {
+        return ms_fail(err, MS_ERR_LIMIT, "%zu candidates for spheres, and no more than %u can be compared; use fewer "
+                       "cells", count, (unsigned)UINT32_MAX);
+    }
+    const size_t words = ((size_t)grid->n[0] + WORD - 1) / WORD;
+    const size_t total = words * (size_t)grid->n[1] * (size_t)grid->n[2] + 1;
+    ms_cover *cover = calloc(1, sizeof *cover);
+    if (cover) {
+        *cover = (ms_cover){.n = {grid->n[0], grid->n[1], grid->n[2]}, .words = words, .candidate = candidate,
+                            .connected = connected, .left = calloc(total, sizeof *cover->left),
+                            .entry = malloc((count + 1) * sizeof *cover->entry)};
+    }
+    if (!cover || !cover->left || !cover->entry) {
+        ms_cover_free(cover);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres on %zu voxels; use fewer cells",
+                       count, ms_grid_voxels(grid));
+    }
+    fill(cover, grid);
+    count_all(cover, count);
+    *out = cover;
+    return MS_OK;
+}
+
+void ms_cover_free(ms_cover *cover)
+{
+    if (cover) {
+        free(cover->left);
+        free(cover->entry);
+        free(cover);
+    }
+}

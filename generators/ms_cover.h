@@ -1,0 +1,49 @@
+/** Greedy set cover: which balls, one after the other, cover most of a set of voxels. */
+#ifndef MS_COVER_H
+#define MS_COVER_H
+
+#include <stddef.h>
+
+#include "ms_grid.h"
+#include "ms_raster.h"
+
+MS_C_BEGIN
+
+/** Opaque: the voxels not yet covered, one bit each, and what each ball would cover of them. */
+typedef struct ms_cover ms_cover;
+
+/**
+ * Counts, for each candidate, the voxels inside the shape whose centres it contains (on the
+ * surface counts, but for rounding: ms_raster's rule MS_VOXEL_CENTRE).
+ *
+ * @param[out] out       freed by ms_cover_free; NULL on failure
+ * @param      grid      the target; read here only
+ * @param      candidate `count` balls, in voxels; borrowed until ms_cover_free
+ * @param      connected nonzero: after the first one, only balls are taken that overlap one
+ *                       taken before, so that every prefix is one piece
+ * @return MS_OK; MS_ERR_NOMEM; MS_ERR_LIMIT for more than 2^32-1 candidates
+ *
+ * Cost: one pass over the rows of each ball, 64 voxels at a time; all cores.
+ */
+ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *candidate, size_t count, int connected,
+                         ms_error *err);
+
+/**
+ * Takes the candidate that covers the most voxels not yet covered: of equals the one of larger
+ * radius, then the earlier one. What it covers is covered from then on.
+ *
+ * Gains only fall, so that a stale count is a bound: only candidates whose bound beats the
+ * best exact count are counted again (lazy evaluation; Minoux 1978). The choice is exactly
+ * the greedy one (Yuan 2019, algorithm 2), at any number of threads.
+ *
+ * @param[out] which index of the candidate
+ * @return how many voxels it covers that were not covered; 0: no candidate covers any, and
+ *         nothing was taken
+ */
+size_t ms_cover_next(size_t *which, ms_cover *cover);
+
+void ms_cover_free(ms_cover *cover);
+
+MS_C_END
+
+#endif

@@ -1,0 +1,47 @@
+/** The spheres that setcover chooses from. Private to setcover. */
+#ifndef MS_SETCOVER_CANDIDATES_H
+#define MS_SETCOVER_CANDIDATES_H
+
+#include <stddef.h>
+
+#include "ms_raster.h"
+#include "ms_target.h"
+#include "ms_thinning.h"
+
+/** Which voxels of the lattice become candidates. */
+typedef enum setcover_centres {
+    SETCOVER_MEDIAL,   /* of the skeleton, and of the border of the shape, where the skeleton stops short */
+    SETCOVER_SKELETON, /* of the skeleton (the paper) */
+    SETCOVER_ALL       /* all that are inside (the paper's reference) */
+} setcover_centres;
+
+/** Where the centres come from. */
+typedef struct setcover_lattice {
+    double deq; /* voxels per diameter of the ball of equal volume */
+    setcover_centres centres;
+    ms_skeleton kind;
+    int align; /* nonzero: the lattice lies along the principal axes (2.4) */
+} setcover_lattice;
+
+/**
+ * One maximal inscribed sphere for each of the voxels (Yuan 2019, section 3), on a lattice of
+ * its own.
+ *
+ * A closed mesh is voxelised by its voxels' centres; the centres of spheres then move onto the
+ * medial surface (ms_medial_sphere), but for SETCOVER_ALL, and radii are the distances to the
+ * nearest face. For a curve skeleton SETCOVER_MEDIAL leaves out the border.
+ *
+ * A volume, or a mesh with holes, has only the target's voxels: the lattice takes every s-th of
+ * them (align: those nearest to it), SETCOVER_MEDIAL leaves out the border, centres do not
+ * move, and the radius is half a voxel less than the distance to the nearest voxel outside, since the
+ * surface lies between the two.
+ *
+ * @param[out] ball  in voxels of the target's grid, by index on the lattice; the caller frees it
+ * @param[out] count how many
+ * @return MS_OK; MS_ERR_LIMIT if the lattice would be larger than the target's grid and than
+ *         16 million voxels; MS_ERR_SHAPE if no voxel of it is inside; MS_ERR_NOMEM
+ */
+ms_status setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target,
+                              const setcover_lattice *lattice, ms_error *err);
+
+#endif
