@@ -13,7 +13,6 @@
 
 enum { WORD = 64 };
 
-
 /* A candidate and what it would cover. */
 typedef struct entry {
     uint64_t gain;    /* exact when it was counted, an upper bound since */

@@ -45,8 +45,8 @@ static void target_of_deq(ms_target *target, const ms_mesh *mesh, double deq)
     ms_body body;
     ms_error err;
     assert_int_equal(ms_inertia_mesh(&body, mesh, &err), MS_OK);
-    assert_int_equal(ms_target_from_mesh(target, mesh, 1, cbrt(6 * body.volume / acos(-1.0)) / deq, MS_VOXEL_HALF, &err),
-                     MS_OK);
+    const double h = cbrt(6 * body.volume / acos(-1.0)) / deq;
+    assert_int_equal(ms_target_from_mesh(target, mesh, 1, h, MS_VOXEL_HALF, &err), MS_OK);
 }
 
 /* No sphere leaves the mesh by more than rounding, whatever the candidates. */
