@@ -1,43 +1,65 @@
 /*
  * What is not covered yet is kept as bits, 64 voxels of a row in a word. A ball is a run of
- * bits in each of its rows: counting them costs one root and one or two words a row, and no
- * list of voxels per candidate is kept.
+ * bits in each of its rows: counting them costs one root and one or two words a row. What was left of
+ * a candidate is kept once it is few runs: the next count costs one word for each of them.
  */
 #include "ms_cover.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "ms_vector.h"
 
 enum { WORD = 64 };
 
+#define NEVER UINT32_MAX
+
+/* Runs kept for all candidates together, at most: 256 MB. */
+static const size_t MAX_RUNS = (size_t)1 << 24;
+
 /* A candidate and what it would cover. */
 typedef struct entry {
-    uint64_t gain;    /* exact when it was counted, an upper bound since */
+    uint64_t gain;    /* exact when it was counted, an upper bound before and since */
     uint32_t index;   /* of the candidate */
-    uint32_t counted; /* how many balls had been taken by then */
+    uint32_t counted; /* how many balls had been taken by then; NEVER */
 } entry;
+
+/* What was left of a row of a ball, within one word. */
+typedef struct run {
+    size_t word;
+    uint64_t bits;
+} run;
+
+/* All that was left of a ball when it was last counted. */
+typedef struct remains {
+    run *run; /* NULL: not known */
+    size_t n;
+} remains;
 
 struct ms_cover {
     int n[3];
     size_t words;   /* per row */
     uint64_t *left; /* voxels not yet covered, rows along x; one word more, so that a window may overhang */
     const ms_ball *candidate;
+    size_t count;
     int connected;
     uint32_t n_taken;
+    remains *remains; /* of each candidate */
+    run *found;       /* room for most_runs, and one */
+    size_t most_runs; /* that are kept for a candidate */
     /* A heap, the best first, and behind it those that touch no ball taken so far (connected). */
     entry *entry;
     size_t n_heap, n_entries;
 };
 
-static int popcount(uint64_t x)
+static inline size_t popcount(uint64_t x)
 {
     x -= x >> 1 & 0x5555555555555555u;
     x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
     x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
-    return (int)(x * 0x0101010101010101u >> 56);
+    return (size_t)(x * 0x0101010101010101u >> 56);
 }
 
 /* The least whole number not below the value, from 0 to n. */
@@ -66,11 +88,17 @@ static uint64_t run_mask(int from, int to)
     return above & below;
 }
 
+static inline void keep_run(ms_cover *cover, size_t *n_found, run found)
+{
+    cover->found[*n_found < cover->most_runs ? *n_found : cover->most_runs] = found;
+    *n_found += found.bits != 0;
+}
+
 /* Counts the bits that are left in the slab of a ball that is 64 voxels wide from x = base on; takes
- * them, if asked to. Most rows of a ball have nothing left, and are passed over before their
- * chord is known. Voxels are chosen by the same operations, to the bit, as in ms_raster by the rule
- * CENTRE. */
-static inline size_t walk_slab(ms_cover *cover, const ms_ball *ball, int base, int take)
+ * them, or adds their runs to found while there is room, and to n_found. Most rows of a ball have nothing left, and
+ * are passed over before their chord is known. Voxels are chosen by the same operations, to the bit,
+ * as in ms_raster by the rule CENTRE. */
+static inline size_t walk_slab(ms_cover *cover, size_t *n_found, const ms_ball *ball, int base, int take)
 {
     const double x = ball->centre[0], y = ball->centre[1], z = ball->centre[2], r = ball->radius;
     const int planes = beyond(z + r, cover->n[2]), shift = base % WORD;
@@ -83,38 +111,83 @@ static inline size_t walk_slab(ms_cover *cover, const ms_ball *ball, int base, i
         const double reach = sqrt(disc);
         const int rows = beyond(y + reach, cover->n[1]);
         int j = round_up(y - reach, cover->n[1]);
-        uint64_t *word = cover->left + cover->words * ((size_t)j + (size_t)cover->n[1] * (size_t)k) + base / WORD;
+        size_t word = cover->words * ((size_t)j + (size_t)cover->n[1] * (size_t)k) + (size_t)(base / WORD);
         for (; j < rows; j++, word += cover->words) {
-            const uint64_t window = word[0] >> shift | word[1] << 1 << (WORD - 1 - shift);
+            uint64_t *left = cover->left + word;
+            const uint64_t window = left[0] >> shift | left[1] << 1 << (WORD - 1 - shift);
             const double dy = j - y, rest = r * r - (dy * dy + dz * dz);
             if (window == 0 || !(rest >= 0)) {
                 continue;
             }
             const double chord = sqrt(rest);
-            const uint64_t run =
+            const uint64_t bits =
                 window & run_mask(round_up(x - chord, cover->n[0]) - base, beyond(x + chord, cover->n[0]) - base);
-            sum += (size_t)popcount(run);
+            const run low = {word, bits << shift}, high = {word + 1, bits >> 1 >> (WORD - 1 - shift)};
             if (take) {
-                word[0] &= ~(run << shift);
-                word[1] &= ~(run >> 1 >> (WORD - 1 - shift));
+                left[0] &= ~low.bits;
+                left[1] &= ~high.bits;
+            } else {
+                keep_run(cover, n_found, low);
+                keep_run(cover, n_found, high);
             }
+            sum += popcount(bits);
         }
     }
     return sum;
 }
 
-/* The voxels of a ball that are left. */
-static inline size_t walk(ms_cover *cover, const ms_ball *ball, int take)
+static inline size_t walk(ms_cover *cover, size_t *n_found, const ms_ball *ball, int take)
 {
     const double x = ball->centre[0], r = ball->radius;
+    const int end = beyond(x + r, cover->n[0]);
     size_t sum = 0;
-    if (r > 0) {
-        const int end = beyond(x + r, cover->n[0]);
-        for (int base = round_up(x - r, cover->n[0]); base < end; base += WORD) {
-            sum += walk_slab(cover, ball, base, take);
-        }
+    for (int base = round_up(x - r, cover->n[0]); base < end; base += WORD) {
+        sum += walk_slab(cover, n_found, ball, base, take);
     }
     return sum;
+}
+
+/* Counts again what is left of a ball whose runs are known; forgets those of which nothing is. */
+static size_t walk_runs(const ms_cover *cover, remains *part)
+{
+    size_t sum = 0, kept = 0;
+    for (size_t m = 0; m < part->n; m++) {
+        const run left = {part->run[m].word, part->run[m].bits & cover->left[part->run[m].word]};
+        part->run[kept] = left;
+        kept += left.bits != 0;
+        sum += popcount(left.bits);
+    }
+    part->n = kept;
+    return sum;
+}
+
+/* The voxels of a candidate that are left; its runs are kept once they are few. */
+static size_t count_left(ms_cover *cover, uint32_t index)
+{
+    remains *part = &cover->remains[index];
+    if (part->run) {
+        return walk_runs(cover, part);
+    }
+    size_t n = 0;
+    const size_t sum = walk(cover, &n, &cover->candidate[index], 0);
+    if (n <= cover->most_runs && (part->run = malloc((n + 1) * sizeof *part->run))) {
+        memcpy(part->run, cover->found, n * sizeof *part->run);
+        part->n = n;
+    }
+    return sum;
+}
+
+/* Covers what is left of a candidate. */
+static void cover_ball(ms_cover *cover, uint32_t index)
+{
+    remains *part = &cover->remains[index];
+    size_t none = 0;
+    if (!part->run) {
+        walk(cover, &none, &cover->candidate[index], 1);
+    }
+    for (size_t m = 0; m < part->n; m++) {
+        cover->left[part->run[m].word] &= ~part->run[m].bits;
+    }
 }
 
 /* Is a the better one? No two candidates are equal. */
@@ -154,9 +227,12 @@ static void sift_up(ms_cover *cover, size_t at)
     cover->entry[at] = moved;
 }
 
-/* Removes the first of the heap; the last of those that wait fills the gap behind it. */
+/* Removes the first of the heap, for good; the last of those that wait fills the gap behind it. */
 static void drop_first(ms_cover *cover)
 {
+    remains *part = &cover->remains[cover->entry[0].index];
+    free(part->run);
+    *part = (remains){0};
     cover->entry[0] = cover->entry[--cover->n_heap];
     cover->entry[cover->n_heap] = cover->entry[--cover->n_entries];
     if (cover->n_heap > 1) {
@@ -187,7 +263,7 @@ static void take_first(ms_cover *cover)
 {
     const uint32_t index = cover->entry[0].index;
     const ms_ball *ball = &cover->candidate[index];
-    walk(cover, ball, 1);
+    cover_ball(cover, index);
     drop_first(cover);
     cover->n_taken++;
     if (cover->connected) {
@@ -208,7 +284,7 @@ size_t ms_cover_next(size_t *which, ms_cover *cover)
             take_first(cover);
             return gain;
         }
-        first->gain = walk(cover, &cover->candidate[first->index], 0);
+        first->gain = count_left(cover, first->index);
         first->counted = cover->n_taken;
         if (first->gain == 0) {
             drop_first(cover);
@@ -232,15 +308,16 @@ static void fill(ms_cover *cover, const ms_grid *grid)
     }
 }
 
-static void count_all(ms_cover *cover, size_t count)
+/* Every candidate, with as many voxels as a ball can hold: their cubes lie in a ball larger by half
+ * a cube's diagonal. What they cover is counted when they first come to the top. */
+static void rank_all(ms_cover *cover, size_t count)
 {
-#pragma omp parallel for schedule(dynamic, 64)
     for (size_t c = 0; c < count; c++) {
-        cover->entry[c] = (entry){.gain = walk(cover, &cover->candidate[c], 0), .index = (uint32_t)c};
-    }
-    for (size_t c = 0; c < count; c++) {
-        if (cover->entry[c].gain > 0) {
-            cover->entry[cover->n_entries++] = cover->entry[c];
+        const double r = cover->candidate[c].radius;
+        if (r > 0) {
+            const double most = 4.2 * pow(r + 0.87, 3);
+            cover->entry[cover->n_entries++] =
+                (entry){.gain = (uint64_t)fmin(most, 1e18) + 1, .index = (uint32_t)c, .counted = NEVER};
         }
     }
     cover->n_heap = cover->n_entries;
@@ -259,19 +336,22 @@ ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *can
     }
     const size_t words = ((size_t)grid->n[0] + WORD - 1) / WORD;
     const size_t total = words * (size_t)grid->n[1] * (size_t)grid->n[2] + 1;
+    const size_t most_runs = MAX_RUNS / (count + 1024);
     ms_cover *cover = calloc(1, sizeof *cover);
     if (cover) {
         *cover = (ms_cover){.n = {grid->n[0], grid->n[1], grid->n[2]}, .words = words, .candidate = candidate,
-                            .connected = connected, .left = calloc(total, sizeof *cover->left),
-                            .entry = malloc((count + 1) * sizeof *cover->entry)};
+                            .count = count, .connected = connected, .left = calloc(total, sizeof *cover->left),
+                            .entry = malloc((count + 1) * sizeof *cover->entry),
+                            .remains = calloc(count + 1, sizeof *cover->remains),
+                            .most_runs = most_runs, .found = malloc((most_runs + 1) * sizeof *cover->found)};
     }
-    if (!cover || !cover->left || !cover->entry) {
+    if (!cover || !cover->left || !cover->entry || !cover->remains || !cover->found) {
         ms_cover_free(cover);
         return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres on %zu voxels; use fewer cells",
                        count, ms_grid_voxels(grid));
     }
     fill(cover, grid);
-    count_all(cover, count);
+    rank_all(cover, count);
     *out = cover;
     return MS_OK;
 }
@@ -279,6 +359,11 @@ ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *can
 void ms_cover_free(ms_cover *cover)
 {
     if (cover) {
+        for (size_t c = 0; cover->remains && c < cover->count; c++) {
+            free(cover->remains[c].run);
+        }
+        free(cover->remains);
+        free(cover->found);
         free(cover->left);
         free(cover->entry);
         free(cover);

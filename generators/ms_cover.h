@@ -13,8 +13,8 @@ MS_C_BEGIN
 typedef struct ms_cover ms_cover;
 
 /**
- * Counts, for each candidate, the voxels inside the shape whose centres it contains (on the
- * surface counts, but for rounding: ms_raster's rule MS_VOXEL_CENTRE).
+ * Starts with nothing covered. A candidate covers the voxels inside the shape whose centres it contains
+ * (on the surface counts, but for rounding: ms_raster's rule MS_VOXEL_CENTRE).
  *
  * @param[out] out       freed by ms_cover_free; NULL on failure
  * @param      grid      the target; read here only
@@ -23,7 +23,7 @@ typedef struct ms_cover ms_cover;
  *                       taken before, so that every prefix is one piece
  * @return MS_OK; MS_ERR_NOMEM; MS_ERR_LIMIT for more than 2^32-1 candidates
  *
- * Cost: one pass over the rows of each ball, 64 voxels at a time; all cores.
+ * Cost: one pass over the grid, all cores; 40 bytes per candidate, a bit per voxel, 256 MB at most.
  */
 ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *candidate, size_t count, int connected,
                          ms_error *err);
@@ -34,7 +34,9 @@ ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *can
  *
  * Gains only fall, so that a stale count is a bound: only candidates whose bound beats the
  * best exact count are counted again (lazy evaluation; Minoux 1978). The choice is exactly
- * the greedy one (Yuan 2019, algorithm 2), at any number of threads.
+ * the greedy one (Yuan 2019, algorithm 2). Cost: a count takes one pass over the rows of the ball
+ * that have anything left, 64 voxels at a time; each candidate is counted at least once before the
+ * choice comes down to its size. One core.
  *
  * @param[out] which index of the candidate
  * @return how many voxels it covers that were not covered; 0: no candidate covers any, and
