@@ -5,10 +5,12 @@
 
 #include "ms_mss.h"
 #include "ms_setcover.h"
+#include "ms_variational.h"
 
 const ms_generator *const ms_generators[] = {
     &ms_generator_mss,
     &ms_generator_setcover,
+    &ms_generator_variational,
     NULL,
 };
 

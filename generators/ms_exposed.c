@@ -1,0 +1,304 @@
+#include "ms_exposed.h"
+
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_vector.h"
+
+/* Ridge added to the normal equations, as part of the sum of weights. */
+static const double RIDGE = 1e-3;
+
+/* No step is longer than this part of the radius. */
+static const double LONGEST_STEP = 0.25;
+
+/* Distances below this, in voxels, weigh the same. */
+static const double NEAR = 0.5;
+
+/* Spheres in the order of their left ends along x, so that those near one are found in a window. */
+typedef struct end {
+    double left;
+    uint32_t ball;
+} end;
+
+typedef struct sweep {
+    size_t count;
+    const ms_ball *ball;
+    end *end;
+    double widest; /* diameter */
+} sweep;
+
+/* The steps that the spheres want to make. */
+typedef struct move {
+    double centre[3], radius;
+    double weight; /* of the points that are exposed */
+} move;
+
+/* All that a step works with. */
+typedef struct workspace {
+    sweep sweep;
+    double (*direction)[3]; /* as of the Fibonacci lattice, and turned */
+    double (*turned)[3];
+    move *move;
+    gsl_rng *rng;
+} workspace;
+
+static int compare_ends(const void *a, const void *b)
+{
+    const end *p = a, *q = b;
+    return p->left != q->left ? (p->left > q->left) - (p->left < q->left)
+                              : (p->ball > q->ball) - (p->ball < q->ball);
+}
+
+static void sort_ends(sweep *s)
+{
+    s->widest = 0;
+    for (size_t b = 0; b < s->count; b++) {
+        s->end[b] = (end){s->ball[b].centre[0] - s->ball[b].radius, (uint32_t)b};
+        s->widest = fmax(s->widest, 2 * s->ball[b].radius);
+    }
+    qsort(s->end, s->count, sizeof *s->end, compare_ends);
+}
+
+/* Copies the spheres that overlap one; returns how many. */
+static size_t find_neighbours(ms_ball *near, const sweep *s, uint32_t self)
+{
+    const ms_ball *ball = &s->ball[self];
+    const double from = ball->centre[0] - ball->radius - s->widest, to = ball->centre[0] + ball->radius;
+    size_t low = 0, high = s->count, found = 0;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        *(s->end[middle].left < from ? &low : &high) = middle + (s->end[middle].left < from);
+    }
+    for (; low < s->count && s->end[low].left < to; low++) {
+        const ms_ball *other = &s->ball[s->end[low].ball];
+        const double reach = ball->radius + other->radius;
+        if (s->end[low].ball != self && ms_squared_distance(ball->centre, other->centre) < reach * reach) {
+            near[found++] = *other;
+        }
+    }
+    return found;
+}
+
+/* Is a place inside one of the spheres? The one that holds it moves to the front: it holds the next, too. */
+static int is_covered(ms_ball *near, size_t count, const double place[3])
+{
+    for (size_t b = 0; b < count; b++) {
+        if (ms_squared_distance(near[b].centre, place) < near[b].radius * near[b].radius) {
+            const ms_ball swap = near[b];
+            near[b] = near[0];
+            near[0] = swap;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Solves the positive definite a x = b in place, by Cholesky's decomposition; x replaces b. */
+static void solve(double a[4][4], double b[4])
+{
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j <= i; j++) {
+            double sum = a[i][j];
+            for (int k = 0; k < j; k++) {
+                sum -= a[i][k] * a[j][k];
+            }
+            a[i][j] = i == j ? sqrt(sum) : sum / a[j][j];
+        }
+        for (int k = 0; k < i; k++) {
+            b[i] -= a[i][k] * b[k];
+        }
+        b[i] /= a[i][i];
+    }
+    for (int i = 3; i >= 0; i--) {
+        for (int k = i + 1; k < 4; k++) {
+            b[i] -= a[k][i] * b[k];
+        }
+        b[i] /= a[i][i];
+    }
+}
+
+static move find_move(const exposed_fit *fit, const workspace *work, ms_ball *near, uint32_t self)
+{
+    const ms_ball *ball = &work->sweep.ball[self];
+    const size_t neighbours = find_neighbours(near, &work->sweep, self);
+    double a[4][4] = {{0}}, b[4] = {0};
+    move out = {.weight = 0};
+    for (int p = 0; p < fit->points && ball->radius > 0; p++) {
+        const double row[4] = {work->turned[p][0], work->turned[p][1], work->turned[p][2], 1};
+        const double place[3] = {ball->centre[0] + ball->radius * row[0], ball->centre[1] + ball->radius * row[1],
+                                 ball->centre[2] + ball->radius * row[2]};
+        if (is_covered(near, neighbours, place)) {
+            continue;
+        }
+        const double phi = ms_field_at(fit->field, place), w = 1 / fmax(NEAR, fabs(phi));
+        for (int i = 0; i < 4; i++) {
+            for (int j = 0; j <= i; j++) {
+                a[i][j] += w * row[i] * row[j];
+            }
+            b[i] -= w * phi * row[i];
+        }
+        out.weight += w;
+    }
+    if (out.weight > 0) {
+        for (int i = 0; i < 4; i++) {
+            a[i][i] += RIDGE * out.weight;
+        }
+        solve(a, b);
+        memcpy(out.centre, b, sizeof out.centre);
+        out.radius = b[3];
+    }
+    return out;
+}
+
+/* One radius for all: the mean that the spheres want, by what each has exposed. */
+static void share_radius(move *moves, const ms_ball *ball, size_t count)
+{
+    double sum = 0, weight = 0;
+    for (size_t s = 0; s < count; s++) {
+        sum += moves[s].weight * (ball[s].radius + moves[s].radius);
+        weight += moves[s].weight;
+    }
+    for (size_t s = 0; s < count && weight > 0; s++) {
+        moves[s].radius = sum / weight - ball[s].radius;
+    }
+}
+
+static void make_move(ms_ball *ball, const move *step, double damping)
+{
+    const double longest = LONGEST_STEP * ball->radius, length = sqrt(ms_dot(step->centre, step->centre));
+    const double part = damping * (length * damping > longest ? longest / (length * damping) : 1);
+    for (int c = 0; c < 3; c++) {
+        ball->centre[c] += part * step->centre[c];
+    }
+    ball->radius += fmin(fmax(damping * step->radius, -longest), longest);
+}
+
+void exposed_confine(const exposed_fit *fit, ms_ball *ball, size_t count)
+{
+    for (size_t s = 0; s < count; s++) {
+        double most = HUGE_VAL;
+        if (fit->bounds.protrusion < HUGE_VAL) {
+            most = fit->bounds.protrusion - ms_field_at(fit->field, ball[s].centre);
+        }
+        ball[s].radius = fmin(fmax(ball[s].radius, fit->bounds.least), most);
+    }
+    if (fit->bounds.equal) {
+        double least = HUGE_VAL;
+        for (size_t s = 0; s < count; s++) {
+            least = fmin(least, ball[s].radius);
+        }
+        for (size_t s = 0; s < count; s++) {
+            ball[s].radius = least;
+        }
+    }
+}
+
+/* Points of equal areas along a spiral. */
+static void fill_directions(double (*direction)[3], int points)
+{
+    const double turn = acos(-1.0) * (3 - sqrt(5.0));
+    for (int p = 0; p < points; p++) {
+        const double z = 1 - (2 * p + 1.0) / points, r = sqrt(1 - z * z);
+        direction[p][0] = r * cos(turn * p);
+        direction[p][1] = r * sin(turn * p);
+        direction[p][2] = z;
+    }
+}
+
+/* Turns them by a random quaternion, uniform among rotations. */
+static void turn_directions(workspace *work, const exposed_fit *fit)
+{
+    double q[4], square = 0;
+    gsl_rng_set(work->rng, (unsigned long)(fit->seed * 1000003u + fit->turns));
+    for (int i = 0; i < 4; i++) {
+        q[i] = gsl_ran_gaussian(work->rng, 1);
+        square += q[i] * q[i];
+    }
+    const double s = 2 / square, w = q[0], x = q[1], y = q[2], z = q[3];
+    const double turn[3][3] = {{1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)},
+                               {s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)},
+                               {s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)}};
+    for (int p = 0; p < fit->points; p++) {
+        for (int c = 0; c < 3; c++) {
+            work->turned[p][c] = ms_dot(turn[c], work->direction[p]);
+        }
+    }
+}
+
+static void work_free(workspace *work)
+{
+    free(work->sweep.end);
+    free(work->direction);
+    free(work->turned);
+    free(work->move);
+    if (work->rng) {
+        gsl_rng_free(work->rng);
+    }
+}
+
+static ms_status work_alloc(workspace *work, const exposed_fit *fit, const ms_ball *ball, size_t count, ms_error *err)
+{
+    const size_t points = (size_t)fit->points;
+    *work = (workspace){.sweep = {.count = count, .ball = ball, .end = malloc((count + 1) * sizeof *work->sweep.end)},
+                        .direction = malloc(points * sizeof *work->direction),
+                        .turned = malloc(points * sizeof *work->turned),
+                        .move = malloc((count + 1) * sizeof *work->move),
+                        .rng = gsl_rng_alloc(gsl_rng_mt19937)};
+    if (!work->sweep.end || !work->direction || !work->turned || !work->move || !work->rng) {
+        work_free(work);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to fit %zu spheres", count);
+    }
+    fill_directions(work->direction, fit->points);
+    return MS_OK;
+}
+
+/* The moves of all spheres; 0 without memory. */
+static int find_moves(const exposed_fit *fit, workspace *work)
+{
+    const size_t count = work->sweep.count;
+    int enough = 1;
+#pragma omp parallel reduction(&& : enough)
+    {
+        ms_ball *near = malloc((count + 1) * sizeof *near);
+        enough = near != NULL;
+#pragma omp for schedule(dynamic, 4)
+        for (size_t s = 0; s < count; s++) {
+            if (near) {
+                work->move[s] = find_move(fit, work, near, (uint32_t)s);
+            }
+        }
+        free(near);
+    }
+    return enough;
+}
+
+ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int steps, const double damping[2],
+                            ms_error *err)
+{
+    workspace work;
+    ms_status status = work_alloc(&work, fit, ball, count, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    for (int step = 0; step < steps && status == MS_OK; step++, fit->turns++) {
+        const double d = damping[0] + (damping[1] - damping[0]) * step / fmax(1, steps - 1);
+        turn_directions(&work, fit);
+        sort_ends(&work.sweep);
+        if (!find_moves(fit, &work)) {
+            status = ms_fail(err, MS_ERR_NOMEM, "no memory to fit %zu spheres", count);
+            break;
+        }
+        if (fit->bounds.equal) {
+            share_radius(work.move, ball, count);
+        }
+        for (size_t s = 0; s < count; s++) {
+            make_move(&ball[s], &work.move[s], d);
+        }
+        exposed_confine(fit, ball, count);
+    }
+    work_free(&work);
+    return status;
+}

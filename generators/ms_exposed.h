@@ -1,0 +1,47 @@
+/** Fits spheres to a surface where they are exposed. Private to variational. */
+#ifndef MS_EXPOSED_H
+#define MS_EXPOSED_H
+
+#include <stdint.h>
+
+#include "ms_field.h"
+#include "ms_raster.h"
+
+/** What the spheres of a fit have to keep to; lengths in voxels. */
+typedef struct exposed_bounds {
+    double least;      /* no radius below this */
+    double protrusion; /* no sphere sticks out by more; HUGE_VAL: no bound */
+    int equal;         /* nonzero: one radius for all */
+} exposed_bounds;
+
+/** A fit in progress. */
+typedef struct exposed_fit {
+    const ms_field *field; /* borrowed */
+    exposed_bounds bounds;
+    int points;     /* per sphere */
+    uint64_t seed;  /* of the turns of the points */
+    uint64_t turns; /* made so far */
+} exposed_fit;
+
+/**
+ * Moves all spheres, `steps` times, towards the least |S xor U|.
+ *
+ * On each sphere `points` places of a Fibonacci lattice, turned at random for each step. Those
+ * inside another sphere are dropped; at each other one, with outward normal u, phi is the signed
+ * distance to the surface. The step (dc, dR) minimises the sum of w (phi + u.dc + dR)^2 with
+ * w = 1 / max(1/2, |phi|): at rest, the sum of sign(phi) (u, 1) is 0, and that is the derivative of
+ * |S xor U| for the sphere (exposed area outside S less exposed area inside S).
+ *
+ * @param ball    `count` spheres, in voxels
+ * @param damping of the first and of the last step: part of (dc, dR) that is made
+ * @return MS_OK; MS_ERR_NOMEM
+ *
+ * Cost: steps x count x points x neighbours; all cores, the same bits at any number of threads.
+ */
+ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int steps, const double damping[2],
+                            ms_error *err);
+
+/** Makes the spheres keep to the bounds. */
+void exposed_confine(const exposed_fit *fit, ms_ball *ball, size_t count);
+
+#endif

@@ -1,0 +1,113 @@
+#include "ms_field.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_distance.h"
+
+void ms_field_free(ms_field *field)
+{
+    if (field) {
+        free(field->phi);
+        memset(field, 0, sizeof *field);
+    }
+}
+
+static size_t node_index(const ms_field *field, int i, int j, int k)
+{
+    return (size_t)i + (size_t)field->n[0] * ((size_t)j + (size_t)field->n[1] * (size_t)k);
+}
+
+/* The surface lies half-way between the centres of voxels inside and outside. */
+static ms_status fill_from_voxels(ms_field *field, ms_error *err)
+{
+    const ms_grid *grid = &field->target->grid;
+    const size_t voxels = ms_grid_voxels(grid);
+    uint8_t *outside = malloc(voxels);
+    float *away = malloc(voxels * sizeof *away);
+    ms_status status = MS_OK;
+    if (!outside || !away) {
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory for the distances of %zu voxels; use fewer cells", voxels);
+    }
+    for (size_t v = 0; status == MS_OK && v < voxels; v++) {
+        outside[v] = !grid->inside[v];
+    }
+    if (status == MS_OK) {
+        status = ms_distance(away, outside, grid->n, err);
+    }
+    for (int k = 0; status == MS_OK && k < field->n[2]; k++) {
+        for (int j = 0; j < field->n[1]; j++) {
+            for (int i = 0; i < field->n[0]; i++) {
+                const int s = field->step;
+                const size_t v = ms_grid_index(grid, i * s < grid->n[0] ? i * s : grid->n[0] - 1,
+                                               j * s < grid->n[1] ? j * s : grid->n[1] - 1,
+                                               k * s < grid->n[2] ? k * s : grid->n[2] - 1);
+                field->phi[node_index(field, i, j, k)] =
+                    outside[v] ? away[v] - 0.5f : 0.5f - field->target->distance[v];
+            }
+        }
+    }
+    free(outside);
+    free(away);
+    return status;
+}
+
+ms_status ms_field_alloc(ms_field *field, const ms_target *target, int step, ms_error *err)
+{
+    *field = (ms_field){.target = target, .step = step};
+    size_t nodes = 1;
+    for (int a = 0; a < 3; a++) {
+        field->n[a] = (target->grid.n[a] + step - 2) / step + 1;
+        nodes *= (size_t)field->n[a];
+    }
+    field->phi = malloc(nodes * sizeof *field->phi);
+    if (!field->phi) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for signed distances at %zu nodes; use fewer cells", nodes);
+    }
+    for (size_t v = 0; v < nodes; v++) {
+        field->phi[v] = NAN;
+    }
+    const ms_status status = target->mesh && target->closed ? MS_OK : fill_from_voxels(field, err);
+    if (status != MS_OK) {
+        ms_field_free(field);
+    }
+    return status;
+}
+
+/* Two threads may compute a node at once: they find the same. */
+static double node_value(const ms_field *field, int i, int j, int k)
+{
+    float *node = &field->phi[node_index(field, i, j, k)], phi;
+#pragma omp atomic read
+    phi = *node;
+    if (isnan(phi)) {
+        const ms_grid *grid = &field->target->grid;
+        const double at[3] = {(double)i * field->step, (double)j * field->step, (double)k * field->step};
+        double place[3], unused;
+        ms_target_from_voxels(place, &unused, grid, at, 0);
+        phi = (float)(ms_closest_signed_distance(field->target->closest, place) / grid->h);
+#pragma omp atomic write
+        *node = phi;
+    }
+    return (double)phi;
+}
+
+double ms_field_at(const ms_field *field, const double place[3])
+{
+    int at[3];
+    double part[3], beyond = 0;
+    for (int a = 0; a < 3; a++) {
+        const double x = place[a] / field->step, last = field->n[a] - 1, inside = fmin(fmax(x, 0), last);
+        at[a] = (int)fmin(inside, last - 1);
+        part[a] = inside - at[a];
+        beyond += (x - inside) * (x - inside);
+    }
+    double sum = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+        sum += (x ? part[0] : 1 - part[0]) * (y ? part[1] : 1 - part[1]) * (z ? part[2] : 1 - part[2]) *
+               node_value(field, at[0] + x, at[1] + y, at[2] + z);
+    }
+    return sum + sqrt(beyond) * field->step;
+}

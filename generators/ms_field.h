@@ -1,0 +1,41 @@
+/** Signed distance to a target's surface, looked up between the nodes of a lattice. */
+#ifndef MS_FIELD_H
+#define MS_FIELD_H
+
+#include "ms_target.h"
+
+MS_C_BEGIN
+
+/** In voxels of the target's grid, as all lengths here; negative inside. */
+typedef struct ms_field {
+    const ms_target *target; /* borrowed */
+    int step;                /* between nodes */
+    int n[3];                /* nodes: node i lies on voxel i * step */
+    float *phi;              /* at the nodes; NAN: not asked for yet */
+} ms_field;
+
+/**
+ * Of a closed mesh nothing is computed yet: each node is, exactly, when it is first needed, so that
+ * only those near the spheres' surfaces ever are. A volume, or a mesh with holes, has only voxels:
+ * half a voxel less than the distance to the nearest voxel of the other kind.
+ *
+ * @param[out] field the caller frees it; empty on failure
+ * @param      step  1 or more; the look-up is off by step^2 / (8 radius of curvature) or so
+ * @return MS_OK; MS_ERR_NOMEM
+ *
+ * Cost: one pass over the nodes; for voxels a distance transform.
+ */
+ms_status ms_field_alloc(ms_field *field, const ms_target *target, int step, ms_error *err);
+
+/**
+ * Linear between nodes; beyond the lattice, the value at its border and the way there.
+ *
+ * Threads may share a field. Cost: 8 loads, and once per node ms_closest_signed_distance.
+ */
+double ms_field_at(const ms_field *field, const double place[3]);
+
+void ms_field_free(ms_field *field);
+
+MS_C_END
+
+#endif

@@ -1,0 +1,104 @@
+#include "ms_variational_start.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "ms_cover.h"
+
+/* A voxel lies on the ridge unless the distance rises by this much of the way to a neighbour. */
+static const double RISING = 0.95;
+
+ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_error *err)
+{
+    const ms_grid *grid = &target->grid;
+    int n[3];
+    for (int a = 0; a < 3; a++) {
+        n[a] = (grid->n[a] + step - 1) / step;
+    }
+    const ms_status status = ms_grid_alloc(coarse, n, grid->h * step, grid->origin, err);
+    for (int k = 0; status == MS_OK && k < n[2]; k++) {
+        for (int j = 0; j < n[1]; j++) {
+            for (int i = 0; i < n[0]; i++) {
+                coarse->inside[ms_grid_index(coarse, i, j, k)] =
+                    grid->inside[ms_grid_index(grid, i * step, j * step, k * step)];
+            }
+        }
+    }
+    return status;
+}
+
+/* Of voxels inside, which have background around the grid or the hull around them. */
+static int is_ridge(const ms_target *target, const ms_grid *coarse, int step, int i, int j, int k)
+{
+    const ms_grid *grid = &target->grid;
+    const double here = (double)target->distance[ms_grid_index(grid, i * step, j * step, k * step)];
+    for (int t = 0; t < 27; t++) {
+        const int d[3] = {t % 3 - 1, t / 3 % 3 - 1, t / 9 - 1}, x = i + d[0], y = j + d[1], z = k + d[2];
+        if (t == 13 || x < 0 || y < 0 || z < 0 || x >= coarse->n[0] || y >= coarse->n[1] || z >= coarse->n[2]) {
+            continue;
+        }
+        const double there = (double)target->distance[ms_grid_index(grid, x * step, y * step, z * step)];
+        if (there - here >= RISING * step * sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* The inscribed spheres about the ridge, in coarse voxels. */
+static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_target *target, const ms_grid *coarse, int step,
+                            double least, ms_error *err)
+{
+    *count = 0;
+    *ball = malloc((ms_grid_count(coarse) + 1) * sizeof **ball);
+    if (!*ball) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the spheres to start from; use fewer cells");
+    }
+    for (int k = 0; k < coarse->n[2]; k++) {
+        for (int j = 0; j < coarse->n[1]; j++) {
+            for (int i = 0; i < coarse->n[0]; i++) {
+                if (!coarse->inside[ms_grid_index(coarse, i, j, k)]) {
+                    continue;
+                }
+                const size_t voxel = ms_grid_index(&target->grid, i * step, j * step, k * step);
+                const double radius = (double)target->distance[voxel] - 0.5;
+                if (radius >= least && is_ridge(target, coarse, step, i, j, k)) {
+                    (*ball)[(*count)++] = (ms_ball){.centre = {i, j, k}, .radius = radius / step};
+                }
+            }
+        }
+    }
+    return MS_OK;
+}
+
+ms_status start_cover(ms_ball **ball, size_t *count, const ms_target *target, const ms_grid *coarse, int step,
+                      size_t wanted, double least, ms_error *err)
+{
+    ms_ball *candidate;
+    ms_cover *cover = NULL;
+    size_t candidates, which;
+    *ball = NULL;
+    *count = 0;
+    ms_status status = list_ridge(&candidate, &candidates, target, coarse, step, least, err);
+    if (status == MS_OK && !(*ball = malloc((wanted + 1) * sizeof **ball))) {
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", wanted);
+    }
+    if (status == MS_OK) {
+        status = ms_cover_build(&cover, coarse, candidate, candidates, 0, err);
+    }
+    while (status == MS_OK && *count < wanted && ms_cover_next(&which, cover)) {
+        ms_ball *taken = &(*ball)[(*count)++];
+        *taken = candidate[which];
+        for (int a = 0; a < 3; a++) {
+            taken->centre[a] *= step;
+        }
+        taken->radius *= step;
+    }
+    ms_cover_free(cover);
+    free(candidate);
+    if (status != MS_OK) {
+        free(*ball);
+        *ball = NULL;
+    }
+    return status;
+}

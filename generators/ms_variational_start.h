@@ -1,0 +1,30 @@
+/** Where variational starts. Private to it. */
+#ifndef MS_VARIATIONAL_START_H
+#define MS_VARIATIONAL_START_H
+
+#include "ms_raster.h"
+#include "ms_target.h"
+
+/**
+ * Every step-th voxel of a target, with the target's voxels as unit of length still to be divided by step.
+ *
+ * @param[out] coarse the caller frees it; empty on failure
+ */
+ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_error *err);
+
+/**
+ * Covers the voxels of a coarse copy greedily (ms_cover) by the inscribed spheres about its ridge: the voxels
+ * whose sphere no neighbour's sphere contains.
+ *
+ * @param[out] ball  in voxels of the target's grid, the first the most useful; the caller frees it
+ * @param[out] count how many: `wanted`, or fewer if no other one covers anything
+ * @param      least no radius below this, in voxels
+ * @return MS_OK; MS_ERR_NOMEM; MS_ERR_LIMIT
+ *
+ * Source: Yuan 2019, algorithm 2; the ridge: Amanatides & Choi, J. Appl. Crystallogr. 1995, with slack.
+ * Cost: one pass over the coarse voxels with 26 neighbours each, and ms_cover.
+ */
+ms_status start_cover(ms_ball **ball, size_t *count, const ms_target *target, const ms_grid *coarse, int step,
+                      size_t wanted, double least, ms_error *err);
+
+#endif
