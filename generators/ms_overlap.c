@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Voxels from..to-1 of row (j, k) whose centres the sphere holds. */
 static int row_of(int range[2], const ms_ball *ball, const ms_grid *grid, int j, int k)
@@ -87,4 +88,20 @@ ms_status overlap_losses(int64_t *loss, int64_t *mismatch, const ms_grid *grid, 
     }
     free(covers);
     return MS_OK;
+}
+
+void overlap_clear(ms_grid *grid, const ms_ball *ball, size_t count)
+{
+    for (size_t b = 0; b < count; b++) {
+        int planes[2], rows[2], run[2];
+        span_of(planes, &ball[b], grid, 2);
+        span_of(rows, &ball[b], grid, 1);
+        for (int k = planes[0]; k < planes[1]; k++) {
+            for (int j = rows[0]; j < rows[1]; j++) {
+                if (row_of(run, &ball[b], grid, j, k)) {
+                    memset(grid->inside + ms_grid_index(grid, run[0], j, k), 0, (size_t)(run[1] - run[0]));
+                }
+            }
+        }
+    }
 }

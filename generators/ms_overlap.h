@@ -21,4 +21,7 @@
 ms_status overlap_losses(int64_t *loss, int64_t *mismatch, const ms_grid *grid, const ms_ball *ball, size_t count,
                          ms_error *err);
 
+/** Takes the voxels whose centres a sphere holds out of the grid. */
+void overlap_clear(ms_grid *grid, const ms_ball *ball, size_t count);
+
 #endif

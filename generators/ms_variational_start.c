@@ -27,7 +27,7 @@ ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_e
     return status;
 }
 
-/* Of voxels inside, which have background around the grid or the hull around them. */
+/* Does no neighbour's inscribed sphere contain that of this voxel, but for some slack? */
 static int is_ridge(const ms_target *target, const ms_grid *coarse, int step, int i, int j, int k)
 {
     const ms_grid *grid = &target->grid;
@@ -50,19 +50,16 @@ static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_target *targ
                             double least, ms_error *err)
 {
     *count = 0;
-    *ball = malloc((ms_grid_count(coarse) + 1) * sizeof **ball);
+    *ball = malloc(ms_grid_voxels(coarse) * sizeof **ball);
     if (!*ball) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the spheres to start from; use fewer cells");
     }
     for (int k = 0; k < coarse->n[2]; k++) {
         for (int j = 0; j < coarse->n[1]; j++) {
             for (int i = 0; i < coarse->n[0]; i++) {
-                if (!coarse->inside[ms_grid_index(coarse, i, j, k)]) {
-                    continue;
-                }
                 const size_t voxel = ms_grid_index(&target->grid, i * step, j * step, k * step);
                 const double radius = (double)target->distance[voxel] - 0.5;
-                if (radius >= least && is_ridge(target, coarse, step, i, j, k)) {
+                if (radius > 0 && radius >= least && is_ridge(target, coarse, step, i, j, k)) {
                     (*ball)[(*count)++] = (ms_ball){.centre = {i, j, k}, .radius = radius / step};
                 }
             }
@@ -71,23 +68,19 @@ static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_target *targ
     return MS_OK;
 }
 
-ms_status start_cover(ms_ball **ball, size_t *count, const ms_target *target, const ms_grid *coarse, int step,
+ms_status start_cover(ms_ball *ball, size_t *count, const ms_target *target, const ms_grid *coarse, int step,
                       size_t wanted, double least, ms_error *err)
 {
     ms_ball *candidate;
     ms_cover *cover = NULL;
     size_t candidates, which;
-    *ball = NULL;
     *count = 0;
     ms_status status = list_ridge(&candidate, &candidates, target, coarse, step, least, err);
-    if (status == MS_OK && !(*ball = malloc((wanted + 1) * sizeof **ball))) {
-        status = ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", wanted);
-    }
     if (status == MS_OK) {
         status = ms_cover_build(&cover, coarse, candidate, candidates, 0, err);
     }
     while (status == MS_OK && *count < wanted && ms_cover_next(&which, cover)) {
-        ms_ball *taken = &(*ball)[(*count)++];
+        ms_ball *taken = &ball[(*count)++];
         *taken = candidate[which];
         for (int a = 0; a < 3; a++) {
             taken->centre[a] *= step;
@@ -96,9 +89,5 @@ ms_status start_cover(ms_ball **ball, size_t *count, const ms_target *target, co
     }
     ms_cover_free(cover);
     free(candidate);
-    if (status != MS_OK) {
-        free(*ball);
-        *ball = NULL;
-    }
     return status;
 }

@@ -6,25 +6,26 @@
 #include "ms_target.h"
 
 /**
- * Every step-th voxel of a target, with the target's voxels as unit of length still to be divided by step.
+ * Every step-th voxel of a target: voxel i of the copy lies on voxel i * step.
  *
  * @param[out] coarse the caller frees it; empty on failure
  */
 ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_error *err);
 
 /**
- * Covers the voxels of a coarse copy greedily (ms_cover) by the inscribed spheres about its ridge: the voxels
- * whose sphere no neighbour's sphere contains.
+ * Covers voxels of a coarse copy greedily (ms_cover) by the inscribed spheres about the shape's ridge: the
+ * coarse voxels whose sphere no neighbour's sphere contains.
  *
- * @param[out] ball  in voxels of the target's grid, the first the most useful; the caller frees it
- * @param[out] count how many: `wanted`, or fewer if no other one covers anything
- * @param      least no radius below this, in voxels
+ * @param[out] ball   in voxels of the target's grid, the first the most useful; room for `wanted`
+ * @param[out] count  how many: `wanted`, or fewer if no other one covers anything
+ * @param      coarse what is to be covered: a copy of the target, or part of it
+ * @param      least  no radius below this, in voxels of the target
  * @return MS_OK; MS_ERR_NOMEM; MS_ERR_LIMIT
  *
- * Source: Yuan 2019, algorithm 2; the ridge: Amanatides & Choi, J. Appl. Crystallogr. 1995, with slack.
- * Cost: one pass over the coarse voxels with 26 neighbours each, and ms_cover.
+ * Source: Yuan 2019, algorithm 2. Cost: one pass over the coarse voxels with 26 neighbours each, and
+ * ms_cover.
  */
-ms_status start_cover(ms_ball **ball, size_t *count, const ms_target *target, const ms_grid *coarse, int step,
+ms_status start_cover(ms_ball *ball, size_t *count, const ms_target *target, const ms_grid *coarse, int step,
                       size_t wanted, double least, ms_error *err);
 
 #endif

@@ -8,7 +8,7 @@
 #include "ms_generator.h"
 #include "ms_metrics.h"
 
-static const char *const CONTRACTED[] = {"mss", "setcover"};
+static const char *const CONTRACTED[] = {"mss", "setcover", "variational"};
 
 typedef struct outcome {
     ms_clump clump;
@@ -258,7 +258,8 @@ static void measures_end_the_run(void **state)
         stop = ms_stop_none();
         stop.coverage = 0.83;
         check_measure(*g, &f->rough, stop, MS_STOP_COVERAGE);
-        stop.spheres = 3; /* the first of several rules that holds */
+        stop.coverage = 0.99; /* the first of several rules that holds */
+        stop.spheres = 3;
         outcome o = run_with(*g, &f->rough, stop);
         assert_int_equal(o.reason, MS_STOP_SPHERES);
         ms_clump_free(&o.clump);
