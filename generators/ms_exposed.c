@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_medial.h"
 #include "ms_vector.h"
 
 /* Ridge added to the normal equations, as part of the sum of weights. */
@@ -15,8 +14,8 @@ static const double RIDGE = 1e-3;
 /* No step is longer than this part of the radius. */
 static const double LONGEST_STEP = 0.25;
 
-/* A sphere within this of its largest radius, in voxels, grows by moving only. */
-static const double TIGHT = 0.1;
+/* Weight of places that stick out farther than is allowed. */
+static const double STIFF = 1000;
 
 /* Distances below this, in voxels, weigh the same. */
 static const double NEAR = 0.5;
@@ -124,26 +123,16 @@ static void solve(double a[4][4], double b[4])
     }
 }
 
-/* The largest radius allowed about a place. */
-static double most_radius(const exposed_fit *fit, const double centre[3])
+/* Signed distance of a place, exact where there is a mesh: the look-up cuts off the ridges. */
+static double exact_distance(const ms_field *field, const double place[3])
 {
-    const double bound = fit->bounds.protrusion;
-    return bound < HUGE_VAL ? bound - ms_field_at(fit->field, centre) : HUGE_VAL;
-}
-
-/* How that radius grows with the centre's place: its slope across a quarter of the sphere, which
- * on the medial surface is the slope along it. */
-static void radius_slope(double slope[3], const exposed_fit *fit, const ms_ball *ball)
-{
-    const double span = fmax(1, ball->radius / 8);
-    for (int c = 0; c < 3; c++) {
-        double a[3], b[3];
-        memcpy(a, ball->centre, sizeof a);
-        memcpy(b, ball->centre, sizeof b);
-        a[c] -= span;
-        b[c] += span;
-        slope[c] = (most_radius(fit, b) - most_radius(fit, a)) / (2 * span);
+    const ms_target *target = field->target;
+    double p[3], unused;
+    if (!target->closest || !target->closed) {
+        return ms_field_at(field, place);
     }
+    ms_target_from_voxels(p, &unused, &target->grid, place, 0);
+    return ms_closest_signed_distance(target->closest, p) / target->grid.h;
 }
 
 static move find_move(const exposed_fit *fit, const workspace *work, ms_ball *near, uint32_t self)
@@ -151,20 +140,16 @@ static move find_move(const exposed_fit *fit, const workspace *work, ms_ball *ne
     const ms_ball *ball = &work->sweep.ball[self];
     const size_t neighbours = find_neighbours(near, &work->sweep, self);
     double a[4][4] = {{0}}, b[4] = {0};
-    double slope[3] = {0}, own = 1;
     move out = {.weight = 0};
-    if (ball->radius > most_radius(fit, ball->centre) - TIGHT) {
-        radius_slope(slope, fit, ball);
-        own = 0;
-    }
     for (int p = 0; p < fit->points && ball->radius > 0; p++) {
-        const double *u = work->turned[p], row[4] = {u[0] + slope[0], u[1] + slope[1], u[2] + slope[2], own};
-        const double place[3] = {ball->centre[0] + ball->radius * u[0], ball->centre[1] + ball->radius * u[1],
-                                 ball->centre[2] + ball->radius * u[2]};
+        const double row[4] = {work->turned[p][0], work->turned[p][1], work->turned[p][2], 1};
+        const double place[3] = {ball->centre[0] + ball->radius * row[0], ball->centre[1] + ball->radius * row[1],
+                                 ball->centre[2] + ball->radius * row[2]};
         if (is_covered(near, neighbours, place)) {
             continue;
         }
-        const double phi = ms_field_at(fit->field, place), w = 1 / fmax(NEAR, fabs(phi));
+        const double phi = ms_field_at(fit->field, place);
+        const double w = (phi > fit->bounds.protrusion ? STIFF : 1) / fmax(NEAR, fabs(phi));
         for (int i = 0; i < 4; i++) {
             for (int j = 0; j <= i; j++) {
                 a[i][j] += w * row[i] * row[j];
@@ -207,31 +192,17 @@ static void make_move(ms_ball *ball, const move *step, double damping)
     ball->radius += fmin(fmax(damping * step->radius, -longest), longest);
 }
 
-/* Rolls a sphere that sticks out too much off the nearest face, up to the medial surface. */
-static void confine(const exposed_fit *fit, ms_ball *ball)
+double exposed_most_radius(const exposed_fit *fit, const double centre[3])
 {
-    const ms_target *target = fit->field->target;
-    double most = most_radius(fit, ball->centre), centre[3], unused;
-    if (ball->radius > most - TIGHT && most > 0 && target->closest) {
-        ms_target_from_voxels(centre, &unused, &target->grid, ball->centre, 0);
-        if (ms_closest_signed_distance(target->closest, centre) < 0) {
-            const double h = target->grid.h, radius = ms_medial_sphere(centre, target->closest, h, 0.05 * h);
-            ms_target_to_voxels(ball->centre, &most, &target->grid, centre, radius);
-            most += fit->bounds.protrusion;
-            ball->radius = most;
-        }
-    }
-    ball->radius = fmin(fmax(ball->radius, fit->bounds.least), most);
+    const double bound = fit->bounds.protrusion;
+    return bound < HUGE_VAL ? bound - exact_distance(fit->field, centre) : HUGE_VAL;
 }
 
 void exposed_confine(const exposed_fit *fit, ms_ball *ball, size_t count)
 {
-#pragma omp parallel for schedule(dynamic, 4)
-    for (size_t s = 0; s < count; s++) {
-        confine(fit, &ball[s]);
-    }
     double least = HUGE_VAL;
     for (size_t s = 0; s < count; s++) {
+        ball[s].radius = fmin(ball[s].radius, exposed_most_radius(fit, ball[s].centre));
         least = fmin(least, ball[s].radius);
     }
     for (size_t s = 0; s < count && fit->bounds.equal; s++) {
@@ -339,8 +310,8 @@ ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int s
         }
         for (size_t s = 0; s < count; s++) {
             make_move(&ball[s], &work.move[s], d);
+            ball[s].radius = fmax(ball[s].radius, fit->bounds.least);
         }
-        exposed_confine(fit, ball, count);
     }
     work_free(&work);
     return status;

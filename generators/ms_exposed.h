@@ -30,7 +30,8 @@ typedef struct exposed_fit {
  * inside another sphere are dropped; at each other one, with outward normal u, phi is the signed
  * distance to the surface. The step (dc, dR) minimises the sum of w (phi + u.dc + dR)^2 with
  * w = 1 / max(1/2, |phi|): at rest, the sum of sign(phi) (u, 1) is 0, and that is the derivative of
- * |S xor U| for the sphere (exposed area outside S less exposed area inside S).
+ * |S xor U| for the sphere (exposed area outside S less exposed area inside S). Places that stick out
+ * too much weigh a thousand times more; the bound itself is exposed_confine's to keep.
  *
  * @param ball    `count` spheres, in voxels
  * @param damping of the first and of the last step: part of (dc, dR) that is made
@@ -41,7 +42,13 @@ typedef struct exposed_fit {
 ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int steps, const double damping[2],
                             ms_error *err);
 
-/** Makes the spheres keep to the bounds. */
+/**
+ * The largest radius allowed about a place: one that sticks out by the bound. HUGE_VAL without a bound.
+ * Exact where the target has a closed mesh. Cost: once ms_closest_signed_distance.
+ */
+double exposed_most_radius(const exposed_fit *fit, const double centre[3]);
+
+/** Cuts radii to what is allowed, all of them to the same if they are to be equal; 0 or less: nothing is. */
 void exposed_confine(const exposed_fit *fit, ms_ball *ball, size_t count);
 
 #endif

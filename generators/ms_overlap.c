@@ -43,32 +43,12 @@ static void count_plane(uint16_t *covers, const ms_grid *grid, const ms_ball *ba
     }
 }
 
-/* Voxels that only this sphere covers: those inside less those outside. */
-static int64_t loss_of(const uint16_t *covers, const ms_grid *grid, const ms_ball *ball)
-{
-    int planes[2], rows[2], run[2];
-    int64_t loss = 0;
-    span_of(planes, ball, grid, 2);
-    span_of(rows, ball, grid, 1);
-    for (int k = planes[0]; k < planes[1]; k++) {
-        for (int j = rows[0]; j < rows[1]; j++) {
-            if (row_of(run, ball, grid, j, k)) {
-                const size_t row = ms_grid_index(grid, 0, j, k);
-                for (int i = run[0]; i < run[1]; i++) {
-                    loss += covers[row + (size_t)i] == 1 ? (grid->inside[row + (size_t)i] ? 1 : -1) : 0;
-                }
-            }
-        }
-    }
-    return loss;
-}
-
-ms_status overlap_losses(int64_t *loss, int64_t *mismatch, const ms_grid *grid, const ms_ball *ball, size_t count,
-                         ms_error *err)
+ms_status overlap_open(overlap *out, const ms_grid *grid, const ms_ball *ball, size_t count, ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(grid), plane = (size_t)grid->n[0] * (size_t)grid->n[1];
     uint16_t *covers = calloc(voxels, sizeof *covers);
     int64_t sum = 0;
+    *out = (overlap){.grid = grid, .covers = covers};
     if (!covers) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory to compare spheres on %zu voxels; use fewer cells", voxels);
     }
@@ -79,15 +59,79 @@ ms_status overlap_losses(int64_t *loss, int64_t *mismatch, const ms_grid *grid, 
             sum += (covers[v] > 0) != (grid->inside[v] != 0);
         }
     }
-    *mismatch = sum;
-    if (loss) {
-#pragma omp parallel for schedule(dynamic, 4)
-        for (size_t b = 0; b < count; b++) {
-            loss[b] = loss_of(covers, grid, &ball[b]);
+    out->mismatch = sum;
+    return MS_OK;
+}
+
+void overlap_close(overlap *o)
+{
+    free(o->covers);
+    memset(o, 0, sizeof *o);
+}
+
+/* Of the sphere's voxels that so many spheres cover: those inside less those outside. */
+static inline int64_t balance(const overlap *o, const ms_ball *ball, uint16_t covered)
+{
+    const ms_grid *grid = o->grid;
+    int planes[2], rows[2], run[2];
+    int64_t sum = 0;
+    span_of(planes, ball, grid, 2);
+    span_of(rows, ball, grid, 1);
+    for (int k = planes[0]; k < planes[1]; k++) {
+        for (int j = rows[0]; j < rows[1]; j++) {
+            if (!row_of(run, ball, grid, j, k)) {
+                continue;
+            }
+            const size_t row = ms_grid_index(grid, 0, j, k);
+            const uint16_t *covers = o->covers + row;
+            const uint8_t *inside = grid->inside + row;
+            int part = 0;
+            for (int i = run[0]; i < run[1]; i++) {
+                part += (covers[i] == covered) * (2 * inside[i] - 1);
+            }
+            sum += part;
         }
     }
-    free(covers);
-    return MS_OK;
+    return sum;
+}
+
+int64_t overlap_loss(const overlap *o, const ms_ball *ball)
+{
+    return balance(o, ball, 1);
+}
+
+int64_t overlap_gain(const overlap *o, const ms_ball *ball)
+{
+    return balance(o, ball, 0);
+}
+
+static void change(overlap *o, const ms_ball *ball, int by)
+{
+    int planes[2], rows[2], run[2];
+    span_of(planes, ball, o->grid, 2);
+    span_of(rows, ball, o->grid, 1);
+    for (int k = planes[0]; k < planes[1]; k++) {
+        for (int j = rows[0]; j < rows[1]; j++) {
+            if (row_of(run, ball, o->grid, j, k)) {
+                uint16_t *covers = o->covers + ms_grid_index(o->grid, 0, j, k);
+                for (int i = run[0]; i < run[1]; i++) {
+                    covers[i] = (uint16_t)(covers[i] + by);
+                }
+            }
+        }
+    }
+}
+
+void overlap_add(overlap *o, const ms_ball *ball)
+{
+    o->mismatch -= overlap_gain(o, ball);
+    change(o, ball, 1);
+}
+
+void overlap_remove(overlap *o, const ms_ball *ball)
+{
+    o->mismatch += overlap_loss(o, ball);
+    change(o, ball, -1);
 }
 
 void overlap_clear(ms_grid *grid, const ms_ball *ball, size_t count)

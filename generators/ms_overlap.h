@@ -1,4 +1,4 @@
-/** How often voxels are covered: what the mismatch would be without each sphere. Private to variational. */
+/** How often spheres cover voxels, and what |S xor U| would be with other ones. Private to variational. */
 #ifndef MS_OVERLAP_H
 #define MS_OVERLAP_H
 
@@ -7,21 +7,38 @@
 #include "ms_grid.h"
 #include "ms_raster.h"
 
+/** Voxels are covered by a sphere that holds their centres. */
+typedef struct overlap {
+    const ms_grid *grid; /* S; borrowed */
+    uint16_t *covers;    /* spheres that cover each voxel */
+    int64_t mismatch;    /* |S xor U| */
+} overlap;
+
 /**
- * Counts voxels by their centres.
+ * Counts the spheres over each voxel.
  *
- * @param[out] loss     by how many voxels |S xor U| grows if only this sphere is removed; `count`
- *                      values, below 0 where it shrinks; may be NULL
- * @param[out] mismatch |S xor U|
+ * @param[out] out  the caller frees it; empty on failure
+ * @param      ball `count` spheres, in voxels; what lies beyond the grid does not count
  * @return MS_OK; MS_ERR_NOMEM: two bytes a voxel
  *
- * Spheres beyond the grid count for nothing there. Cost: two passes over the spheres' voxels and one
- * over the grid; all cores, the same numbers at any number of threads.
+ * Cost: one pass over the spheres' voxels and one over the grid; all cores, the same numbers at
+ * any number of threads.
  */
-ms_status overlap_losses(int64_t *loss, int64_t *mismatch, const ms_grid *grid, const ms_ball *ball, size_t count,
-                         ms_error *err);
+ms_status overlap_open(overlap *out, const ms_grid *grid, const ms_ball *ball, size_t count, ms_error *err);
+
+/** By how many voxels |S xor U| would grow without this sphere, one of those counted. Cost: its voxels. */
+int64_t overlap_loss(const overlap *o, const ms_ball *ball);
+
+/** By how many voxels |S xor U| would shrink with one more sphere. Cost: its voxels. */
+int64_t overlap_gain(const overlap *o, const ms_ball *ball);
+
+/** Adds a sphere, or takes away one of those counted. */
+void overlap_add(overlap *o, const ms_ball *ball);
+void overlap_remove(overlap *o, const ms_ball *ball);
 
 /** Takes the voxels whose centres a sphere holds out of the grid. */
 void overlap_clear(ms_grid *grid, const ms_ball *ball, size_t count);
+
+void overlap_close(overlap *o);
 
 #endif

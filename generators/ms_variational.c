@@ -11,6 +11,7 @@
 
 #include "ms_exposed.h"
 #include "ms_overlap.h"
+#include "ms_pattern.h"
 #include "ms_variational_start.h"
 #include "ms_vector.h"
 
@@ -18,7 +19,8 @@ enum { EFFORT, POINTS, PROTRUSION, EQUAL_RADIUS };
 
 static const ms_option OPTIONS[] = {
     [EFFORT] = {"effort", MS_OPTION_INTEGER, 0, 0, 3, NULL, NULL,
-                "rounds of adding spheres and dropping the least useful ones after the fit: none, 5, 20, 80"},
+                "rounds of adding spheres and dropping the least useful ones after the fit: none, 5, 20, 80; from 2 on "
+                "spheres are also moved singly, voxel by voxel"},
     [POINTS] = {"points", MS_OPTION_INTEGER, 192, 16, 4096, NULL, NULL, "places on each sphere where it is fitted"},
     [PROTRUSION] = {"protrusion", MS_OPTION_REAL, -1, -1, 1e6, NULL, "voxels",
                     "no sphere sticks out of the shape by more; 0: inscribed; below 0: no bound"},
@@ -39,7 +41,7 @@ static const double LEAST_RADIUS = 0.5;
 static const double RESOLUTION = 6;
 
 /* Steps of the coarse grid and of the field at most, in voxels; steps of the fits. */
-enum { MAX_STEP = 4, FIELD_STEP = 2, START_STEPS = 40, DROP_STEPS = 10, LONG_STEPS = 100, LAST_STEPS = 60 };
+enum { MAX_STEP = 4, FIELD_STEP = 2, START_STEPS = 40, DROP_STEPS = 10, LONG_STEPS = 100, LAST_STEPS = 60, SEARCH_ROUNDS = 20 };
 
 static const int ROUNDS[] = {0, 5, 20, 80};
 
@@ -123,9 +125,6 @@ static ms_status solver_begin(solver *s, const ms_run *run, size_t n, ms_error *
                                       .equal = option(run, EQUAL_RADIUS) != 0},
                            .points = (int)option(run, POINTS),
                            .seed = run->seed};
-    if (status == MS_OK) {
-        exposed_confine(&s->fit, s->ball, s->count);
-    }
     return status;
 }
 
@@ -137,13 +136,26 @@ static ms_status fit(solver *s, int steps, double from, double to, ms_error *err
 
 static ms_status mismatch(int64_t *out, const solver *s, ms_error *err)
 {
-    return overlap_losses(NULL, out, &s->run->target->grid, s->ball, s->count, err);
+    overlap o;
+    const ms_status status = overlap_open(&o, &s->run->target->grid, s->ball, s->count, err);
+    *out = o.mismatch;
+    overlap_close(&o);
+    return status;
 }
 
-/* A fit that is taken back where it makes the mismatch larger. */
+static int is_bounded(const solver *s)
+{
+    return s->fit.bounds.protrusion < HUGE_VAL || s->fit.bounds.equal;
+}
+
+/* A fit that is taken back where it makes the mismatch larger. Before its bounds are kept exactly, a
+ * bounded one has nothing to compare. */
 static ms_status improve(solver *s, int steps, double from, double to, ms_error *err)
 {
-    int64_t before, after;
+    int64_t before = 0, after = 0;
+    if (is_bounded(s)) {
+        return fit(s, steps, from, to, err);
+    }
     memcpy(s->best, s->ball, s->count * sizeof *s->ball);
     ms_status status = mismatch(&before, s, err);
     if (status == MS_OK) {
@@ -158,7 +170,20 @@ static ms_status improve(solver *s, int steps, double from, double to, ms_error 
     return status;
 }
 
-static int overlap(const ms_ball *a, const ms_ball *b)
+/* Makes the spheres keep to their bounds; moves them voxel by voxel, where they are bounded or where
+ * that effort is asked for. */
+static ms_status settle(solver *s, ms_error *err)
+{
+    if (is_bounded(s)) {
+        exposed_confine(&s->fit, s->ball, s->count);
+    }
+    if (is_bounded(s) || option(s->run, EFFORT) >= 2) {
+        return pattern_search(s->ball, s->count, &s->run->target->grid, &s->fit, SEARCH_ROUNDS, err);
+    }
+    return MS_OK;
+}
+
+static int do_overlap(const ms_ball *a, const ms_ball *b)
 {
     const double reach = a->radius + b->radius;
     return ms_squared_distance(a->centre, b->centre) < reach * reach;
@@ -171,7 +196,7 @@ static size_t cheapest(const ms_ball *ball, const int64_t *loss, size_t count, c
     for (size_t b = 0; b < count; b++) {
         int passed = best != SIZE_MAX && loss[b] >= loss[best];
         for (size_t d = 0; d < n_dropped && !passed; d++) {
-            passed = overlap(&ball[b], &dropped[d]);
+            passed = do_overlap(&ball[b], &dropped[d]);
         }
         if (!passed) {
             best = b;
@@ -192,19 +217,29 @@ static void to_coarse(ms_ball *coarse, const solver *s)
     }
 }
 
+/* What the mismatch would grow by without each sphere, on the coarse grid. */
+static ms_status find_losses(int64_t *loss, ms_ball *coarse, const solver *s, ms_error *err)
+{
+    overlap o;
+    to_coarse(coarse, s);
+    const ms_status status = overlap_open(&o, &s->coarse, coarse, s->count, err);
+#pragma omp parallel for schedule(dynamic, 4) if (status == MS_OK)
+    for (size_t b = 0; b < (status == MS_OK ? s->count : 0); b++) {
+        loss[b] = overlap_loss(&o, &coarse[b]);
+    }
+    overlap_close(&o);
+    return status;
+}
+
 /* Drops up to `most` spheres, the least useful ones: at least one. */
 static ms_status drop(solver *s, size_t most, ms_error *err)
 {
     ms_ball *coarse = malloc((s->count + 1) * sizeof *coarse), *dropped = malloc((most + 1) * sizeof *dropped);
-    int64_t *loss = malloc((s->count + 1) * sizeof *loss), unused;
+    int64_t *loss = malloc((s->count + 1) * sizeof *loss);
     size_t n_dropped = 0, b;
-    ms_status status = MS_OK;
-    if (coarse && dropped && loss) {
-        to_coarse(coarse, s);
-        status = overlap_losses(loss, &unused, &s->coarse, coarse, s->count, err);
-    } else {
-        status = ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", s->count);
-    }
+    ms_status status = coarse && dropped && loss
+                           ? find_losses(loss, coarse, s, err)
+                           : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", s->count);
     while (status == MS_OK && n_dropped < most &&
            (b = cheapest(s->ball, loss, s->count, dropped, n_dropped)) != SIZE_MAX) {
         dropped[n_dropped++] = s->ball[b];
@@ -256,7 +291,7 @@ static ms_status add(solver *s, ms_error *err)
 /* Adds spheres, drops as many; taken back where it makes the mismatch larger. */
 static ms_status round_trip(solver *s, ms_error *err)
 {
-    int64_t before, after;
+    int64_t before = 0, after = 0;
     const size_t count = s->count;
     ms_ball *kept = malloc((count + 1) * sizeof *kept);
     ms_status status = kept ? mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
@@ -272,6 +307,9 @@ static ms_status round_trip(solver *s, ms_error *err)
     }
     if (status == MS_OK) {
         status = fit(s, LAST_STEPS, 0.5, 0.05, err);
+    }
+    if (status == MS_OK) {
+        status = settle(s, err);
     }
     if (status == MS_OK) {
         status = mismatch(&after, s, err);
@@ -299,6 +337,9 @@ static ms_status solve(solver *s, const ms_run *run, size_t n, ms_error *err)
     }
     if (status == MS_OK) {
         status = improve(s, LAST_STEPS, 0.5, 0.05, err);
+    }
+    if (status == MS_OK) {
+        status = settle(s, err);
     }
     for (int round = 0; round < ROUNDS[(int)option(run, EFFORT)] && status == MS_OK && s->count > 0; round++) {
         status = round_trip(s, err);

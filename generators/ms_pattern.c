@@ -1,0 +1,70 @@
+#include "ms_pattern.h"
+
+#include <math.h>
+
+#include "ms_overlap.h"
+
+/* In voxels. */
+static const double FIRST_STEP = 2, LAST_STEP = 0.1;
+
+/* The sphere after one of 8 moves; 0 if there is none such. */
+static int try_move(ms_ball *out, const ms_ball *ball, int which, double step, const exposed_fit *fit)
+{
+    const double by = which % 2 ? -step : step;
+    *out = *ball;
+    if (which < 6) {
+        out->centre[which / 2] += by;
+    } else if (fit->bounds.equal) {
+        return 0;
+    } else {
+        out->radius += by;
+    }
+    const double most = exposed_most_radius(fit, out->centre);
+    if (fit->bounds.equal) {
+        return out->radius <= most;
+    }
+    if (most < HUGE_VAL && which < 6) {
+        const int was_tight = ball->radius > exposed_most_radius(fit, ball->centre) - step;
+        out->radius = was_tight ? most : out->radius;
+    }
+    out->radius = fmin(out->radius, most);
+    return out->radius >= fit->bounds.least;
+}
+
+/* The best move of one sphere; 0 if none is better than to stay. */
+static int move_one(ms_ball *ball, overlap *o, double step, const exposed_fit *fit)
+{
+    ms_ball best = *ball, tried;
+    overlap_remove(o, ball);
+    const int64_t before = overlap_gain(o, ball);
+    int64_t most = before;
+    for (int which = 0; which < 8; which++) {
+        const int64_t gain = try_move(&tried, ball, which, step, fit) ? overlap_gain(o, &tried) : before;
+        if (gain > most) {
+            most = gain;
+            best = tried;
+        }
+    }
+    *ball = best;
+    overlap_add(o, ball);
+    return most > before;
+}
+
+ms_status pattern_search(ms_ball *ball, size_t count, const ms_grid *grid, const exposed_fit *fit, int rounds,
+                         ms_error *err)
+{
+    overlap o;
+    double step = FIRST_STEP;
+    ms_status status = overlap_open(&o, grid, ball, count, err);
+    for (int round = 0; status == MS_OK && round < rounds && step > LAST_STEP; round++) {
+        size_t moved = 0;
+        for (size_t b = 0; b < count; b++) {
+            moved += ball[b].radius > 0 && move_one(&ball[b], &o, step, fit);
+        }
+        if (10 * moved <= count) {
+            step /= 2;
+        }
+    }
+    overlap_close(&o);
+    return status;
+}
