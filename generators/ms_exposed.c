@@ -17,10 +17,15 @@ static const double LONGEST_STEP = 0.25;
 /* Weight of places that stick out farther than is allowed. */
 static const double STIFF = 1000;
 
+/* Spheres larger than the mean radius times this are few. */
+static const double LARGE = 1.5;
+
 /* Distances below this, in voxels, weigh the same. */
 static const double NEAR = 0.5;
 
-/* Spheres in the order of their left ends along x, so that those near one are found in a window. */
+/* Spheres in the order of their left ends along x, so that those near one are found in a window as
+ * wide as the widest. The few that are much larger than the mean stand apart: they would make all
+ * windows wide. */
 typedef struct end {
     double left;
     uint32_t ball;
@@ -29,14 +34,16 @@ typedef struct end {
 typedef struct sweep {
     size_t count;
     const ms_ball *ball;
-    end *end;
-    double widest; /* diameter */
+    end *end;       /* in order, and behind them the large ones */
+    size_t n_small; /* in order */
+    double widest;  /* diameter of those */
 } sweep;
 
 /* The steps that the spheres want to make. */
 typedef struct move {
     double centre[3], radius;
-    double weight; /* of the points that are exposed */
+    double along[3]; /* how the centre's step changes with the radius's */
+    double weight;   /* by how much the sum of squares rises with the square of another radius; 0: nothing is exposed */
 } move;
 
 /* All that a step works with. */
@@ -57,28 +64,41 @@ static int compare_ends(const void *a, const void *b)
 
 static void sort_ends(sweep *s)
 {
-    s->widest = 0;
+    double sum = 0;
+    size_t large = s->count;
     for (size_t b = 0; b < s->count; b++) {
-        s->end[b] = (end){s->ball[b].centre[0] - s->ball[b].radius, (uint32_t)b};
-        s->widest = fmax(s->widest, 2 * s->ball[b].radius);
+        sum += s->ball[b].radius;
     }
-    qsort(s->end, s->count, sizeof *s->end, compare_ends);
+    s->widest = LARGE * 2 * sum / (double)s->count;
+    s->n_small = 0;
+    for (size_t b = 0; b < s->count; b++) {
+        const end e = {s->ball[b].centre[0] - s->ball[b].radius, (uint32_t)b};
+        s->end[2 * s->ball[b].radius <= s->widest ? s->n_small++ : --large] = e;
+    }
+    qsort(s->end, s->n_small, sizeof *s->end, compare_ends);
 }
 
-/* Copies the spheres that overlap one; returns how many. */
+/* Copies the spheres that cover part of one's surface; returns how many. */
 static size_t find_neighbours(ms_ball *near, const sweep *s, uint32_t self)
 {
     const ms_ball *ball = &s->ball[self];
     const double from = ball->centre[0] - ball->radius - s->widest, to = ball->centre[0] + ball->radius;
-    size_t low = 0, high = s->count, found = 0;
+    size_t low = 0, high = s->n_small, found = 0;
     while (low < high) {
         const size_t middle = (low + high) / 2;
         *(s->end[middle].left < from ? &low : &high) = middle + (s->end[middle].left < from);
     }
-    for (; low < s->count && s->end[low].left < to; low++) {
-        const ms_ball *other = &s->ball[s->end[low].ball];
+    while (low < s->count) {
+        const end *e = &s->end[low++];
+        if (low <= s->n_small && !(e->left < to)) {
+            low = s->n_small;
+            continue;
+        }
+        const ms_ball *other = &s->ball[e->ball];
         const double reach = ball->radius + other->radius;
-        if (s->end[low].ball != self && ms_squared_distance(ball->centre, other->centre) < reach * reach) {
+        const double square = ms_squared_distance(ball->centre, other->centre);
+        const double deep = ball->radius - other->radius; /* those inside cover nothing of it */
+        if (e->ball != self && square < reach * reach && !(deep > 0 && square < deep * deep)) {
             near[found++] = *other;
         }
     }
@@ -99,8 +119,8 @@ static int is_covered(ms_ball *near, size_t count, const double place[3])
     return 0;
 }
 
-/* Solves the positive definite a x = b in place, by Cholesky's decomposition; x replaces b. */
-static void solve(double a[4][4], double b[4])
+/* Cholesky's decomposition of a positive definite matrix, in place. */
+static void decompose(double a[4][4])
 {
     for (int i = 0; i < 4; i++) {
         for (int j = 0; j <= i; j++) {
@@ -110,29 +130,43 @@ static void solve(double a[4][4], double b[4])
             }
             a[i][j] = i == j ? sqrt(sum) : sum / a[j][j];
         }
-        for (int k = 0; k < i; k++) {
-            b[i] -= a[i][k] * b[k];
-        }
-        b[i] /= a[i][i];
-    }
-    for (int i = 3; i >= 0; i--) {
-        for (int k = i + 1; k < 4; k++) {
-            b[i] -= a[k][i] * b[k];
-        }
-        b[i] /= a[i][i];
     }
 }
 
-/* Signed distance of a place, exact where there is a mesh: the look-up cuts off the ridges. */
-static double exact_distance(const ms_field *field, const double place[3])
+/* Solves l x = b and l^T x = b for the first n unknowns, x in place of b. */
+static void solve_lower(double l[4][4], double *b, int n)
 {
-    const ms_target *target = field->target;
-    double p[3], unused;
-    if (!target->closest || !target->closed) {
-        return ms_field_at(field, place);
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < i; k++) {
+            b[i] -= l[i][k] * b[k];
+        }
+        b[i] /= l[i][i];
     }
-    ms_target_from_voxels(p, &unused, &target->grid, place, 0);
-    return ms_closest_signed_distance(target->closest, p) / target->grid.h;
+}
+
+static void solve_upper(double l[4][4], double *b, int n)
+{
+    for (int i = n - 1; i >= 0; i--) {
+        for (int k = i + 1; k < n; k++) {
+            b[i] -= l[k][i] * b[k];
+        }
+        b[i] /= l[i][i];
+    }
+}
+
+/* The least sum of squares; the last row of the decomposition tells how it rises with the radius. */
+static void solve_move(move *out, double a[4][4], double b[4])
+{
+    decompose(a);
+    solve_lower(a, b, 4);
+    solve_upper(a, b, 4);
+    for (int c = 0; c < 3; c++) {
+        out->centre[c] = b[c];
+        out->along[c] = -a[3][c];
+    }
+    out->radius = b[3];
+    out->weight = a[3][3] * a[3][3];
+    solve_upper(a, out->along, 3);
 }
 
 static move find_move(const exposed_fit *fit, const workspace *work, ms_ball *near, uint32_t self)
@@ -140,6 +174,7 @@ static move find_move(const exposed_fit *fit, const workspace *work, ms_ball *ne
     const ms_ball *ball = &work->sweep.ball[self];
     const size_t neighbours = find_neighbours(near, &work->sweep, self);
     double a[4][4] = {{0}}, b[4] = {0};
+    double weight = 0;
     move out = {.weight = 0};
     for (int p = 0; p < fit->points && ball->radius > 0; p++) {
         const double row[4] = {work->turned[p][0], work->turned[p][1], work->turned[p][2], 1};
@@ -156,29 +191,42 @@ static move find_move(const exposed_fit *fit, const workspace *work, ms_ball *ne
             }
             b[i] -= w * phi * row[i];
         }
-        out.weight += w;
+        weight += w;
     }
-    if (out.weight > 0) {
+    if (weight > 0) {
         for (int i = 0; i < 4; i++) {
-            a[i][i] += RIDGE * out.weight;
+            a[i][i] += RIDGE * weight;
         }
-        solve(a, b);
-        memcpy(out.centre, b, sizeof out.centre);
-        out.radius = b[3];
+        solve_move(&out, a, b);
     }
     return out;
 }
 
-/* One radius for all: the mean that the spheres want, by what each has exposed. */
-static void share_radius(move *moves, const ms_ball *ball, size_t count)
+/* Begins with the mean of all radii. */
+static void make_equal(ms_ball *ball, size_t count)
+{
+    double sum = 0;
+    for (size_t s = 0; s < count; s++) {
+        sum += ball[s].radius;
+    }
+    for (size_t s = 0; s < count; s++) {
+        ball[s].radius = sum / (double)count;
+    }
+}
+
+/* One radius for all: the one of the least sum of squares over all spheres, which are of one radius now. */
+static void share_radius(move *moves, size_t count)
 {
     double sum = 0, weight = 0;
     for (size_t s = 0; s < count; s++) {
-        sum += moves[s].weight * (ball[s].radius + moves[s].radius);
+        sum += moves[s].weight * moves[s].radius;
         weight += moves[s].weight;
     }
     for (size_t s = 0; s < count && weight > 0; s++) {
-        moves[s].radius = sum / weight - ball[s].radius;
+        for (int c = 0; c < 3; c++) {
+            moves[s].centre[c] += moves[s].along[c] * (sum / weight - moves[s].radius);
+        }
+        moves[s].radius = sum / weight;
     }
 }
 
@@ -190,6 +238,18 @@ static void make_move(ms_ball *ball, const move *step, double damping)
         ball->centre[c] += part * step->centre[c];
     }
     ball->radius += fmin(fmax(damping * step->radius, -longest), longest);
+}
+
+/* Signed distance of a place, exact where there is a mesh: the look-up cuts off the ridges. */
+static double exact_distance(const ms_field *field, const double place[3])
+{
+    const ms_target *target = field->target;
+    double p[3], unused;
+    if (!target->closest || !target->closed) {
+        return ms_field_at(field, place);
+    }
+    ms_target_from_voxels(p, &unused, &target->grid, place, 0);
+    return ms_closest_signed_distance(target->closest, p) / target->grid.h;
 }
 
 double exposed_most_radius(const exposed_fit *fit, const double centre[3])
@@ -297,6 +357,9 @@ ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int s
     if (status != MS_OK) {
         return status;
     }
+    if (fit->bounds.equal) {
+        make_equal(ball, count);
+    }
     for (int step = 0; step < steps && status == MS_OK; step++, fit->turns++) {
         const double d = damping[0] + (damping[1] - damping[0]) * step / fmax(1, steps - 1);
         turn_directions(&work, fit);
@@ -306,7 +369,7 @@ ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int s
             break;
         }
         if (fit->bounds.equal) {
-            share_radius(work.move, ball, count);
+            share_radius(work.move, count);
         }
         for (size_t s = 0; s < count; s++) {
             make_move(&ball[s], &work.move[s], d);

@@ -19,8 +19,7 @@ enum { EFFORT, POINTS, PROTRUSION, EQUAL_RADIUS };
 
 static const ms_option OPTIONS[] = {
     [EFFORT] = {"effort", MS_OPTION_INTEGER, 0, 0, 3, NULL, NULL,
-                "rounds of adding spheres and dropping the least useful ones after the fit: none, 5, 20, 80; from 2 on "
-                "spheres are also moved singly, voxel by voxel"},
+                "rounds of adding spheres and dropping the least useful ones after the fit: none, 5, 20, 80"},
     [POINTS] = {"points", MS_OPTION_INTEGER, 192, 16, 4096, NULL, NULL, "places on each sphere where it is fitted"},
     [PROTRUSION] = {"protrusion", MS_OPTION_REAL, -1, -1, 1e6, NULL, "voxels",
                     "no sphere sticks out of the shape by more; 0: inscribed; below 0: no bound"},
@@ -145,11 +144,11 @@ static ms_status mismatch(int64_t *out, const solver *s, ms_error *err)
 
 static int is_bounded(const solver *s)
 {
-    return s->fit.bounds.protrusion < HUGE_VAL || s->fit.bounds.equal;
+    return s->fit.bounds.protrusion < HUGE_VAL;
 }
 
-/* A fit that is taken back where it makes the mismatch larger. Before its bounds are kept exactly, a
- * bounded one has nothing to compare. */
+/* A fit that is taken back where it makes the mismatch larger. Of spheres that may not stick out, the
+ * mismatch says nothing before they are confined. */
 static ms_status improve(solver *s, int steps, double from, double to, ms_error *err)
 {
     int64_t before = 0, after = 0;
@@ -170,17 +169,14 @@ static ms_status improve(solver *s, int steps, double from, double to, ms_error 
     return status;
 }
 
-/* Makes the spheres keep to their bounds; moves them voxel by voxel, where they are bounded or where
- * that effort is asked for. */
+/* Makes the spheres keep to their bounds, and moves them within. */
 static ms_status settle(solver *s, ms_error *err)
 {
-    if (is_bounded(s)) {
-        exposed_confine(&s->fit, s->ball, s->count);
+    if (!is_bounded(s)) {
+        return MS_OK;
     }
-    if (is_bounded(s) || option(s->run, EFFORT) >= 2) {
-        return pattern_search(s->ball, s->count, &s->run->target->grid, &s->fit, SEARCH_ROUNDS, err);
-    }
-    return MS_OK;
+    exposed_confine(&s->fit, s->ball, s->count);
+    return pattern_search(s->ball, s->count, &s->run->target->grid, &s->fit, SEARCH_ROUNDS, err);
 }
 
 static int do_overlap(const ms_ball *a, const ms_ball *b)
