@@ -39,8 +39,11 @@ static const double LEAST_RADIUS = 0.5;
 /* Coarse voxels per edge of the cube that is a sphere's share of the volume, about. */
 static const double RESOLUTION = 6;
 
-/* Steps of the coarse grid and of the field at most, in voxels; steps of the fits. */
-enum { MAX_STEP = 4, FIELD_STEP = 2, START_STEPS = 40, DROP_STEPS = 10, LONG_STEPS = 100, LAST_STEPS = 60, SEARCH_ROUNDS = 20 };
+/* Of the coarse grid and of the field at most, in voxels. */
+enum { MAX_STEP = 4, FIELD_STEP = 2 };
+
+/* Of the fits, and of the search within bounds. */
+enum { START_STEPS = 40, DROP_STEPS = 10, LONG_STEPS = 100, LAST_STEPS = 60, SEARCH_ROUNDS = 20 };
 
 static const int ROUNDS[] = {0, 5, 20, 80};
 
@@ -257,6 +260,9 @@ static ms_status prune(solver *s, ms_error *err)
         if (status == MS_OK) {
             status = fit(s, DROP_STEPS, 0.5, 0.3, err);
         }
+        if (s->run->progress) {
+            s->run->progress(s->run->progress_context, s->count, NAN);
+        }
     }
     return status;
 }
@@ -290,7 +296,8 @@ static ms_status round_trip(solver *s, ms_error *err)
     int64_t before = 0, after = 0;
     const size_t count = s->count;
     ms_ball *kept = malloc((count + 1) * sizeof *kept);
-    ms_status status = kept ? mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
+    ms_status status =
+        kept ? mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     if (status == MS_OK) {
         memcpy(kept, s->ball, count * sizeof *kept);
         status = add(s, err);
@@ -414,6 +421,11 @@ static int has_measure(const ms_stop *stop)
     return stop->eta >= 0 || stop->dice >= 0 || stop->coverage >= 0 || stop->inertia >= 0;
 }
 
+static int is_measure(ms_stop_reason reason)
+{
+    return reason != MS_STOP_SPHERES && reason != MS_STOP_RADIUS && reason != MS_STOP_EXHAUSTED;
+}
+
 /* The number of spheres is sought: doubled until enough, then between the last two by halves. Each
  * is a run of its own, since the best n spheres are not among the best n + 1. */
 static ms_status search(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
@@ -429,7 +441,7 @@ static ms_status search(ms_clump *clump, ms_stop_reason *reason, const ms_run *r
             *reason = MS_STOP_SPHERES;
         }
     }
-    while (status == MS_OK && *reason != MS_STOP_SPHERES && enough - few > 1) {
+    while (status == MS_OK && is_measure(*reason) && enough - few > 1) {
         const size_t middle = few + (enough - few) / 2;
         ms_clump fewer = {0};
         ms_stop_reason why;
