@@ -14,6 +14,9 @@ static const double RIDGE = 1e-3;
 /* No step is longer than this part of the radius. */
 static const double LONGEST_STEP = 0.25;
 
+/* Part of the last step that is made again: chains of spheres settle sooner. */
+static const double MOMENTUM = 0.5;
+
 /* Weight of places that stick out farther than is allowed. */
 static const double STIFF = 1000;
 
@@ -52,6 +55,7 @@ typedef struct workspace {
     double (*direction)[3]; /* as of the Fibonacci lattice, and turned */
     double (*turned)[3];
     move *move;
+    double (*velocity)[4]; /* what was made of the last steps, before damping: centre, radius */
     gsl_rng *rng;
 } workspace;
 
@@ -230,14 +234,17 @@ static void share_radius(move *moves, size_t count)
     }
 }
 
-static void make_move(ms_ball *ball, const move *step, double damping)
+static void make_move(ms_ball *ball, double velocity[4], const move *step, double damping)
 {
-    const double longest = LONGEST_STEP * ball->radius, length = sqrt(ms_dot(step->centre, step->centre));
-    const double part = damping * (length * damping > longest ? longest / (length * damping) : 1);
-    for (int c = 0; c < 3; c++) {
-        ball->centre[c] += part * step->centre[c];
+    for (int c = 0; c < 4; c++) {
+        velocity[c] = MOMENTUM * velocity[c] + (c < 3 ? step->centre[c] : step->radius);
     }
-    ball->radius += fmin(fmax(damping * step->radius, -longest), longest);
+    const double longest = LONGEST_STEP * ball->radius, length = damping * sqrt(ms_dot(velocity, velocity));
+    const double part = length > longest ? damping * longest / length : damping;
+    for (int c = 0; c < 3; c++) {
+        ball->centre[c] += part * velocity[c];
+    }
+    ball->radius += fmin(fmax(damping * velocity[3], -longest), longest);
 }
 
 /* Signed distance of a place, exact where there is a mesh: the look-up cuts off the ridges. */
@@ -262,7 +269,7 @@ void exposed_confine(const exposed_fit *fit, ms_ball *ball, size_t count)
 {
     double least = HUGE_VAL;
     for (size_t s = 0; s < count; s++) {
-        ball[s].radius = fmin(ball[s].radius, exposed_most_radius(fit, ball[s].centre));
+        ball[s].radius = fmax(0, fmin(ball[s].radius, exposed_most_radius(fit, ball[s].centre)));
         least = fmin(least, ball[s].radius);
     }
     for (size_t s = 0; s < count && fit->bounds.equal; s++) {
@@ -308,6 +315,7 @@ static void work_free(workspace *work)
     free(work->direction);
     free(work->turned);
     free(work->move);
+    free(work->velocity);
     if (work->rng) {
         gsl_rng_free(work->rng);
     }
@@ -320,8 +328,9 @@ static ms_status work_alloc(workspace *work, const exposed_fit *fit, const ms_ba
                         .direction = malloc(points * sizeof *work->direction),
                         .turned = malloc(points * sizeof *work->turned),
                         .move = malloc((count + 1) * sizeof *work->move),
+                        .velocity = calloc(count + 1, sizeof *work->velocity),
                         .rng = gsl_rng_alloc(gsl_rng_mt19937)};
-    if (!work->sweep.end || !work->direction || !work->turned || !work->move || !work->rng) {
+    if (!work->sweep.end || !work->direction || !work->turned || !work->move || !work->velocity || !work->rng) {
         work_free(work);
         return ms_fail(err, MS_ERR_NOMEM, "no memory to fit %zu spheres", count);
     }
@@ -372,7 +381,7 @@ ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int s
             share_radius(work.move, count);
         }
         for (size_t s = 0; s < count; s++) {
-            make_move(&ball[s], &work.move[s], d);
+            make_move(&ball[s], work.velocity[s], &work.move[s], d);
             ball[s].radius = fmax(ball[s].radius, fit->bounds.least);
         }
     }

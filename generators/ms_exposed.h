@@ -48,7 +48,7 @@ ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int s
  */
 double exposed_most_radius(const exposed_fit *fit, const double centre[3]);
 
-/** Cuts radii to what is allowed, all of them to the same if they are to be equal; 0 or less: nothing is. */
+/** Cuts radii to what is allowed, all of them to the same if they are to be equal; to 0 where none is. */
 void exposed_confine(const exposed_fit *fit, ms_ball *ball, size_t count);
 
 #endif

@@ -27,8 +27,9 @@ static const ms_option OPTIONS[] = {
     {0},
 };
 
-/* Spheres at the start for each one that is asked for. */
-static const double SURPLUS = 1.5;
+/* Spheres at the start: so many times those asked for, and some more. */
+static const double SURPLUS = 1.25;
+enum { MORE = 2 };
 
 /* Part of the surplus that is dropped at a time, and part of the spheres that a round adds. */
 static const double DROP = 0.1;
@@ -111,7 +112,7 @@ static ms_status solver_begin(solver *s, const ms_run *run, size_t n, ms_error *
 {
     const double protrusion = option(run, PROTRUSION);
     const size_t most = n < run->target->voxels ? n : run->target->voxels; /* more would be alike */
-    *s = (solver){.run = run, .wanted = n, .room = (size_t)ceil(SURPLUS * (double)most)};
+    *s = (solver){.run = run, .wanted = n, .room = (size_t)ceil(SURPLUS * (double)most) + MORE};
     s->ball = malloc(s->room * sizeof *s->ball);
     s->best = malloc(s->room * sizeof *s->best);
     if (!s->ball || !s->best) {
@@ -261,7 +262,7 @@ static ms_status prune(solver *s, ms_error *err)
             status = fit(s, DROP_STEPS, 0.5, 0.3, err);
         }
         if (s->run->progress) {
-            s->run->progress(s->run->progress_context, s->count, NAN);
+            s->run->progress(s->run->progress_context, s->count, (double)NAN);
         }
     }
     return status;
