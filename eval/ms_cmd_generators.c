@@ -81,6 +81,9 @@ static void print_option(const ms_option *o)
     case MS_OPTION_PLANE:
         printf("=A,B,C,D");
         break;
+    case MS_OPTION_CLUMP:
+        printf("=FILE");
+        break;
     }
     printf("\n      %s\n", o->help);
 }

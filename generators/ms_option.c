@@ -37,6 +37,7 @@ void ms_settings_free(ms_settings *settings)
     if (settings) {
         free(settings->value);
         free(settings->plane);
+        ms_clump_free(&settings->clump);
         memset(settings, 0, sizeof *settings);
     }
 }
@@ -156,6 +157,17 @@ static ms_status add_plane(ms_settings *settings, const ms_option *option, const
     return MS_OK;
 }
 
+static ms_status read_clump(ms_settings *settings, const char *path, ms_error *err)
+{
+    ms_clump clump;
+    const ms_status status = ms_clump_read(&clump, path, err);
+    if (status == MS_OK) {
+        ms_clump_free(&settings->clump);
+        settings->clump = clump;
+    }
+    return status;
+}
+
 ms_status ms_settings_set(ms_settings *settings, const char *name, const char *text, ms_error *err)
 {
     const ms_option *option = ms_option_find(settings->options, name);
@@ -174,6 +186,8 @@ ms_status ms_settings_set(ms_settings *settings, const char *name, const char *t
         return set_choice(value, option, text, err);
     case MS_OPTION_PLANE:
         return add_plane(settings, option, text, err);
+    case MS_OPTION_CLUMP:
+        return read_clump(settings, text, err);
     }
     return ms_fail(err, MS_ERR_ARG, "option %s has an unknown type", name);
 }
@@ -184,6 +198,8 @@ void ms_settings_text(char *out, size_t size, const ms_settings *settings, size_
     const double value = settings->value[option];
     if (o->type == MS_OPTION_PLANE) {
         snprintf(out, size, "%zu planes", settings->n_planes);
+    } else if (o->type == MS_OPTION_CLUMP) {
+        snprintf(out, size, "%zu spheres", settings->clump.n_spheres);
     } else if (o->type == MS_OPTION_FLAG) {
         snprintf(out, size, "%s", value != 0 ? "on" : "off");
     } else if (o->type == MS_OPTION_CHOICE) {

@@ -4,6 +4,7 @@
 
 #include <stddef.h>
 
+#include "ms_clump.h"
 #include "ms_error.h"
 
 MS_C_BEGIN
@@ -13,7 +14,8 @@ typedef enum ms_option_type {
     MS_OPTION_INTEGER,
     MS_OPTION_REAL,
     MS_OPTION_CHOICE, /* one of the words in `choices`; the value is its rank */
-    MS_OPTION_PLANE   /* a,b,c,d; may be given more than once; collected in ms_settings */
+    MS_OPTION_PLANE,  /* a,b,c,d; may be given more than once; collected in ms_settings */
+    MS_OPTION_CLUMP   /* a file of spheres (ms_clump_read), read into ms_settings; once per generator */
 } ms_option_type;
 
 /** One option. A table of them ends with a NULL name. */
@@ -32,6 +34,7 @@ typedef struct ms_settings {
     double *value;
     size_t n_planes;
     double (*plane)[4]; /* (a, b, c) of unit length, d scaled with it: a x + b y + c z = d */
+    ms_clump clump; /* empty unless given */
 } ms_settings;
 
 /** All defaults. @param[out] settings the caller frees it @return MS_OK; MS_ERR_NOMEM */
@@ -42,14 +45,14 @@ ms_status ms_settings_init(ms_settings *settings, const ms_option *options, ms_e
  *
  * @param text as the user wrote it; NULL or "" switches a FLAG on
  * @return MS_OK; MS_ERR_ARG for an unknown name (the message lists the names) or a bad value
- *         (the message gives type and range); MS_ERR_NOMEM
+ *         (the message gives type and range); as ms_clump_read; MS_ERR_NOMEM
  */
 ms_status ms_settings_set(ms_settings *settings, const char *name, const char *text, ms_error *err);
 
 /** The option of that name; NULL if there is none. */
 const ms_option *ms_option_find(const ms_option *options, const char *name);
 
-/** Writes the value as text that ms_settings_set reads; planes as "n planes". */
+/** Writes the value as text that ms_settings_set reads; planes as "n planes", a clump as "n spheres". */
 void ms_settings_text(char *out, size_t size, const ms_settings *settings, size_t option);
 
 void ms_settings_free(ms_settings *settings);

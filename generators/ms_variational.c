@@ -15,7 +15,7 @@
 #include "ms_variational_start.h"
 #include "ms_vector.h"
 
-enum { EFFORT, POINTS, PROTRUSION, EQUAL_RADIUS };
+enum { EFFORT, POINTS, PROTRUSION, EQUAL_RADIUS, REFINE };
 
 static const ms_option OPTIONS[] = {
     [EFFORT] = {"effort", MS_OPTION_INTEGER, 0, 0, 3, NULL, NULL,
@@ -24,6 +24,8 @@ static const ms_option OPTIONS[] = {
     [PROTRUSION] = {"protrusion", MS_OPTION_REAL, -1, -1, 1e6, NULL, "voxels",
                     "no sphere sticks out of the shape by more; 0: inscribed; below 0: no bound"},
     [EQUAL_RADIUS] = {"equal-radius", MS_OPTION_FLAG, 0, 0, 1, NULL, NULL, "all spheres of one radius"},
+    [REFINE] = {"refine", MS_OPTION_CLUMP, 0, 0, 0, NULL, NULL,
+                "spheres to start from, of any method: a file as mskit score reads it"},
     {0},
 };
 
@@ -89,46 +91,6 @@ static void solver_free(solver *s)
 static double least_radius(const ms_run *run)
 {
     return fmax(0, run->stop.radius / run->target->grid.h);
-}
-
-/* The cover to start from; on a finer grid where it gives too few spheres. */
-static ms_status start(solver *s, ms_error *err)
-{
-    const ms_target *target = s->run->target;
-    ms_status status = MS_OK;
-    for (s->step = choose_step(target, s->wanted);; s->step--) {
-        status = start_coarsen(&s->coarse, target, s->step, err);
-        if (status == MS_OK) {
-            status = start_cover(s->ball, &s->count, target, &s->coarse, s->step, s->room, least_radius(s->run), err);
-        }
-        if (status != MS_OK || s->count == s->room || s->step == 1) {
-            return status;
-        }
-        ms_grid_free(&s->coarse);
-    }
-}
-
-static ms_status solver_begin(solver *s, const ms_run *run, size_t n, ms_error *err)
-{
-    const double protrusion = option(run, PROTRUSION);
-    const size_t most = n < run->target->voxels ? n : run->target->voxels; /* more would be alike */
-    *s = (solver){.run = run, .wanted = n, .room = (size_t)ceil(SURPLUS * (double)most) + MORE};
-    s->ball = malloc(s->room * sizeof *s->ball);
-    s->best = malloc(s->room * sizeof *s->best);
-    if (!s->ball || !s->best) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", s->room);
-    }
-    ms_status status = start(s, err);
-    if (status == MS_OK) {
-        status = ms_field_alloc(&s->field, run->target, s->step < FIELD_STEP ? s->step : FIELD_STEP, err);
-    }
-    s->fit = (exposed_fit){.field = &s->field,
-                           .bounds = {.least = fmax(least_radius(run), LEAST_RADIUS),
-                                      .protrusion = protrusion < 0 ? HUGE_VAL : protrusion,
-                                      .equal = option(run, EQUAL_RADIUS) != 0},
-                           .points = (int)option(run, POINTS),
-                           .seed = run->seed};
-    return status;
 }
 
 static ms_status fit(solver *s, int steps, double from, double to, ms_error *err)
@@ -268,10 +230,10 @@ static ms_status prune(solver *s, ms_error *err)
     return status;
 }
 
-/* Adds the inscribed spheres that cover most of what the union leaves. */
-static ms_status add(solver *s, ms_error *err)
+/* Adds up to `most` of the inscribed spheres that cover most of what the union leaves. */
+static ms_status add(solver *s, size_t most, ms_error *err)
 {
-    const size_t most = (size_t)ceil(DROP * (double)s->wanted), free_room = s->room - s->count;
+    const size_t free_room = s->room - s->count;
     ms_ball *coarse = malloc((s->count + 1) * sizeof *coarse);
     ms_grid left = {0};
     size_t added = 0;
@@ -291,6 +253,62 @@ static ms_status add(solver *s, ms_error *err)
     return status;
 }
 
+/* The cover to start from; on a finer grid where it gives too few spheres. */
+static ms_status start(solver *s, ms_error *err)
+{
+    const ms_target *target = s->run->target;
+    ms_status status = MS_OK;
+    for (s->step = choose_step(target, s->wanted);; s->step--) {
+        status = start_coarsen(&s->coarse, target, s->step, err);
+        if (status == MS_OK) {
+            status = start_cover(s->ball, &s->count, target, &s->coarse, s->step, s->room, least_radius(s->run), err);
+        }
+        if (status != MS_OK || s->count == s->room || s->step == 1) {
+            return status;
+        }
+        ms_grid_free(&s->coarse);
+    }
+}
+
+/* Spheres that are given, and others where they are too few. */
+static ms_status start_from(solver *s, const ms_clump *given, ms_error *err)
+{
+    const ms_target *target = s->run->target;
+    s->step = choose_step(target, s->wanted);
+    ms_status status = start_coarsen(&s->coarse, target, s->step, err);
+    for (s->count = 0; s->count < given->n_spheres; s->count++) {
+        const ms_sphere *sphere = &given->sphere[s->count];
+        ms_target_to_voxels(s->ball[s->count].centre, &s->ball[s->count].radius, &target->grid, sphere->centre,
+                            sphere->radius);
+    }
+    return status == MS_OK && s->count < s->wanted ? add(s, s->wanted - s->count, err) : status;
+}
+
+static ms_status solver_begin(solver *s, const ms_run *run, size_t n, ms_error *err)
+{
+    const double protrusion = option(run, PROTRUSION);
+    const ms_clump *given = &run->settings->clump;
+    const size_t most = n < run->target->voxels ? n : run->target->voxels; /* more would be alike */
+    const size_t room = (size_t)ceil(SURPLUS * (double)most) + MORE;
+    *s = (solver){.run = run, .wanted = n, .room = room > given->n_spheres ? room : given->n_spheres};
+    s->ball = malloc(s->room * sizeof *s->ball);
+    s->best = malloc(s->room * sizeof *s->best);
+    if (!s->ball || !s->best) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", s->room);
+    }
+    ms_status status = given->n_spheres > 0 ? start_from(s, given, err) : start(s, err);
+    if (status == MS_OK) {
+        status = ms_field_alloc(&s->field, run->target, s->step < FIELD_STEP ? s->step : FIELD_STEP, err);
+    }
+    s->fit = (exposed_fit){.field = &s->field,
+                           .bounds = {.least = fmax(least_radius(run), LEAST_RADIUS),
+                                      .protrusion = protrusion < 0 ? HUGE_VAL : protrusion,
+                                      .equal = option(run, EQUAL_RADIUS) != 0},
+                           .points = (int)option(run, POINTS),
+                           .seed = run->seed};
+    return status;
+}
+
 /* Adds spheres, drops as many; taken back where it makes the mismatch larger. */
 static ms_status round_trip(solver *s, ms_error *err)
 {
@@ -301,7 +319,7 @@ static ms_status round_trip(solver *s, ms_error *err)
         kept ? mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     if (status == MS_OK) {
         memcpy(kept, s->ball, count * sizeof *kept);
-        status = add(s, err);
+        status = add(s, (size_t)ceil(DROP * (double)s->wanted), err);
     }
     if (status == MS_OK) {
         status = fit(s, DROP_STEPS, 0.8, 0.3, err);

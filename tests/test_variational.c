@@ -276,6 +276,33 @@ static void equal_radii_are_equal(void **state)
     ms_clump_free(&unlike);
 }
 
+/* A clump read from a file comes back better, with as many spheres as asked for. */
+static void refining_improves(void **state)
+{
+    const ms_target *target = *state;
+    static const char PATH[] = "test_variational_refine.csv";
+    ms_clump first = generate(target, 8, NULL);
+    FILE *file = fopen(PATH, "w");
+    assert_non_null(file);
+    for (size_t s = 0; s < first.n_spheres; s++) {
+        ms_sphere *sphere = &first.sphere[s];
+        sphere->radius *= 0.8;
+        fprintf(file, "%.17g,%.17g,%.17g,%.17g\n", sphere->centre[0], sphere->centre[1], sphere->centre[2],
+                sphere->radius);
+    }
+    fclose(file);
+    const char *const options[] = {"refine", PATH, NULL};
+    const double before = dice_of(target, &first);
+    for (size_t n = 5; n <= 11; n += 3) {
+        ms_clump clump = generate(target, n, options);
+        assert_int_equal(clump.n_spheres, n);
+        assert_true(dice_of(target, &clump) < 0.8 * before);
+        ms_clump_free(&clump);
+    }
+    remove(PATH);
+    ms_clump_free(&first);
+}
+
 static void effort_does_not_hurt(void **state)
 {
     const ms_target *target = *state;
@@ -316,6 +343,7 @@ int main(void)
         cmocka_unit_test(step_lowers_the_mismatch), cmocka_unit_test(search_never_raises_the_mismatch),
         cmocka_unit_test(unions_are_recovered),     cmocka_unit_test(protrusion_is_kept),
         cmocka_unit_test(equal_radii_are_equal),    cmocka_unit_test(effort_does_not_hurt),
+        cmocka_unit_test(refining_improves),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
