@@ -40,7 +40,7 @@ static const double DROP = 0.1;
 static const double LEAST_RADIUS = 0.5;
 
 /* Coarse voxels per edge of the cube that is a sphere's share of the volume, about. */
-static const double RESOLUTION = 6;
+static const double RESOLUTION = 8;
 
 /* Of the coarse grid and of the field at most, in voxels. */
 enum { MAX_STEP = 4, FIELD_STEP = 2 };

@@ -5,8 +5,9 @@
 
 #include "ms_cover.h"
 
-/* A voxel lies on the ridge unless the distance rises by this much of the way to a neighbour. */
-static const double RISING = 0.95;
+/* A voxel lies on the ridge unless the distance rises by this much of the way to a neighbour: no
+ * direction is more than 27 degrees from one. */
+static const double RISING = 0.85;
 
 ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_error *err)
 {
