@@ -36,7 +36,7 @@ typedef struct end {
 
 typedef struct sweep {
     size_t count;
-    const ms_ball *ball;
+    ms_ball *ball;  /* those that are fitted, and behind them their images */
     end *end;       /* in order, and behind them the large ones */
     size_t n_small; /* in order */
     double widest;  /* diameter of those */
@@ -173,6 +173,30 @@ static void solve_move(move *out, double a[4][4], double b[4])
     solve_upper(a, out->along, 3);
 }
 
+/* A sphere on a plane of symmetry moves along it. */
+static void keep_to_planes(move *m, const mirrors *planes, const ms_ball *ball)
+{
+    for (int a = 0; a < 3; a++) {
+        if (mirrors_holds(planes, ball, a)) {
+            m->centre[a] = m->along[a] = 0;
+        }
+    }
+}
+
+/* How far a place is beyond the planes, in voxels; -HUGE_VAL if it is not. */
+static double beyond_planes(const exposed_fit *fit, const double centre[3], const double place[3])
+{
+    const ms_grid *grid = &fit->field->target->grid;
+    double from[3], to[3], unused;
+    if (!fit->bounds.planes || fit->bounds.planes->n_planes == 0) {
+        return -HUGE_VAL;
+    }
+    ms_target_from_voxels(from, &unused, grid, centre, 0);
+    ms_target_from_voxels(to, &unused, grid, place, 0);
+    const double beyond = planes_beyond(fit->bounds.planes, from, to) / grid->h;
+    return beyond > 0 ? beyond : -HUGE_VAL;
+}
+
 static move find_move(const exposed_fit *fit, const workspace *work, ms_ball *near, uint32_t self)
 {
     const ms_ball *ball = &work->sweep.ball[self];
@@ -184,11 +208,12 @@ static move find_move(const exposed_fit *fit, const workspace *work, ms_ball *ne
         const double row[4] = {work->turned[p][0], work->turned[p][1], work->turned[p][2], 1};
         const double place[3] = {ball->centre[0] + ball->radius * row[0], ball->centre[1] + ball->radius * row[1],
                                  ball->centre[2] + ball->radius * row[2]};
-        if (is_covered(near, neighbours, place)) {
+        const double beyond = beyond_planes(fit, ball->centre, place);
+        if (!(beyond > 0) && is_covered(near, neighbours, place)) {
             continue;
         }
-        const double phi = ms_field_at(fit->field, place);
-        const double w = (phi > fit->bounds.protrusion ? STIFF : 1) / fmax(NEAR, fabs(phi));
+        const double phi = fmax(ms_field_at(fit->field, place), beyond);
+        const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) / fmax(NEAR, fabs(phi));
         for (int i = 0; i < 4; i++) {
             for (int j = 0; j <= i; j++) {
                 a[i][j] += w * row[i] * row[j];
@@ -202,6 +227,7 @@ static move find_move(const exposed_fit *fit, const workspace *work, ms_ball *ne
             a[i][i] += RIDGE * weight;
         }
         solve_move(&out, a, b);
+        keep_to_planes(&out, &fit->mirrors, ball);
     }
     return out;
 }
@@ -219,12 +245,13 @@ static void make_equal(ms_ball *ball, size_t count)
 }
 
 /* One radius for all: the one of the least sum of squares over all spheres, which are of one radius now. */
-static void share_radius(move *moves, size_t count)
+static void share_radius(move *moves, const ms_ball *ball, size_t count, const mirrors *planes)
 {
     double sum = 0, weight = 0;
     for (size_t s = 0; s < count; s++) {
-        sum += moves[s].weight * moves[s].radius;
-        weight += moves[s].weight;
+        const double images = (double)mirrors_images(planes, &ball[s]);
+        sum += images * moves[s].weight * moves[s].radius;
+        weight += images * moves[s].weight;
     }
     for (size_t s = 0; s < count && weight > 0; s++) {
         for (int c = 0; c < 3; c++) {
@@ -259,10 +286,21 @@ static double exact_distance(const ms_field *field, const double place[3])
     return ms_closest_signed_distance(target->closest, p) / target->grid.h;
 }
 
+int exposed_is_bounded(const exposed_bounds *bounds)
+{
+    return bounds->protrusion < HUGE_VAL || (bounds->planes && bounds->planes->n_planes > 0);
+}
+
 double exposed_most_radius(const exposed_fit *fit, const double centre[3])
 {
+    const ms_grid *grid = &fit->field->target->grid;
     const double bound = fit->bounds.protrusion;
-    return bound < HUGE_VAL ? bound - exact_distance(fit->field, centre) : HUGE_VAL;
+    double most = bound < HUGE_VAL ? bound - exact_distance(fit->field, centre) : HUGE_VAL, place[3], unused;
+    if (fit->bounds.planes) {
+        ms_target_from_voxels(place, &unused, grid, centre, 0);
+        most = fmin(most, planes_distance(fit->bounds.planes, place) / grid->h);
+    }
+    return most;
 }
 
 void exposed_confine(const exposed_fit *fit, ms_ball *ball, size_t count)
@@ -311,6 +349,7 @@ static void turn_directions(workspace *work, const exposed_fit *fit)
 
 static void work_free(workspace *work)
 {
+    free(work->sweep.ball);
     free(work->sweep.end);
     free(work->direction);
     free(work->turned);
@@ -321,16 +360,19 @@ static void work_free(workspace *work)
     }
 }
 
-static ms_status work_alloc(workspace *work, const exposed_fit *fit, const ms_ball *ball, size_t count, ms_error *err)
+static ms_status work_alloc(workspace *work, const exposed_fit *fit, size_t count, ms_error *err)
 {
-    const size_t points = (size_t)fit->points;
-    *work = (workspace){.sweep = {.count = count, .ball = ball, .end = malloc((count + 1) * sizeof *work->sweep.end)},
+    const int *across = fit->mirrors.across;
+    const size_t points = (size_t)fit->points, images = count << (across[0] + across[1] + across[2]);
+    *work = (workspace){.sweep = {.ball = malloc((images + 1) * sizeof *work->sweep.ball),
+                                  .end = malloc((images + 1) * sizeof *work->sweep.end)},
                         .direction = malloc(points * sizeof *work->direction),
                         .turned = malloc(points * sizeof *work->turned),
                         .move = malloc((count + 1) * sizeof *work->move),
                         .velocity = calloc(count + 1, sizeof *work->velocity),
                         .rng = gsl_rng_alloc(gsl_rng_mt19937)};
-    if (!work->sweep.end || !work->direction || !work->turned || !work->move || !work->velocity || !work->rng) {
+    if (!work->sweep.ball || !work->sweep.end || !work->direction || !work->turned || !work->move || !work->velocity ||
+        !work->rng) {
         work_free(work);
         return ms_fail(err, MS_ERR_NOMEM, "no memory to fit %zu spheres", count);
     }
@@ -339,13 +381,14 @@ static ms_status work_alloc(workspace *work, const exposed_fit *fit, const ms_ba
 }
 
 /* The moves of all spheres; 0 without memory. */
-static int find_moves(const exposed_fit *fit, workspace *work)
+static int find_moves(const exposed_fit *fit, workspace *work, const ms_ball *ball, size_t count)
 {
-    const size_t count = work->sweep.count;
+    work->sweep.count = mirrors_expand(work->sweep.ball, ball, count, &fit->mirrors);
+    sort_ends(&work->sweep);
     int enough = 1;
 #pragma omp parallel reduction(&& : enough)
     {
-        ms_ball *near = malloc((count + 1) * sizeof *near);
+        ms_ball *near = malloc((work->sweep.count + 1) * sizeof *near);
         enough = near != NULL;
 #pragma omp for schedule(dynamic, 4)
         for (size_t s = 0; s < count; s++) {
@@ -362,7 +405,7 @@ ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int s
                             ms_error *err)
 {
     workspace work;
-    ms_status status = work_alloc(&work, fit, ball, count, err);
+    ms_status status = work_alloc(&work, fit, count, err);
     if (status != MS_OK) {
         return status;
     }
@@ -372,13 +415,12 @@ ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int s
     for (int step = 0; step < steps && status == MS_OK; step++, fit->turns++) {
         const double d = damping[0] + (damping[1] - damping[0]) * step / fmax(1, steps - 1);
         turn_directions(&work, fit);
-        sort_ends(&work.sweep);
-        if (!find_moves(fit, &work)) {
+        if (!find_moves(fit, &work, ball, count)) {
             status = ms_fail(err, MS_ERR_NOMEM, "no memory to fit %zu spheres", count);
             break;
         }
         if (fit->bounds.equal) {
-            share_radius(work.move, count);
+            share_radius(work.move, ball, count, &fit->mirrors);
         }
         for (size_t s = 0; s < count; s++) {
             make_move(&ball[s], work.velocity[s], &work.move[s], d);

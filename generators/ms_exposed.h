@@ -5,6 +5,8 @@
 #include <stdint.h>
 
 #include "ms_field.h"
+#include "ms_mirror.h"
+#include "ms_planes.h"
 #include "ms_raster.h"
 
 /** What the spheres of a fit have to keep to; lengths in voxels. */
@@ -12,12 +14,14 @@ typedef struct exposed_bounds {
     double least;      /* no radius below this */
     double protrusion; /* no sphere sticks out by more; HUGE_VAL: no bound */
     int equal;         /* nonzero: one radius for all */
+    const ms_settings *planes; /* those that no sphere crosses; NULL: none */
 } exposed_bounds;
 
 /** A fit in progress. */
 typedef struct exposed_fit {
     const ms_field *field; /* borrowed */
     exposed_bounds bounds;
+    mirrors mirrors; /* each sphere stands for its images, too; zero: for itself */
     int points;     /* per sphere */
     uint64_t seed;  /* of the turns of the points */
     uint64_t turns; /* made so far */
@@ -31,9 +35,9 @@ typedef struct exposed_fit {
  * distance to the surface. The step (dc, dR) minimises the sum of w (phi + u.dc + dR)^2 with
  * w = 1 / max(1/2, |phi|): at rest, the sum of sign(phi) (u, 1) is 0, and that is the derivative of
  * |S xor U| for the sphere (exposed area outside S less exposed area inside S). Places that stick out
- * too much weigh a thousand times more; the bound itself is exposed_confine's to keep.
+ * too much, or lie beyond a plane, weigh a thousand times more; the bound itself is exposed_confine's to keep.
  *
- * @param ball    `count` spheres, in voxels
+ * @param ball    `count` spheres, in voxels; those on a plane of symmetry stay on it
  * @param damping of the first and of the last step: part of (dc, dR) that is made
  * @return MS_OK; MS_ERR_NOMEM
  *
@@ -42,8 +46,11 @@ typedef struct exposed_fit {
 ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int steps, const double damping[2],
                             ms_error *err);
 
+/** Nonzero if protrusion is bounded or there are planes. */
+int exposed_is_bounded(const exposed_bounds *bounds);
+
 /**
- * The largest radius allowed about a place: one that sticks out by the bound. HUGE_VAL without a bound.
+ * The largest radius allowed about a place: one that sticks out by the bound, or reaches to a plane. HUGE_VAL without.
  * Exact where the target has a closed mesh. Cost: once ms_closest_signed_distance.
  */
 double exposed_most_radius(const exposed_fit *fit, const double centre[3]);

@@ -56,16 +56,12 @@ static double option(const mss *m, int which)
 static int confine(ms_ball *ball, mss *m)
 {
     const ms_target *target = m->run->target;
-    const ms_settings *settings = m->run->settings;
     double centre[3], radius, allowed = HUGE_VAL;
     ms_target_from_voxels(centre, &radius, &target->grid, ball->centre, ball->radius);
     if (option(m, CONFINE) != 0) {
         allowed = -ms_closest_signed_distance(target->closest, centre);
     }
-    for (size_t p = 0; p < settings->n_planes; p++) {
-        const double *q = settings->plane[p];
-        allowed = fmin(allowed, fabs(q[0] * centre[0] + q[1] * centre[1] + q[2] * centre[2] - q[3]));
-    }
+    allowed = fmin(allowed, planes_distance(m->run->settings, centre));
     if (allowed < radius) {
         radius = allowed;
         ball->radius = allowed / target->grid.h;
@@ -306,8 +302,7 @@ static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run 
     if (run->settings->value[CONFINE] != 0 && (!run->target->closest || !run->target->closed)) {
         return ms_fail(err, MS_ERR_ARG, "confine needs a closed mesh; this shape is a volume or an open mesh");
     }
-    ms_status status = mss_field_init(&m.field, run->target, (const double(*)[4])run->settings->plane,
-                                      run->settings->n_planes, err);
+    ms_status status = mss_field_init(&m.field, run->target, run->settings, err);
     if (status == MS_OK) {
         m.spacing = first_spacing(&m);
         status = update_candidates(&m, 0, err);

@@ -38,31 +38,7 @@ static void box_include(box *b, int from, int to, int j, int k)
     }
 }
 
-/* E cut down to the distance to the nearest plane, in voxels. */
-static void wall_off(float *e, const ms_target *target, const double (*planes)[4], size_t n_planes)
-{
-    const ms_grid *grid = &target->grid;
-#pragma omp parallel for
-    for (int k = 0; k < grid->n[2]; k++) {
-        for (int j = 0; j < grid->n[1]; j++) {
-            const size_t start = ms_grid_index(grid, 0, j, k);
-            for (int i = 0; i < grid->n[0]; i++) {
-                double least = (double)target->distance[start + (size_t)i];
-                for (size_t p = 0; p < n_planes; p++) {
-                    const double *q = planes[p];
-                    const double side = q[0] * (grid->origin[0] + grid->h * i) +
-                                        q[1] * (grid->origin[1] + grid->h * j) +
-                                        q[2] * (grid->origin[2] + grid->h * k) - q[3];
-                    least = fmin(least, fabs(side) / grid->h);
-                }
-                e[start + (size_t)i] = (float)least;
-            }
-        }
-    }
-}
-
-ms_status mss_field_init(mss_field *field, const ms_target *target, const double (*planes)[4], size_t n_planes,
-                         ms_error *err)
+ms_status mss_field_init(mss_field *field, const ms_target *target, const ms_settings *settings, ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(&target->grid);
     float deepest = 0;
@@ -70,14 +46,14 @@ ms_status mss_field_init(mss_field *field, const ms_target *target, const double
     field->target = target;
     field->weight = 1;
     field->star = malloc(voxels * sizeof *field->star);
-    field->own_e = n_planes ? malloc(voxels * sizeof *field->own_e) : NULL;
-    if (!field->star || (n_planes && !field->own_e)) {
+    field->own_e = settings->n_planes ? malloc(voxels * sizeof *field->own_e) : NULL;
+    if (!field->star || (settings->n_planes && !field->own_e)) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the field E* of %zu voxels; use fewer cells", voxels);
     }
-    if (n_planes) {
-        wall_off(field->own_e, target, planes, n_planes);
+    if (settings->n_planes) {
+        planes_cut(field->own_e, target, settings);
     }
-    field->e = n_planes ? field->own_e : target->distance;
+    field->e = settings->n_planes ? field->own_e : target->distance;
 #pragma omp parallel for reduction(max : deepest)
     for (size_t v = 0; v < voxels; v++) {
         field->star[v] = 2 * field->e[v];

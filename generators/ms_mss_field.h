@@ -2,6 +2,7 @@
 #ifndef MS_MSS_FIELD_H
 #define MS_MSS_FIELD_H
 
+#include "ms_planes.h"
 #include "ms_raster.h"
 #include "ms_target.h"
 
@@ -20,12 +21,10 @@ typedef struct mss_field {
 /**
  * No spheres yet: w = 1, E~ = 0, E* = 2E; all of it counts as changed.
  *
- * @param planes (a, b, c, d), a x + b y + c z = d in the mesh's frame, (a, b, c) of unit
- *               length: each is taken as a wall, so that E has its maxima on either side
+ * @param settings its planes are walls: E has its maxima on either side
  * @return MS_OK; MS_ERR_NOMEM
  */
-ms_status mss_field_init(mss_field *field, const ms_target *target, const double (*planes)[4], size_t n_planes,
-                         ms_error *err);
+ms_status mss_field_init(mss_field *field, const ms_target *target, const ms_settings *settings, ms_error *err);
 
 /**
  * Adds spheres to S~ and recomputes E* where that can have changed it.

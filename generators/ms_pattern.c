@@ -1,6 +1,7 @@
 #include "ms_pattern.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "ms_overlap.h"
 
@@ -12,6 +13,9 @@ static int try_move(ms_ball *out, const ms_ball *ball, int which, double step, c
 {
     const double by = which % 2 ? -step : step;
     *out = *ball;
+    if (which < 6 && mirrors_holds(&fit->mirrors, ball, which / 2)) {
+        return 0;
+    }
     if (which < 6) {
         out->centre[which / 2] += by;
     } else if (fit->bounds.equal) {
@@ -31,22 +35,44 @@ static int try_move(ms_ball *out, const ms_ball *ball, int which, double step, c
     return out->radius >= fit->bounds.least;
 }
 
+/* Adds a sphere and its images, or takes them away; returns by how much the mismatch shrinks. */
+static int64_t change(overlap *o, const ms_ball *ball, const mirrors *m, void (*by)(overlap *, const ms_ball *))
+{
+    ms_ball image[8];
+    const int64_t before = o->mismatch;
+    const size_t images = mirrors_expand(image, ball, 1, m);
+    for (size_t i = 0; i < images; i++) {
+        by(o, &image[i]);
+    }
+    return before - o->mismatch;
+}
+
+/* By how much the mismatch would shrink with a sphere and its images. */
+static int64_t gain_of(overlap *o, const ms_ball *ball, const mirrors *m)
+{
+    if (mirrors_images(m, ball) == 1) {
+        return overlap_gain(o, ball);
+    }
+    const int64_t gain = change(o, ball, m, overlap_add);
+    change(o, ball, m, overlap_remove);
+    return gain;
+}
+
 /* The best move of one sphere; 0 if none is better than to stay. */
 static int move_one(ms_ball *ball, overlap *o, double step, const exposed_fit *fit)
 {
     ms_ball best = *ball, tried;
-    overlap_remove(o, ball);
-    const int64_t before = overlap_gain(o, ball);
+    const int64_t before = -change(o, ball, &fit->mirrors, overlap_remove);
     int64_t most = before;
     for (int which = 0; which < 8; which++) {
-        const int64_t gain = try_move(&tried, ball, which, step, fit) ? overlap_gain(o, &tried) : before;
+        const int64_t gain = try_move(&tried, ball, which, step, fit) ? gain_of(o, &tried, &fit->mirrors) : before;
         if (gain > most) {
             most = gain;
             best = tried;
         }
     }
     *ball = best;
-    overlap_add(o, ball);
+    change(o, ball, &fit->mirrors, overlap_add);
     return most > before;
 }
 
@@ -55,7 +81,11 @@ ms_status pattern_search(ms_ball *ball, size_t count, const ms_grid *grid, const
 {
     overlap o;
     double step = FIRST_STEP;
-    ms_status status = overlap_open(&o, grid, ball, count, err);
+    ms_ball *all = malloc((8 * count + 1) * sizeof *all);
+    if (!all) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
+    }
+    ms_status status = overlap_open(&o, grid, all, mirrors_expand(all, ball, count, &fit->mirrors), err);
     for (int round = 0; status == MS_OK && round < rounds && step > LAST_STEP; round++) {
         size_t moved = 0;
         for (size_t b = 0; b < count; b++) {
@@ -66,5 +96,6 @@ ms_status pattern_search(ms_ball *ball, size_t count, const ms_grid *grid, const
         }
     }
     overlap_close(&o);
+    free(all);
     return status;
 }

@@ -7,15 +7,10 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "ms_exposed.h"
-#include "ms_overlap.h"
-#include "ms_pattern.h"
-#include "ms_variational_start.h"
-#include "ms_vector.h"
+#include "ms_variational_solve.h"
 
-enum { EFFORT, POINTS, PROTRUSION, EQUAL_RADIUS, REFINE };
+enum { EFFORT, POINTS, PROTRUSION, EQUAL_RADIUS, SYMMETRY, PLANES, REFINE };
 
 static const ms_option OPTIONS[] = {
     [EFFORT] = {"effort", MS_OPTION_INTEGER, 0, 0, 3, NULL, NULL,
@@ -24,360 +19,29 @@ static const ms_option OPTIONS[] = {
     [PROTRUSION] = {"protrusion", MS_OPTION_REAL, -1, -1, 1e6, NULL, "voxels",
                     "no sphere sticks out of the shape by more; 0: inscribed; below 0: no bound"},
     [EQUAL_RADIUS] = {"equal-radius", MS_OPTION_FLAG, 0, 0, 1, NULL, NULL, "all spheres of one radius"},
+    [SYMMETRY] = {"symmetry", MS_OPTION_CHOICE, 0, 0, 0, "none|x|y|z|xy|xz|yz|xyz", NULL,
+                  "the spheres are mirror images across planes through the centroid, normal to these axes"},
+    [PLANES] = {"plane", MS_OPTION_PLANE, 0, 0, 0, NULL, NULL,
+                "a,b,c,d: no sphere crosses the plane a x + b y + c z = d; may be repeated"},
     [REFINE] = {"refine", MS_OPTION_CLUMP, 0, 0, 0, NULL, NULL,
                 "spheres to start from, of any method: a file as mskit score reads it"},
     {0},
 };
 
-/* Spheres at the start: so many times those asked for, and some more. */
-static const double SURPLUS = 1.25;
-enum { MORE = 2 };
-
-/* Part of the surplus that is dropped at a time, and part of the spheres that a round adds. */
-static const double DROP = 0.1;
-
-/* Radii that become smaller, in voxels, say nothing about the shape. */
-static const double LEAST_RADIUS = 0.5;
-
-/* Coarse voxels per edge of the cube that is a sphere's share of the volume, about. */
-static const double RESOLUTION = 8;
-
-/* Of the coarse grid and of the field at most, in voxels. */
-enum { MAX_STEP = 4, FIELD_STEP = 2 };
-
-/* Of the fits, and of the search within bounds. */
-enum { START_STEPS = 40, DROP_STEPS = 10, LONG_STEPS = 100, LAST_STEPS = 60, SEARCH_ROUNDS = 20 };
-
+/* Of each effort. */
 static const int ROUNDS[] = {0, 5, 20, 80};
 
-/* A run for one number of spheres. */
-typedef struct solver {
-    const ms_run *run;
-    ms_grid coarse;
-    int step; /* of the coarse grid, in voxels */
-    ms_field field;
-    exposed_fit fit;
-    size_t count, wanted;
-    ms_ball *ball, *best; /* in voxels of the target's grid; room for `room` */
-    size_t room;
-} solver;
-
-static double option(const ms_run *run, int which)
-{
-    return run->settings->value[which];
-}
-
-/* How much coarser the start may be: its voxels follow the size of spheres and of the shape. */
-static int choose_step(const ms_target *target, size_t n)
-{
-    const size_t voxels = ms_grid_voxels(&target->grid);
-    double deepest = 0;
-    for (size_t v = 0; v < voxels; v++) {
-        deepest = fmax(deepest, (double)target->distance[v]);
-    }
-    const double step = fmin(cbrt((double)target->voxels / (double)n) / RESOLUTION, deepest / 4);
-    return (int)fmin(fmax(step, 1), MAX_STEP);
-}
-
-static void solver_free(solver *s)
-{
-    ms_grid_free(&s->coarse);
-    ms_field_free(&s->field);
-    free(s->ball);
-    free(s->best);
-    memset(s, 0, sizeof *s);
-}
-
-static double least_radius(const ms_run *run)
-{
-    return fmax(0, run->stop.radius / run->target->grid.h);
-}
-
-static ms_status fit(solver *s, int steps, double from, double to, ms_error *err)
-{
-    const double damping[2] = {from, to};
-    return exposed_fit_steps(&s->fit, s->ball, s->count, steps, damping, err);
-}
-
-static ms_status mismatch(int64_t *out, const solver *s, ms_error *err)
-{
-    overlap o;
-    const ms_status status = overlap_open(&o, &s->run->target->grid, s->ball, s->count, err);
-    *out = o.mismatch;
-    overlap_close(&o);
-    return status;
-}
-
-static int is_bounded(const solver *s)
-{
-    return s->fit.bounds.protrusion < HUGE_VAL;
-}
-
-/* A fit that is taken back where it makes the mismatch larger. Of spheres that may not stick out, the
- * mismatch says nothing before they are confined. */
-static ms_status improve(solver *s, int steps, double from, double to, ms_error *err)
-{
-    int64_t before = 0, after = 0;
-    if (is_bounded(s)) {
-        return fit(s, steps, from, to, err);
-    }
-    memcpy(s->best, s->ball, s->count * sizeof *s->ball);
-    ms_status status = mismatch(&before, s, err);
-    if (status == MS_OK) {
-        status = fit(s, steps, from, to, err);
-    }
-    if (status == MS_OK) {
-        status = mismatch(&after, s, err);
-    }
-    if (status == MS_OK && after >= before) {
-        memcpy(s->ball, s->best, s->count * sizeof *s->ball);
-    }
-    return status;
-}
-
-/* Makes the spheres keep to their bounds, and moves them within. */
-static ms_status settle(solver *s, ms_error *err)
-{
-    if (!is_bounded(s)) {
-        return MS_OK;
-    }
-    exposed_confine(&s->fit, s->ball, s->count);
-    return pattern_search(s->ball, s->count, &s->run->target->grid, &s->fit, SEARCH_ROUNDS, err);
-}
-
-static int do_overlap(const ms_ball *a, const ms_ball *b)
-{
-    const double reach = a->radius + b->radius;
-    return ms_squared_distance(a->centre, b->centre) < reach * reach;
-}
-
-/* The cheapest sphere that overlaps none of those dropped already: their losses have changed. */
-static size_t cheapest(const ms_ball *ball, const int64_t *loss, size_t count, const ms_ball *dropped, size_t n_dropped)
-{
-    size_t best = SIZE_MAX;
-    for (size_t b = 0; b < count; b++) {
-        int passed = best != SIZE_MAX && loss[b] >= loss[best];
-        for (size_t d = 0; d < n_dropped && !passed; d++) {
-            passed = do_overlap(&ball[b], &dropped[d]);
-        }
-        if (!passed) {
-            best = b;
-        }
-    }
-    return best;
-}
-
-/* The spheres in voxels of the coarse grid. */
-static void to_coarse(ms_ball *coarse, const solver *s)
-{
-    for (size_t b = 0; b < s->count; b++) {
-        coarse[b] = s->ball[b];
-        for (int a = 0; a < 3; a++) {
-            coarse[b].centre[a] /= s->step;
-        }
-        coarse[b].radius /= s->step;
-    }
-}
-
-/* What the mismatch would grow by without each sphere, on the coarse grid. */
-static ms_status find_losses(int64_t *loss, ms_ball *coarse, const solver *s, ms_error *err)
-{
-    overlap o;
-    to_coarse(coarse, s);
-    const ms_status status = overlap_open(&o, &s->coarse, coarse, s->count, err);
-#pragma omp parallel for schedule(dynamic, 4) if (status == MS_OK)
-    for (size_t b = 0; b < (status == MS_OK ? s->count : 0); b++) {
-        loss[b] = overlap_loss(&o, &coarse[b]);
-    }
-    overlap_close(&o);
-    return status;
-}
-
-/* Drops up to `most` spheres, the least useful ones: at least one. */
-static ms_status drop(solver *s, size_t most, ms_error *err)
-{
-    ms_ball *coarse = malloc((s->count + 1) * sizeof *coarse), *dropped = malloc((most + 1) * sizeof *dropped);
-    int64_t *loss = malloc((s->count + 1) * sizeof *loss);
-    size_t n_dropped = 0, b;
-    ms_status status = coarse && dropped && loss
-                           ? find_losses(loss, coarse, s, err)
-                           : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", s->count);
-    while (status == MS_OK && n_dropped < most &&
-           (b = cheapest(s->ball, loss, s->count, dropped, n_dropped)) != SIZE_MAX) {
-        dropped[n_dropped++] = s->ball[b];
-        s->ball[b] = s->ball[--s->count];
-        loss[b] = loss[s->count];
-    }
-    free(coarse);
-    free(dropped);
-    free(loss);
-    return status;
-}
-
-static ms_status prune(solver *s, ms_error *err)
-{
-    const size_t surplus = s->count > s->wanted ? s->count - s->wanted : 0, most = (size_t)ceil(DROP * (double)surplus);
-    ms_status status = MS_OK;
-    while (status == MS_OK && s->count > s->wanted) {
-        status = drop(s, s->count - s->wanted < most ? s->count - s->wanted : most, err);
-        if (status == MS_OK) {
-            status = fit(s, DROP_STEPS, 0.5, 0.3, err);
-        }
-        if (s->run->progress) {
-            s->run->progress(s->run->progress_context, s->count, (double)NAN);
-        }
-    }
-    return status;
-}
-
-/* Adds up to `most` of the inscribed spheres that cover most of what the union leaves. */
-static ms_status add(solver *s, size_t most, ms_error *err)
-{
-    const size_t free_room = s->room - s->count;
-    ms_ball *coarse = malloc((s->count + 1) * sizeof *coarse);
-    ms_grid left = {0};
-    size_t added = 0;
-    ms_status status = start_coarsen(&left, s->run->target, s->step, err);
-    if (status == MS_OK && !coarse) {
-        status = ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", s->count);
-    }
-    if (status == MS_OK) {
-        to_coarse(coarse, s);
-        overlap_clear(&left, coarse, s->count);
-        status = start_cover(s->ball + s->count, &added, s->run->target, &left, s->step,
-                             most < free_room ? most : free_room, least_radius(s->run), err);
-    }
-    s->count += added;
-    ms_grid_free(&left);
-    free(coarse);
-    return status;
-}
-
-/* The cover to start from; on a finer grid where it gives too few spheres. */
-static ms_status start(solver *s, ms_error *err)
-{
-    const ms_target *target = s->run->target;
-    ms_status status = MS_OK;
-    for (s->step = choose_step(target, s->wanted);; s->step--) {
-        status = start_coarsen(&s->coarse, target, s->step, err);
-        if (status == MS_OK) {
-            status = start_cover(s->ball, &s->count, target, &s->coarse, s->step, s->room, least_radius(s->run), err);
-        }
-        if (status != MS_OK || s->count == s->room || s->step == 1) {
-            return status;
-        }
-        ms_grid_free(&s->coarse);
-    }
-}
-
-/* Spheres that are given, and others where they are too few. */
-static ms_status start_from(solver *s, const ms_clump *given, ms_error *err)
-{
-    const ms_target *target = s->run->target;
-    s->step = choose_step(target, s->wanted);
-    ms_status status = start_coarsen(&s->coarse, target, s->step, err);
-    for (s->count = 0; s->count < given->n_spheres; s->count++) {
-        const ms_sphere *sphere = &given->sphere[s->count];
-        ms_target_to_voxels(s->ball[s->count].centre, &s->ball[s->count].radius, &target->grid, sphere->centre,
-                            sphere->radius);
-    }
-    return status == MS_OK && s->count < s->wanted ? add(s, s->wanted - s->count, err) : status;
-}
-
-static ms_status solver_begin(solver *s, const ms_run *run, size_t n, ms_error *err)
-{
-    const double protrusion = option(run, PROTRUSION);
-    const ms_clump *given = &run->settings->clump;
-    const size_t most = n < run->target->voxels ? n : run->target->voxels; /* more would be alike */
-    const size_t room = (size_t)ceil(SURPLUS * (double)most) + MORE;
-    *s = (solver){.run = run, .wanted = n, .room = room > given->n_spheres ? room : given->n_spheres};
-    s->ball = malloc(s->room * sizeof *s->ball);
-    s->best = malloc(s->room * sizeof *s->best);
-    if (!s->ball || !s->best) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", s->room);
-    }
-    ms_status status = given->n_spheres > 0 ? start_from(s, given, err) : start(s, err);
-    if (status == MS_OK) {
-        status = ms_field_alloc(&s->field, run->target, s->step < FIELD_STEP ? s->step : FIELD_STEP, err);
-    }
-    s->fit = (exposed_fit){.field = &s->field,
-                           .bounds = {.least = fmax(least_radius(run), LEAST_RADIUS),
-                                      .protrusion = protrusion < 0 ? HUGE_VAL : protrusion,
-                                      .equal = option(run, EQUAL_RADIUS) != 0},
-                           .points = (int)option(run, POINTS),
-                           .seed = run->seed};
-    return status;
-}
-
-/* Adds spheres, drops as many; taken back where it makes the mismatch larger. */
-static ms_status round_trip(solver *s, ms_error *err)
-{
-    int64_t before = 0, after = 0;
-    const size_t count = s->count;
-    ms_ball *kept = malloc((count + 1) * sizeof *kept);
-    ms_status status =
-        kept ? mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
-    if (status == MS_OK) {
-        memcpy(kept, s->ball, count * sizeof *kept);
-        status = add(s, (size_t)ceil(DROP * (double)s->wanted), err);
-    }
-    if (status == MS_OK) {
-        status = fit(s, DROP_STEPS, 0.8, 0.3, err);
-    }
-    if (status == MS_OK) {
-        status = prune(s, err);
-    }
-    if (status == MS_OK) {
-        status = fit(s, LAST_STEPS, 0.5, 0.05, err);
-    }
-    if (status == MS_OK) {
-        status = settle(s, err);
-    }
-    if (status == MS_OK) {
-        status = mismatch(&after, s, err);
-    }
-    if (status == MS_OK && after >= before) {
-        memcpy(s->ball, kept, count * sizeof *kept);
-        s->count = count;
-    }
-    free(kept);
-    return status;
-}
-
-/* All stages, for up to n spheres. */
-static ms_status solve(solver *s, const ms_run *run, size_t n, ms_error *err)
-{
-    ms_status status = solver_begin(s, run, n, err);
-    if (status == MS_OK && s->count > s->wanted) {
-        status = fit(s, START_STEPS, 0.8, 0.2, err);
-    }
-    if (status == MS_OK) {
-        status = prune(s, err);
-    }
-    if (status == MS_OK) {
-        status = improve(s, LONG_STEPS, 0.8, 0.2, err);
-    }
-    if (status == MS_OK) {
-        status = improve(s, LAST_STEPS, 0.5, 0.05, err);
-    }
-    if (status == MS_OK) {
-        status = settle(s, err);
-    }
-    for (int round = 0; round < ROUNDS[(int)option(run, EFFORT)] && status == MS_OK && s->count > 0; round++) {
-        status = round_trip(s, err);
-    }
-    return status;
-}
+/* Axes of each choice of symmetry. */
+static const int ACROSS[][3] = {{0}, {1}, {0, 1}, {0, 0, 1}, {1, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
 
 /* The spheres in the frame of the shape, but for those that their bounds leave nothing of. */
-static ms_status to_clump(ms_clump *clump, const solver *s, ms_error *err)
+static ms_status to_clump(ms_clump *clump, const ms_ball *ball, size_t count, const ms_run *run, ms_error *err)
 {
-    const ms_run *run = s->run;
     const double least = fmax(run->stop.radius, 0);
     clump->n_spheres = 0;
-    for (size_t b = 0; b < s->count; b++) {
+    for (size_t b = 0; b < count; b++) {
         ms_sphere sphere;
-        ms_target_from_voxels(sphere.centre, &sphere.radius, &run->target->grid, s->ball[b].centre, s->ball[b].radius);
+        ms_target_from_voxels(sphere.centre, &sphere.radius, &run->target->grid, ball[b].centre, ball[b].radius);
         if (fabs(sphere.radius - least) < 1e-12 * least) {
             sphere.radius = least;
         }
@@ -420,17 +84,35 @@ static ms_status judge(ms_stop_reason *reason, const ms_clump *clump, size_t ask
     return status;
 }
 
+static variational_settings read_settings(const ms_run *run)
+{
+    const double *value = run->settings->value;
+    const int *across = ACROSS[(int)value[SYMMETRY]];
+    variational_settings settings = {.rounds = ROUNDS[(int)value[EFFORT]],
+                                     .points = (int)value[POINTS],
+                                     .bounds = {.protrusion = value[PROTRUSION] < 0 ? HUGE_VAL : value[PROTRUSION],
+                                                .equal = value[EQUAL_RADIUS] != 0,
+                                                .planes = run->settings},
+                                     .mirrors = {.across = {across[0], across[1], across[2]}},
+                                     .refine = &run->settings->clump};
+    double unused;
+    ms_target_to_voxels(settings.mirrors.at, &unused, &run->target->grid, run->target->body.centroid, 0);
+    return settings;
+}
+
 static ms_status generate_for(ms_clump *clump, ms_stop_reason *reason, size_t n, const ms_run *run, ms_error *err)
 {
-    solver s;
-    ms_status status = solve(&s, run, n, err);
+    const variational_settings settings = read_settings(run);
+    ms_ball *ball;
+    size_t count;
+    ms_status status = variational_solve(&ball, &count, run, &settings, n, err);
     if (status == MS_OK) {
-        status = to_clump(clump, &s, err);
+        status = to_clump(clump, ball, count, run, err);
     }
     if (status == MS_OK) {
         status = judge(reason, clump, n, run, err);
     }
-    solver_free(&s);
+    free(ball);
     return status;
 }
 
@@ -480,6 +162,9 @@ static ms_status search(ms_clump *clump, ms_stop_reason *reason, const ms_run *r
 
 static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
 {
+    if (run->settings->n_planes > 0 && run->settings->value[SYMMETRY] != 0) {
+        return ms_fail(err, MS_ERR_ARG, "give either planes or a symmetry: a mirror image might cross a plane");
+    }
     const size_t most = run->stop.spheres > 0 ? run->stop.spheres : MS_CLUMP_MAX_SPHERES;
     return has_measure(&run->stop) ? search(clump, reason, run, err) : generate_for(clump, reason, most, run, err);
 }

@@ -29,16 +29,16 @@ ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_e
 }
 
 /* Does no neighbour's inscribed sphere contain that of this voxel, but for some slack? */
-static int is_ridge(const ms_target *target, const ms_grid *coarse, int step, int i, int j, int k)
+static int is_ridge(const ms_target *target, const float *e, const ms_grid *coarse, int step, int i, int j, int k)
 {
     const ms_grid *grid = &target->grid;
-    const double here = (double)target->distance[ms_grid_index(grid, i * step, j * step, k * step)];
+    const double here = (double)e[ms_grid_index(grid, i * step, j * step, k * step)];
     for (int t = 0; t < 27; t++) {
         const int d[3] = {t % 3 - 1, t / 3 % 3 - 1, t / 9 - 1}, x = i + d[0], y = j + d[1], z = k + d[2];
         if (t == 13 || x < 0 || y < 0 || z < 0 || x >= coarse->n[0] || y >= coarse->n[1] || z >= coarse->n[2]) {
             continue;
         }
-        const double there = (double)target->distance[ms_grid_index(grid, x * step, y * step, z * step)];
+        const double there = (double)e[ms_grid_index(grid, x * step, y * step, z * step)];
         if (there - here >= RISING * step * sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])) {
             return 0;
         }
@@ -47,8 +47,8 @@ static int is_ridge(const ms_target *target, const ms_grid *coarse, int step, in
 }
 
 /* The inscribed spheres about the ridge, in coarse voxels. */
-static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_target *target, const ms_grid *coarse, int step,
-                            double least, ms_error *err)
+static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_target *target, const float *e,
+                            const ms_grid *coarse, int step, double least, ms_error *err)
 {
     *count = 0;
     *ball = malloc(ms_grid_voxels(coarse) * sizeof **ball);
@@ -59,8 +59,8 @@ static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_target *targ
         for (int j = 0; j < coarse->n[1]; j++) {
             for (int i = 0; i < coarse->n[0]; i++) {
                 const size_t voxel = ms_grid_index(&target->grid, i * step, j * step, k * step);
-                const double radius = (double)target->distance[voxel] - 0.5;
-                if (radius > 0 && radius >= least && is_ridge(target, coarse, step, i, j, k)) {
+                const double radius = (double)e[voxel] - 0.5;
+                if (radius > 0 && radius >= least && is_ridge(target, e, coarse, step, i, j, k)) {
                     (*ball)[(*count)++] = (ms_ball){.centre = {i, j, k}, .radius = radius / step};
                 }
             }
@@ -69,14 +69,14 @@ static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_target *targ
     return MS_OK;
 }
 
-ms_status start_cover(ms_ball *ball, size_t *count, const ms_target *target, const ms_grid *coarse, int step,
-                      size_t wanted, double least, ms_error *err)
+ms_status start_cover(ms_ball *ball, size_t *count, const ms_target *target, const float *e, const ms_grid *coarse,
+                      int step, size_t wanted, double least, ms_error *err)
 {
     ms_ball *candidate;
     ms_cover *cover = NULL;
     size_t candidates, which;
     *count = 0;
-    ms_status status = list_ridge(&candidate, &candidates, target, coarse, step, least, err);
+    ms_status status = list_ridge(&candidate, &candidates, target, e, coarse, step, least, err);
     if (status == MS_OK) {
         status = ms_cover_build(&cover, coarse, candidate, candidates, 0, err);
     }

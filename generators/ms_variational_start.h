@@ -18,6 +18,7 @@ ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_e
  *
  * @param[out] ball   in voxels of the target's grid, the first the most useful; room for `wanted`
  * @param[out] count  how many: `wanted`, or fewer if no other one covers anything
+ * @param      e      distances as the target's, or less where spheres have to be smaller
  * @param      coarse what is to be covered: a copy of the target, or part of it
  * @param      least  no radius below this, in voxels of the target
  * @return MS_OK; MS_ERR_NOMEM; MS_ERR_LIMIT
@@ -25,7 +26,7 @@ ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_e
  * Source: Yuan 2019, algorithm 2. Cost: one pass over the coarse voxels with 26 neighbours each, and
  * ms_cover.
  */
-ms_status start_cover(ms_ball *ball, size_t *count, const ms_target *target, const ms_grid *coarse, int step,
-                      size_t wanted, double least, ms_error *err);
+ms_status start_cover(ms_ball *ball, size_t *count, const ms_target *target, const float *e, const ms_grid *coarse,
+                      int step, size_t wanted, double least, ms_error *err);
 
 #endif

@@ -66,7 +66,7 @@ static void field_equals_recomputation(void **state)
     ms_error err;
     make_shape(&mesh, "grain", "");
     make_target(&target, &mesh, 45, MS_VOXEL_HALF);
-    assert_int_equal(mss_field_init(&field, &target, NULL, 0, &err), MS_OK);
+    assert_int_equal(mss_field_init(&field, &target, &(ms_settings){0}, &err), MS_OK);
     const size_t voxels = ms_grid_voxels(&target.grid);
     uint8_t *covered = malloc(voxels);
     float *distance = malloc(voxels * sizeof *distance);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "ms_exposed.h"
+#include "ms_mss.h"
 #include "ms_overlap.h"
 #include "ms_pattern.h"
 #include "ms_variational.h"
@@ -15,23 +16,29 @@ static double uniform(double from, double to)
     return from + (to - from) * rand() / RAND_MAX;
 }
 
-static ms_clump generate(const ms_target *target, size_t n, const char *const *options)
+static ms_clump generate_by(const ms_generator *generator, const ms_target *target, size_t n,
+                            const char *const *options)
 {
     ms_settings settings;
     ms_clump clump;
     ms_stop_reason reason;
     ms_error err;
-    assert_int_equal(ms_settings_init(&settings, ms_generator_variational.options, &err), MS_OK);
+    assert_int_equal(ms_settings_init(&settings, generator->options, &err), MS_OK);
     for (; options && options[0]; options += 2) {
         assert_int_equal(ms_settings_set(&settings, options[0], options[1], &err), MS_OK);
     }
     ms_run run = {.target = target, .stop = ms_stop_none(), .settings = &settings, .seed = 3};
     run.stop.spheres = n;
-    if (ms_generator_run(&clump, &reason, &ms_generator_variational, &run, &err) != MS_OK) {
+    if (ms_generator_run(&clump, &reason, generator, &run, &err) != MS_OK) {
         fail_msg("%s", err.text);
     }
     ms_settings_free(&settings);
     return clump;
+}
+
+static ms_clump generate(const ms_target *target, size_t n, const char *const *options)
+{
+    return generate_by(&ms_generator_variational, target, n, options);
 }
 
 static double dice_of(const ms_target *target, const ms_clump *clump)
@@ -303,6 +310,78 @@ static void refining_improves(void **state)
     ms_clump_free(&first);
 }
 
+/* Is there a sphere at the mirror image of each? */
+static int is_symmetric(const ms_clump *clump, int axis)
+{
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        int found = 0;
+        for (size_t t = 0; t < clump->n_spheres && !found; t++) {
+            double image[3];
+            memcpy(image, clump->sphere[s].centre, sizeof image);
+            image[axis] = -image[axis];
+            found = sqrt(ms_squared_distance(image, clump->sphere[t].centre)) < 1e-9 &&
+                    fabs(clump->sphere[s].radius - clump->sphere[t].radius) < 1e-12;
+        }
+        if (!found) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Shapes about the origin; the score stays near that of free spheres. */
+static void symmetry_is_kept(void **state)
+{
+    (void)state;
+    static const char *const SHAPES[] = {"tablet", "cube"};
+    static const char *const OPTIONS[][5] = {
+        {"symmetry", "x"}, {"symmetry", "xyz"}, {"symmetry", "yz", "protrusion", "0"}};
+    static const int ACROSS[][3] = {{1, 0, 0}, {1, 1, 1}, {0, 1, 1}};
+    for (size_t c = 0; c < sizeof SHAPES / sizeof *SHAPES; c++) {
+        ms_mesh mesh;
+        ms_target target;
+        make_shape(&mesh, SHAPES[c], "");
+        make_target(&target, &mesh, 31, MS_VOXEL_HALF);
+        for (size_t o = 0; o < sizeof OPTIONS / sizeof *OPTIONS; o++) {
+            const char *const no_symmetry[3] = {OPTIONS[o][2], OPTIONS[o][3]};
+            for (size_t n = 16; n <= 23; n += 7) {
+                ms_clump clump = generate(&target, n, OPTIONS[o]), unlike = generate(&target, n, no_symmetry);
+                assert_true(clump.n_spheres <= n && clump.n_spheres + 3 >= n); /* whole sets of 8 images */
+                for (int a = 0; a < 3; a++) {
+                    assert_true(!ACROSS[o][a] || is_symmetric(&clump, a));
+                }
+                assert_true(dice_of(&target, &clump) < 1.5 * dice_of(&target, &unlike));
+                ms_clump_free(&clump);
+                ms_clump_free(&unlike);
+            }
+        }
+        ms_target_free(&target);
+        ms_mesh_free(&mesh);
+    }
+}
+
+static void planes_are_not_crossed(void **state)
+{
+    (void)state;
+    ms_mesh mesh;
+    ms_target target;
+    static const char *const OPTIONS[] = {"plane", "1,0,0,0.25", "plane", "0,0,2,0", NULL};
+    make_shape(&mesh, "cube", "a=1");
+    make_target(&target, &mesh, 40, MS_VOXEL_HALF);
+    ms_clump clump = generate(&target, 30, OPTIONS), by_mss = generate_by(&ms_generator_mss, &target, 30, OPTIONS);
+    assert_int_equal(clump.n_spheres, 30);
+    for (size_t s = 0; s < clump.n_spheres; s++) {
+        const ms_sphere *sphere = &clump.sphere[s];
+        assert_true(fabs(sphere->centre[0] - 0.25) >= sphere->radius - 1e-12);
+        assert_true(fabs(sphere->centre[2]) >= sphere->radius - 1e-12);
+    }
+    assert_true(dice_of(&target, &clump) < 0.9 * dice_of(&target, &by_mss));
+    ms_clump_free(&clump);
+    ms_clump_free(&by_mss);
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
 static void effort_does_not_hurt(void **state)
 {
     const ms_target *target = *state;
@@ -343,7 +422,8 @@ int main(void)
         cmocka_unit_test(step_lowers_the_mismatch), cmocka_unit_test(search_never_raises_the_mismatch),
         cmocka_unit_test(unions_are_recovered),     cmocka_unit_test(protrusion_is_kept),
         cmocka_unit_test(equal_radii_are_equal),    cmocka_unit_test(effort_does_not_hurt),
-        cmocka_unit_test(refining_improves),
+        cmocka_unit_test(refining_improves),        cmocka_unit_test(symmetry_is_kept),
+        cmocka_unit_test(planes_are_not_crossed),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

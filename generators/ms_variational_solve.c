@@ -1,0 +1,489 @@
+/* The stages of variational for one number of spheres: docs/methods/variational.md. */
+#include "ms_variational_solve.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_overlap.h"
+#include "ms_pattern.h"
+#include "ms_variational_start.h"
+#include "ms_vector.h"
+
+/* Spheres at the start: so many times those asked for, and some more. */
+static const double SURPLUS = 1.25;
+enum { MORE = 2 };
+
+/* Part of the surplus that is dropped at a time, and part of the spheres that a round adds. */
+static const double DROP = 0.1;
+
+/* Radii that become smaller, in voxels, say nothing about the shape. */
+static const double LEAST_RADIUS = 0.5;
+
+/* Coarse voxels per edge of the cube that is a sphere's share of the volume, about. */
+static const double RESOLUTION = 8;
+
+/* Of the coarse grid and of the field at most, in voxels. */
+enum { MAX_STEP = 4, FIELD_STEP = 2 };
+
+/* Of the fits, and of the search within bounds. */
+enum { START_STEPS = 40, DROP_STEPS = 10, LONG_STEPS = 100, LAST_STEPS = 60, SEARCH_ROUNDS = 20 };
+
+/* A sphere whose centre is nearer to a plane of symmetry, as part of its radius, moves onto it. */
+static const double SNAP = 0.3;
+
+/* A run for one number of spheres. */
+typedef struct solver {
+    const ms_run *run;
+    const variational_settings *settings;
+    float *walled; /* the target's distances, cut down to those to planes; NULL without planes */
+    ms_grid coarse;
+    int step; /* of the coarse grid, in voxels */
+    ms_field field;
+    exposed_fit fit;
+    size_t count, wanted; /* spheres that are fitted; asked for, mirror images among them */
+    ms_ball *ball, *best; /* in voxels of the target's grid; room for `room` */
+    ms_ball *all;         /* with mirror images: room for `room` times the planes' images */
+    size_t room;
+} solver;
+
+/* How much coarser the start may be: its voxels follow the size of spheres and of the shape. */
+static int choose_step(const ms_target *target, size_t n)
+{
+    const size_t voxels = ms_grid_voxels(&target->grid);
+    double deepest = 0;
+    for (size_t v = 0; v < voxels; v++) {
+        deepest = fmax(deepest, (double)target->distance[v]);
+    }
+    const double step = fmin(cbrt((double)target->voxels / (double)n) / RESOLUTION, deepest / 4);
+    return (int)fmin(fmax(step, 1), MAX_STEP);
+}
+
+static void solver_free(solver *s)
+{
+    ms_grid_free(&s->coarse);
+    ms_field_free(&s->field);
+    free(s->walled);
+    free(s->ball);
+    free(s->best);
+    free(s->all);
+    memset(s, 0, sizeof *s);
+}
+
+static double least_radius(const ms_run *run)
+{
+    return fmax(0, run->stop.radius / run->target->grid.h);
+}
+
+/* Fills in the mirror images; returns how many spheres there are in all. */
+static size_t expand(solver *s)
+{
+    return mirrors_expand(s->all, s->ball, s->count, &s->settings->mirrors);
+}
+
+static size_t total(const solver *s)
+{
+    size_t sum = 0;
+    for (size_t b = 0; b < s->count; b++) {
+        sum += mirrors_images(&s->settings->mirrors, &s->ball[b]);
+    }
+    return sum;
+}
+
+static ms_status fit(solver *s, int steps, double from, double to, ms_error *err)
+{
+    const double damping[2] = {from, to};
+    return exposed_fit_steps(&s->fit, s->ball, s->count, steps, damping, err);
+}
+
+static ms_status mismatch(int64_t *out, solver *s, ms_error *err)
+{
+    overlap o;
+    const ms_status status = overlap_open(&o, &s->run->target->grid, s->all, expand(s), err);
+    *out = o.mismatch;
+    overlap_close(&o);
+    return status;
+}
+
+/* A fit that is taken back where it makes the mismatch larger. Of spheres that may not stick out, the
+ * mismatch says nothing before they are confined. */
+static ms_status improve(solver *s, int steps, double from, double to, ms_error *err)
+{
+    int64_t before = 0, after = 0;
+    if (exposed_is_bounded(&s->fit.bounds)) {
+        return fit(s, steps, from, to, err);
+    }
+    memcpy(s->best, s->ball, s->count * sizeof *s->ball);
+    ms_status status = mismatch(&before, s, err);
+    if (status == MS_OK) {
+        status = fit(s, steps, from, to, err);
+    }
+    if (status == MS_OK) {
+        status = mismatch(&after, s, err);
+    }
+    if (status == MS_OK && after >= before) {
+        memcpy(s->ball, s->best, s->count * sizeof *s->ball);
+    }
+    return status;
+}
+
+/* Makes the spheres keep to their bounds, and moves them within. */
+static ms_status settle(solver *s, ms_error *err)
+{
+    if (!exposed_is_bounded(&s->fit.bounds)) {
+        return MS_OK;
+    }
+    exposed_confine(&s->fit, s->ball, s->count);
+    return pattern_search(s->ball, s->count, &s->run->target->grid, &s->fit, SEARCH_ROUNDS, err);
+}
+
+static int do_overlap(const ms_ball *a, const ms_ball *b)
+{
+    const double reach = a->radius + b->radius;
+    return ms_squared_distance(a->centre, b->centre) < reach * reach;
+}
+
+/* A sphere in voxels of the coarse grid. */
+static ms_ball to_coarse(ms_ball ball, const solver *s)
+{
+    for (int a = 0; a < 3; a++) {
+        ball.centre[a] /= s->step;
+    }
+    ball.radius /= s->step;
+    return ball;
+}
+
+/* All spheres, images too, in voxels of the coarse grid; returns how many. */
+static size_t all_to_coarse(solver *s)
+{
+    const size_t all = expand(s);
+    for (size_t b = 0; b < all; b++) {
+        s->all[b] = to_coarse(s->all[b], s);
+    }
+    return all;
+}
+
+/* The same of a sphere and its images together, for each of them: as they overlap, one by one. */
+static int64_t loss_of_images(overlap *o, const ms_ball *ball, const solver *s)
+{
+    ms_ball image[8];
+    const int64_t before = o->mismatch;
+    const size_t images = mirrors_expand(image, ball, 1, &s->settings->mirrors);
+    for (size_t i = 0; i < images; i++) {
+        image[i] = to_coarse(image[i], s);
+        overlap_remove(o, &image[i]);
+    }
+    const int64_t loss = o->mismatch - before;
+    for (size_t i = 0; i < images; i++) {
+        overlap_add(o, &image[i]);
+    }
+    return loss / (int64_t)images;
+}
+
+/* What the mismatch would grow by without each sphere, on the coarse grid. */
+static ms_status find_losses(int64_t *loss, solver *s, ms_error *err)
+{
+    overlap o;
+    const size_t all = all_to_coarse(s);
+    const ms_status status = overlap_open(&o, &s->coarse, s->all, all, err);
+    const size_t alone = status == MS_OK && all == s->count ? s->count : 0;
+    const size_t paired = status == MS_OK && all > s->count ? s->count : 0;
+#pragma omp parallel for schedule(dynamic, 4)
+    for (size_t b = 0; b < alone; b++) {
+        loss[b] = overlap_loss(&o, &s->all[b]);
+    }
+    for (size_t b = 0; b < paired; b++) {
+        loss[b] = loss_of_images(&o, &s->ball[b], s);
+    }
+    overlap_close(&o);
+    return status;
+}
+
+/* Moves the sphere that is nearest to a plane of symmetry onto it, which leaves half of its images. */
+static void merge_nearest(solver *s)
+{
+    size_t nearest = 0;
+    int axis = -1;
+    double least = HUGE_VAL, part;
+    for (size_t b = 0; b < s->count; b++) {
+        const int across = mirrors_nearest(&part, &s->settings->mirrors, &s->ball[b]);
+        if (part < least) {
+            least = part;
+            axis = across;
+            nearest = b;
+        }
+    }
+    if (axis >= 0) {
+        s->ball[nearest].centre[axis] = s->settings->mirrors.at[axis];
+    }
+}
+
+/* The cheapest sphere that overlaps none of those dropped already, as their losses have changed, and has no more than
+ * that many images. */
+static size_t cheapest(const solver *s, const int64_t *loss, size_t images, const ms_ball *dropped, size_t n_dropped)
+{
+    size_t best = SIZE_MAX;
+    for (size_t b = 0; b < s->count; b++) {
+        int passed = (best != SIZE_MAX && loss[b] >= loss[best]) ||
+                     mirrors_images(&s->settings->mirrors, &s->ball[b]) > images;
+        for (size_t d = 0; d < n_dropped && !passed; d++) {
+            passed = do_overlap(&s->ball[b], &dropped[d]);
+        }
+        if (!passed) {
+            best = b;
+        }
+    }
+    return best;
+}
+
+/* Drops up to `most` spheres, images among them, the least useful ones: at least one, or one that becomes its own
+ * image where none has so few. */
+static ms_status drop(solver *s, size_t most, ms_error *err)
+{
+    ms_ball *dropped = malloc((most + 1) * sizeof *dropped);
+    int64_t *loss = malloc((s->count + 1) * sizeof *loss);
+    size_t n_dropped = 0, gone = 0, b;
+    ms_status status = dropped && loss
+                           ? find_losses(loss, s, err)
+                           : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", s->count);
+    while (status == MS_OK && gone < most && (b = cheapest(s, loss, most - gone, dropped, n_dropped)) != SIZE_MAX) {
+        dropped[n_dropped++] = s->ball[b];
+        gone += mirrors_images(&s->settings->mirrors, &s->ball[b]);
+        s->ball[b] = s->ball[--s->count];
+        loss[b] = loss[s->count];
+    }
+    if (status == MS_OK && gone == 0) {
+        merge_nearest(s);
+    }
+    free(dropped);
+    free(loss);
+    return status;
+}
+
+static ms_status prune(solver *s, ms_error *err)
+{
+    size_t count = total(s);
+    const size_t surplus = count > s->wanted ? count - s->wanted : 0, most = (size_t)ceil(DROP * (double)surplus);
+    ms_status status = MS_OK;
+    while (status == MS_OK && count > s->wanted) {
+        status = drop(s, count - s->wanted < most ? count - s->wanted : most, err);
+        if (status == MS_OK) {
+            status = fit(s, DROP_STEPS, 0.5, 0.3, err);
+        }
+        count = total(s);
+        if (s->run->progress) {
+            s->run->progress(s->run->progress_context, count, (double)NAN);
+        }
+    }
+    return status;
+}
+
+/* Leaves only what is above each plane of symmetry to be covered. */
+static void keep_upper_side(ms_grid *coarse, const solver *s)
+{
+    const mirrors *m = &s->settings->mirrors;
+    const size_t nx = (size_t)coarse->n[0], stride[3] = {1, nx, nx * (size_t)coarse->n[1]};
+    for (int a = 0; a < 3; a++) {
+        for (size_t v = 0; m->across[a] && v < ms_grid_voxels(coarse); v++) {
+            const double at = s->step * (double)(v / stride[a] % (size_t)coarse->n[a]);
+            coarse->inside[v] = coarse->inside[v] && at >= m->at[a];
+        }
+    }
+}
+
+/* Appends inscribed spheres that cover most of a coarse grid: up to `most`, mirror images among them. */
+static ms_status cover(solver *s, ms_grid *left, size_t most, ms_error *err)
+{
+    const ms_target *target = s->run->target;
+    const size_t before = s->count, limit = total(s) + most;
+    size_t added = 0;
+    keep_upper_side(left, s);
+    const ms_status status =
+        start_cover(s->ball + before, &added, target, s->walled ? s->walled : target->distance, left, s->step,
+                    most < s->room - before ? most : s->room - before, least_radius(s->run), err);
+    for (size_t b = before; b < before + added; b++) {
+        mirrors_fold(&s->ball[b], &s->settings->mirrors, SNAP);
+    }
+    s->count += added;
+    while (s->count > before + 1 && total(s) > limit) {
+        s->count--;
+    }
+    return status;
+}
+
+/* Adds up to `most` spheres where the union leaves most. */
+static ms_status add(solver *s, size_t most, ms_error *err)
+{
+    ms_grid left = {0};
+    ms_status status = start_coarsen(&left, s->run->target, s->step, err);
+    if (status == MS_OK) {
+        const size_t all = all_to_coarse(s);
+        overlap_clear(&left, s->all, all);
+        status = cover(s, &left, most, err);
+    }
+    ms_grid_free(&left);
+    return status;
+}
+
+/* The cover to start from; on a finer grid where it gives too few spheres. */
+static ms_status start(solver *s, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (s->step = choose_step(s->run->target, s->wanted);; s->step--) {
+        status = start_coarsen(&s->coarse, s->run->target, s->step, err);
+        s->count = 0;
+        if (status == MS_OK) {
+            ms_grid half = {0};
+            status = start_coarsen(&half, s->run->target, s->step, err);
+            if (status == MS_OK) {
+                status = cover(s, &half, s->room, err);
+            }
+            ms_grid_free(&half);
+        }
+        if (status != MS_OK || total(s) >= s->wanted || s->step == 1) {
+            return status;
+        }
+        ms_grid_free(&s->coarse);
+    }
+}
+
+/* Spheres that are given, one of each set of mirror images, and others where they are too few. */
+static ms_status start_from(solver *s, const ms_clump *given, ms_error *err)
+{
+    const ms_target *target = s->run->target;
+    const mirrors *m = &s->settings->mirrors;
+    s->step = choose_step(target, s->wanted);
+    ms_status status = start_coarsen(&s->coarse, target, s->step, err);
+    for (size_t g = 0; g < given->n_spheres; g++) {
+        ms_ball *ball = &s->ball[s->count];
+        ms_target_to_voxels(ball->centre, &ball->radius, &target->grid, given->sphere[g].centre,
+                            given->sphere[g].radius);
+        const double reach = SNAP * ball->radius;
+        int below = 0;
+        for (int a = 0; a < 3; a++) {
+            below |= m->across[a] && ball->centre[a] < m->at[a] - reach;
+        }
+        if (!below) {
+            mirrors_fold(ball, m, SNAP);
+            s->count++;
+        }
+    }
+    const size_t all = total(s);
+    return status == MS_OK && all < s->wanted ? add(s, s->wanted - all, err) : status;
+}
+
+static ms_status solver_begin(solver *s, const ms_run *run, const variational_settings *settings, size_t n,
+                              ms_error *err)
+{
+    const int *across = settings->mirrors.across;
+    const ms_clump *given = settings->refine;
+    const size_t most = n < run->target->voxels ? n : run->target->voxels; /* more would be alike */
+    const size_t room = (size_t)ceil(SURPLUS * (double)most) + MORE;
+    *s = (solver){.run = run,
+                  .settings = settings,
+                  .wanted = n,
+                  .room = room > given->n_spheres ? room : given->n_spheres};
+    s->ball = malloc(s->room * sizeof *s->ball);
+    s->best = malloc(s->room * sizeof *s->best);
+    s->all = malloc((s->room << (across[0] + across[1] + across[2])) * sizeof *s->all);
+    if (!s->ball || !s->best || !s->all) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", s->room);
+    }
+    if (settings->bounds.planes->n_planes > 0) {
+        s->walled = malloc(ms_grid_voxels(&run->target->grid) * sizeof *s->walled);
+        if (!s->walled) {
+            return ms_fail(err, MS_ERR_NOMEM, "no memory for distances to planes; use fewer cells");
+        }
+        planes_cut(s->walled, run->target, run->settings);
+    }
+    ms_status status = given->n_spheres > 0 ? start_from(s, given, err) : start(s, err);
+    if (status == MS_OK) {
+        status = ms_field_alloc(&s->field, run->target, s->step < FIELD_STEP ? s->step : FIELD_STEP, err);
+    }
+    s->fit = (exposed_fit){.field = &s->field,
+                           .bounds = settings->bounds,
+                           .mirrors = settings->mirrors,
+                           .points = settings->points,
+                           .seed = run->seed};
+    s->fit.bounds.least = fmax(least_radius(run), LEAST_RADIUS);
+    return status;
+}
+
+/* Adds spheres, drops as many; taken back where it makes the mismatch larger. */
+static ms_status round_trip(solver *s, ms_error *err)
+{
+    int64_t before = 0, after = 0;
+    const size_t count = s->count;
+    ms_ball *kept = malloc((count + 1) * sizeof *kept);
+    ms_status status =
+        kept ? mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
+    if (status == MS_OK) {
+        memcpy(kept, s->ball, count * sizeof *kept);
+        status = add(s, (size_t)ceil(DROP * (double)s->wanted), err);
+    }
+    if (status == MS_OK) {
+        status = fit(s, DROP_STEPS, 0.8, 0.3, err);
+    }
+    if (status == MS_OK) {
+        status = prune(s, err);
+    }
+    if (status == MS_OK) {
+        status = fit(s, LAST_STEPS, 0.5, 0.05, err);
+    }
+    if (status == MS_OK) {
+        status = settle(s, err);
+    }
+    if (status == MS_OK) {
+        status = mismatch(&after, s, err);
+    }
+    if (status == MS_OK && after >= before) {
+        memcpy(s->ball, kept, count * sizeof *kept);
+        s->count = count;
+    }
+    free(kept);
+    return status;
+}
+
+/* All stages. */
+static ms_status solve(solver *s, ms_error *err)
+{
+    ms_status status = MS_OK;
+    if (total(s) > s->wanted) {
+        status = fit(s, START_STEPS, 0.8, 0.2, err);
+    }
+    if (status == MS_OK) {
+        status = prune(s, err);
+    }
+    if (status == MS_OK) {
+        status = improve(s, LONG_STEPS, 0.8, 0.2, err);
+    }
+    if (status == MS_OK) {
+        status = improve(s, LAST_STEPS, 0.5, 0.05, err);
+    }
+    if (status == MS_OK) {
+        status = settle(s, err);
+    }
+    for (int round = 0; round < s->settings->rounds && status == MS_OK && s->count > 0; round++) {
+        status = round_trip(s, err);
+    }
+    return status;
+}
+
+ms_status variational_solve(ms_ball **ball, size_t *count, const ms_run *run, const variational_settings *settings,
+                            size_t n, ms_error *err)
+{
+    solver s;
+    *ball = NULL;
+    *count = 0;
+    ms_status status = solver_begin(&s, run, settings, n, err);
+    if (status == MS_OK) {
+        status = solve(&s, err);
+    }
+    if (status == MS_OK) {
+        *count = expand(&s);
+        *ball = s.all;
+        s.all = NULL;
+    }
+    solver_free(&s);
+    return status;
+}

@@ -1,0 +1,27 @@
+/** The stages of variational for one number of spheres. Private to it. */
+#ifndef MS_VARIATIONAL_SOLVE_H
+#define MS_VARIATIONAL_SOLVE_H
+
+#include "ms_exposed.h"
+#include "ms_generator.h"
+
+typedef struct variational_settings {
+    int rounds; /* of adding spheres and dropping others after the fit */
+    int points; /* per sphere */
+    exposed_bounds bounds; /* `least` is found from the stop rule */
+    mirrors mirrors;
+    const ms_clump *refine; /* spheres to start from; empty: none */
+} variational_settings;
+
+/**
+ * Places up to n spheres so that |S xor U| is least.
+ *
+ * @param[out] ball  in voxels of the target's grid, mirror images among them; the caller frees it
+ * @param[out] count n; fewer where no other inscribed sphere covers anything, or where n cannot be made of
+ *                   whole sets of mirror images; spheres that their bounds leave nothing of have a radius of 0
+ * @return MS_OK; MS_ERR_NOMEM; MS_ERR_LIMIT
+ */
+ms_status variational_solve(ms_ball **ball, size_t *count, const ms_run *run, const variational_settings *settings,
+                            size_t n, ms_error *err);
+
+#endif
