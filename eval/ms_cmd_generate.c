@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "ms_commands.h"
+#include "ms_curve.h"
 #include "ms_file.h"
 #include "ms_generator.h"
 #include "ms_input.h"
@@ -27,6 +28,8 @@ static const ms_flag FLAGS[] = {
     {"output", 'o', "FILE", "csv, json or vtk by its ending, - for standard output; may be repeated"},
     {"format", 0, "F", "format of the outputs whatever their ending"},
     {"target-grid", 0, "FILE", "also write the voxels of the shape as VTK"},
+    {"curve", 0, "FILE",
+     "also write the scores of the clumps of 1 to n spheres as CSV; each is a run of its own if they are not prefixes"},
     {"json", 0, NULL, "scores and settings as JSON on standard output"},
     MS_INPUT_FLAGS,
     {0},
@@ -52,7 +55,7 @@ typedef struct arguments {
     int n_outputs;
     char default_output[MAX_OUTPUTS][512];
     const ms_format *format;
-    const char *target_grid;
+    const char *target_grid, *curve;
     int json;
 } arguments;
 
@@ -136,6 +139,10 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
         a->target_grid = value;
         return MS_OK;
     }
+    if (strcmp(name, "curve") == 0) {
+        a->curve = value;
+        return MS_OK;
+    }
     if (strcmp(name, "json") == 0) {
         a->json = 1;
         return MS_OK;
@@ -214,7 +221,7 @@ static ms_status settle_outputs(arguments *a, ms_error *err)
     if (a->n_outputs == 0) {
         add_default_outputs(a);
     }
-    to_stdout += a->target_grid && strcmp(a->target_grid, "-") == 0;
+    to_stdout += (a->target_grid && strcmp(a->target_grid, "-") == 0) + (a->curve && strcmp(a->curve, "-") == 0);
     return to_stdout > 1 ? ms_fail(err, MS_ERR_ARG, "--json and each - write to standard output; choose one of them")
                          : MS_OK;
 }
@@ -248,6 +255,9 @@ static ms_status try_output(const char *shape, const char *path, ms_error *err)
 static ms_status try_outputs(const arguments *a, ms_error *err)
 {
     ms_status status = a->target_grid ? try_output(a->shape, a->target_grid, err) : MS_OK;
+    if (a->curve && status == MS_OK) {
+        status = try_output(a->shape, a->curve, err);
+    }
     for (int o = 0; o < a->n_outputs && status == MS_OK; o++) {
         status = try_output(a->shape, a->output[o], err);
     }
@@ -270,20 +280,29 @@ static void show_progress(void *context, size_t spheres, double dice)
     }
 }
 
+/* What the generators are given; a line is shown on a terminal only. */
+static ms_run make_run(const arguments *a, const ms_input *input, progress_line *line)
+{
+    return (ms_run){.target = &input->target, .stop = a->stop, .settings = &a->settings, .seed = (uint64_t)a->seed,
+                    .progress = isatty(STDERR_FILENO) ? show_progress : NULL, .progress_context = line};
+}
+
+static void clear_progress(const progress_line *line)
+{
+    if (line->shown > 0) {
+        fputs("\r\033[K", stderr);
+    }
+}
+
 static ms_status generate(ms_result *r, const arguments *a, const ms_input *input, ms_error *err)
 {
     const char *name = a->generator->name;
-    const int terminal = isatty(STDERR_FILENO);
     progress_line line = {.name = name};
-    const ms_run run = {.target = &input->target, .stop = a->stop, .settings = &a->settings,
-                        .seed = (uint64_t)a->seed, .progress = terminal ? show_progress : NULL,
-                        .progress_context = &line};
+    const ms_run run = make_run(a, input, &line);
     const double start = omp_get_wtime();
     ms_status status = ms_generator_run(&r->clump, &r->reason, a->generator, &run, err);
     const double generated = omp_get_wtime();
-    if (terminal && line.shown > 0) {
-        fputs("\r\033[K", stderr); /* clears it */
-    }
+    clear_progress(&line);
     if (status == MS_OK && r->reason == MS_STOP_EXHAUSTED) {
         fprintf(stderr,
                 "%s: found no place for a further sphere after %zu; more cells may help, or its options (mskit help "
@@ -299,13 +318,38 @@ static ms_status generate(ms_result *r, const arguments *a, const ms_input *inpu
     return status;
 }
 
+static ms_status write_curve(const arguments *a, const ms_input *input, const ms_clump *clump, ms_error *err)
+{
+    ms_output output;
+    progress_line line = {.name = "curve"};
+    const ms_run run = make_run(a, input, &line);
+    ms_score *curve = malloc((clump->n_spheres + 1) * sizeof *curve);
+    ms_status status = curve ? ms_curve_compute(curve, clump, a->generator, &run, ms_input_max_voxels(&a->input), err)
+                             : ms_fail(err, MS_ERR_NOMEM, "no memory for the scores of %zu clumps", clump->n_spheres);
+    clear_progress(&line);
+    if (status == MS_OK && (status = ms_output_open(&output, a->curve, err)) == MS_OK) {
+        ms_report_curve(output.stream, curve, clump->n_spheres);
+        status = ms_output_close(&output, MS_OK, err);
+    }
+    free(curve);
+    return status;
+}
+
 static int writes_to_stdout(const arguments *a)
 {
-    int found = a->json || (a->target_grid && strcmp(a->target_grid, "-") == 0);
+    int found = a->json || (a->target_grid && strcmp(a->target_grid, "-") == 0) ||
+                (a->curve && strcmp(a->curve, "-") == 0);
     for (int o = 0; o < a->n_outputs; o++) {
         found |= strcmp(a->output[o], "-") == 0;
     }
     return found;
+}
+
+static void say_written(FILE *words, const char *path)
+{
+    if (strcmp(path, "-") != 0) {
+        fprintf(words, "wrote %s\n", path);
+    }
 }
 
 static ms_status write_outputs(const arguments *a, const ms_input *input, const ms_result *r, const char *record,
@@ -315,14 +359,20 @@ static ms_status write_outputs(const arguments *a, const ms_input *input, const 
     ms_status status = MS_OK;
     for (int o = 0; o < a->n_outputs && status == MS_OK; o++) {
         status = ms_write_clump(&r->clump, a->output[o], a->format, record, err);
-        if (strcmp(a->output[o], "-") != 0 && status == MS_OK) {
-            fprintf(words, "wrote %s\n", a->output[o]);
+        if (status == MS_OK) {
+            say_written(words, a->output[o]);
         }
     }
     if (status == MS_OK && a->target_grid) {
         status = ms_write_grid(&input->target.grid, a->target_grid, err);
-        if (strcmp(a->target_grid, "-") != 0 && status == MS_OK) {
-            fprintf(words, "wrote %s\n", a->target_grid);
+        if (status == MS_OK) {
+            say_written(words, a->target_grid);
+        }
+    }
+    if (status == MS_OK && a->curve) {
+        status = write_curve(a, input, &r->clump, err);
+        if (status == MS_OK) {
+            say_written(words, a->curve);
         }
     }
     return status;

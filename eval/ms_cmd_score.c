@@ -39,15 +39,6 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
     return MS_OK;
 }
 
-static void print_curve(const ms_score *curve, size_t count)
-{
-    puts("n,eta,dice,coverage,overshoot");
-    for (size_t n = 0; n < count; n++) {
-        printf("%zu,%.8g,%.8g,%.8g,%.8g\n", n + 1, curve[n].eta, curve[n].dice, curve[n].coverage,
-               curve[n].overshoot);
-    }
-}
-
 static ms_status report(const arguments *a, const ms_input *input, const ms_clump *clump, ms_error *err)
 {
     ms_metrics metrics;
@@ -57,7 +48,7 @@ static ms_status report(const arguments *a, const ms_input *input, const ms_clum
     }
     ms_status status = ms_metrics_compute(&metrics, curve, &input->target, clump, ms_input_max_voxels(&a->input), err);
     if (status == MS_OK && a->curve) {
-        print_curve(curve, clump->n_spheres);
+        ms_report_curve(stdout, curve, clump->n_spheres);
     } else if (status == MS_OK && a->json) {
         status = ms_report_print(stdout,
                                  json_pack("{s:o,s:o}", "target", ms_report_input_json(input), "scores",

@@ -37,6 +37,15 @@ void ms_report_metrics(FILE *stream, const ms_metrics *m, const ms_target *targe
             100 * m->inertia.weighted, m->inertia.angle);
 }
 
+void ms_report_curve(FILE *stream, const ms_score *curve, size_t count)
+{
+    fputs("n,eta,dice,coverage,overshoot\n", stream);
+    for (size_t n = 0; n < count; n++) {
+        fprintf(stream, "%zu,%.8g,%.8g,%.8g,%.8g\n", n + 1, curve[n].eta, curve[n].dice, curve[n].coverage,
+                curve[n].overshoot);
+    }
+}
+
 json_t *ms_report_number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();

@@ -14,6 +14,9 @@ void ms_report_metrics(FILE *stream, const ms_metrics *metrics, const ms_target 
 /** The same as a JSON object; the caller owns it. Measures that do not apply are null. */
 json_t *ms_report_metrics_json(const ms_metrics *metrics);
 
+/** Scores of clumps of 1 to count spheres as CSV. */
+void ms_report_curve(FILE *stream, const ms_score *curve, size_t count);
+
 /** Path, checksum, grid and rule of the input; the caller owns it. */
 json_t *ms_report_input_json(const ms_input *input);
 

@@ -24,7 +24,7 @@ static const double STIFF = 1000;
 static const double LARGE = 1.5;
 
 /* Distances below this, in voxels, weigh the same. */
-static const double NEAR = 0.5;
+static const double NEAR = 0.25;
 
 /* Spheres in the order of their left ends along x, so that those near one are found in a window as
  * wide as the widest. The few that are much larger than the mean stand apart: they would make all

@@ -33,7 +33,7 @@ typedef struct exposed_fit {
  * On each sphere `points` places of a Fibonacci lattice, turned at random for each step. Those
  * inside another sphere are dropped; at each other one, with outward normal u, phi is the signed
  * distance to the surface. The step (dc, dR) minimises the sum of w (phi + u.dc + dR)^2 with
- * w = 1 / max(1/2, |phi|): at rest, the sum of sign(phi) (u, 1) is 0, and that is the derivative of
+ * w = 1 / max(1/4, |phi|): at rest, the sum of sign(phi) (u, 1) is 0, and that is the derivative of
  * |S xor U| for the sphere (exposed area outside S less exposed area inside S). Places that stick out
  * too much, or lie beyond a plane, weigh a thousand times more; the bound itself is exposed_confine's to keep.
  *

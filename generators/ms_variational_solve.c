@@ -26,8 +26,11 @@ static const double RESOLUTION = 8;
 /* Of the coarse grid and of the field at most, in voxels. */
 enum { MAX_STEP = 4, FIELD_STEP = 2 };
 
+/* Mean distance between the surfaces of spheres and shape, in voxels, below which the field's own error matters. */
+static const double SHARP = 0.03;
+
 /* Of the fits, and of the search within bounds. */
-enum { START_STEPS = 40, DROP_STEPS = 10, LONG_STEPS = 100, LAST_STEPS = 60, SEARCH_ROUNDS = 20 };
+enum { START_STEPS = 40, DROP_STEPS = 20, LONG_STEPS = 100, LAST_STEPS = 60, SEARCH_ROUNDS = 20 };
 
 /* A sphere whose centre is nearer to a plane of symmetry, as part of its radius, moves onto it. */
 static const double SNAP = 0.3;
@@ -123,6 +126,23 @@ static ms_status improve(solver *s, int steps, double from, double to, ms_error 
     }
     if (status == MS_OK && after >= before) {
         memcpy(s->ball, s->best, s->count * sizeof *s->ball);
+    }
+    return status;
+}
+
+/* For spheres that fit so well that the look-up's error would show: nodes at every voxel. */
+static ms_status sharpen_field(solver *s, ms_error *err)
+{
+    const ms_target *target = s->run->target;
+    int64_t left = 0;
+    if (s->field.step == 1 || !target->mesh || !target->closed) {
+        return MS_OK;
+    }
+    ms_status status = mismatch(&left, s, err);
+    const double h = target->grid.h, area = ms_mesh_area(target->mesh) / (h * h);
+    if (status == MS_OK && (double)left < SHARP * area) {
+        ms_field_free(&s->field);
+        status = ms_field_alloc(&s->field, target, 1, err);
     }
     return status;
 }
@@ -456,6 +476,9 @@ static ms_status solve(solver *s, ms_error *err)
     }
     if (status == MS_OK) {
         status = improve(s, LONG_STEPS, 0.8, 0.2, err);
+    }
+    if (status == MS_OK) {
+        status = sharpen_field(s, err);
     }
     if (status == MS_OK) {
         status = improve(s, LAST_STEPS, 0.5, 0.05, err);

@@ -116,6 +116,28 @@ class Stop(Generate):
                 before = self.generate(self.grain, *GRID, "-n", n - 1, "-o", "c.csv")["scores"]
                 self.assertFalse(self.reached(before, name, value), f"{name} {value} already at {n - 1} spheres")
 
+    def test_curve_of_nested_method(self):
+        self.mskit("generate", self.grain, *GRID, "-n", "20", "-o", "c.csv", "--curve", "curve.csv")
+        score = self.mskit("score", "c.csv", "--target", self.grain, "--curve", *GRID).out
+        self.assertEqual(self.read("curve.csv").decode(), score)
+
+    def test_curve_of_method_without_prefixes(self):
+        """Better at each number than the prefixes of one clump, and at the last it is that clump."""
+        self.mskit("generate", self.grain, *GRID, "-g", "variational", "-n", "12", "-o", "c.csv", "--curve", "curve.csv")
+        rows = self.rows_of_curve(self.read("curve.csv").decode())
+        prefixes = self.curve("c.csv", self.grain, *GRID)
+        self.assertEqual([row["n"] for row in rows], list(range(1, 13)))
+        self.assertEqual(rows[-1], prefixes[-1])
+        for row, prefix in zip(rows[:-1], prefixes):
+            self.assertLess(row["dice"], prefix["dice"], f"{row['n']:g} spheres")
+        for fewer, more in zip(rows, rows[1:]):
+            self.assertLess(more["dice"], fewer["dice"], f"{more['n']:g} spheres")
+
+    def test_curve_to_bad_places(self):
+        self.assert_refused("generate", self.grain, *GRID, "-o", "c.csv", "--curve", "none/curve.csv", code=1,
+                            says=("none/curve.csv",))
+        self.assert_refused("generate", self.grain, *GRID, "-o", "-", "--curve", "-", code=2, says=("standard output",))
+
     def test_every_combination_ends_at_the_first(self):
         """The scores of all prefixes, from score --curve, say where each combination has to end."""
         limits = {"spheres": 9, "eta": 0.22, "dice": 0.125, "coverage": 0.7, "inertia": 0.35}

@@ -100,7 +100,11 @@ class Case(unittest.TestCase):
     def curve(self, clump, target, *grid):
         """The rows of score --curve as dictionaries of numbers."""
         out = self.mskit("score", clump, "--target", target, "--curve", *grid).out
-        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(io.StringIO(out))]
+        return self.rows_of_curve(out)
+
+    @staticmethod
+    def rows_of_curve(text):
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(io.StringIO(text))]
 
     def assert_close(self, value, truth, relative, what=""):
         error = abs(value - truth) / (abs(truth) or 1)

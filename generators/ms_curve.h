@@ -1,0 +1,30 @@
+/** How good the clumps of a generator are, by number of spheres. */
+#ifndef MS_CURVE_H
+#define MS_CURVE_H
+
+#include "ms_generator.h"
+#include "ms_metrics.h"
+
+MS_C_BEGIN
+
+/**
+ * Scores of a generator's clumps of 1, 2, ... spheres, up to one that is given.
+ *
+ * Of a nested generator these are the prefixes of the clump, counted in one pass. Of another one, each
+ * is a run of its own: from the largest number down, each starting from the clump before if the
+ * generator has an option that takes one (MS_OPTION_CLUMP), else anew.
+ *
+ * @param[out] curve      clump->n_spheres values
+ * @param      clump      what the same run gave
+ * @param      run        its stop rule is not heeded
+ * @param      max_voxels as for ms_metrics_compute
+ * @return MS_OK; as ms_generator_run and ms_metrics_compute
+ *
+ * Cost: one ms_metrics_compute; unless nested, a run and one of those for each number of spheres.
+ */
+ms_status ms_curve_compute(ms_score *curve, const ms_clump *clump, const ms_generator *generator, const ms_run *run,
+                           size_t max_voxels, ms_error *err);
+
+MS_C_END
+
+#endif
