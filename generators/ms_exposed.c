@@ -42,6 +42,14 @@ typedef struct sweep {
     double widest;  /* diameter of those */
 } sweep;
 
+/* The parts of a sphere's surface that others cover: u.axis > least for the normals u there. Blocks of them are
+ * compared at once. */
+enum { BLOCK = 8 };
+typedef struct caps {
+    float axis[3][BLOCK]; /* to the other centres, in radii */
+    float least[BLOCK];
+} caps;
+
 /* The steps that the spheres want to make. */
 typedef struct move {
     double centre[3], radius;
@@ -82,8 +90,17 @@ static void sort_ends(sweep *s)
     qsort(s->end, s->n_small, sizeof *s->end, compare_ends);
 }
 
-/* Copies the spheres that cover part of one's surface; returns how many. */
-static size_t find_neighbours(ms_ball *near, const sweep *s, uint32_t self)
+static void set_cap(caps *block, size_t at, const ms_ball *ball, const ms_ball *other, double square)
+{
+    const double r = ball->radius;
+    for (int c = 0; c < 3; c++) {
+        block->axis[c][at] = (float)((other->centre[c] - ball->centre[c]) / r);
+    }
+    block->least[at] = (float)((square + (r - other->radius) * (r + other->radius)) / (2 * r * r));
+}
+
+/* What other spheres cover of one's surface; returns how many blocks. */
+static size_t find_caps(caps *block, const sweep *s, uint32_t self)
 {
     const ms_ball *ball = &s->ball[self];
     const double from = ball->centre[0] - ball->radius - s->widest, to = ball->centre[0] + ball->radius;
@@ -103,20 +120,32 @@ static size_t find_neighbours(ms_ball *near, const sweep *s, uint32_t self)
         const double square = ms_squared_distance(ball->centre, other->centre);
         const double deep = ball->radius - other->radius; /* those inside cover nothing of it */
         if (e->ball != self && square < reach * reach && !(deep > 0 && square < deep * deep)) {
-            near[found++] = *other;
+            set_cap(&block[found / BLOCK], found % BLOCK, ball, other, square);
+            found++;
         }
     }
-    return found;
+    for (; found % BLOCK; found++) {
+        for (int c = 0; c < 3; c++) {
+            block[found / BLOCK].axis[c][found % BLOCK] = 0;
+        }
+        block[found / BLOCK].least[found % BLOCK] = 1; /* covers nothing */
+    }
+    return found / BLOCK;
 }
 
-/* Is a place inside one of the spheres? The one that holds it moves to the front: it holds the next, too. */
-static int is_covered(ms_ball *near, size_t count, const double place[3])
+/* Is the place with this normal covered? The block that covers it is tried first next time. */
+static int is_covered(size_t *first, const caps *block, size_t blocks, const float normal[3])
 {
-    for (size_t b = 0; b < count; b++) {
-        if (ms_squared_distance(near[b].centre, place) < near[b].radius * near[b].radius) {
-            const ms_ball swap = near[b];
-            near[b] = near[0];
-            near[0] = swap;
+    for (size_t b = 0; b < blocks; b++) {
+        const size_t at = b == 0 ? *first : b <= *first ? b - 1 : b;
+        const caps *c = &block[at];
+        int covered = 0;
+#pragma omp simd reduction(| : covered)
+        for (int i = 0; i < BLOCK; i++) {
+            covered |= c->axis[0][i] * normal[0] + c->axis[1][i] * normal[1] + c->axis[2][i] * normal[2] > c->least[i];
+        }
+        if (covered) {
+            *first = at;
             return 1;
         }
     }
@@ -197,10 +226,11 @@ static double beyond_planes(const exposed_fit *fit, const double centre[3], cons
     return beyond > 0 ? beyond : -HUGE_VAL;
 }
 
-static move find_move(const exposed_fit *fit, const workspace *work, ms_ball *near, uint32_t self)
+static move find_move(const exposed_fit *fit, const workspace *work, caps *block, uint32_t self)
 {
     const ms_ball *ball = &work->sweep.ball[self];
-    const size_t neighbours = find_neighbours(near, &work->sweep, self);
+    const size_t blocks = find_caps(block, &work->sweep, self);
+    size_t first = 0;
     double a[4][4] = {{0}}, b[4] = {0};
     double weight = 0;
     move out = {.weight = 0};
@@ -208,8 +238,9 @@ static move find_move(const exposed_fit *fit, const workspace *work, ms_ball *ne
         const double row[4] = {work->turned[p][0], work->turned[p][1], work->turned[p][2], 1};
         const double place[3] = {ball->centre[0] + ball->radius * row[0], ball->centre[1] + ball->radius * row[1],
                                  ball->centre[2] + ball->radius * row[2]};
+        const float normal[3] = {(float)row[0], (float)row[1], (float)row[2]};
         const double beyond = beyond_planes(fit, ball->centre, place);
-        if (!(beyond > 0) && is_covered(near, neighbours, place)) {
+        if (!(beyond > 0) && is_covered(&first, block, blocks, normal)) {
             continue;
         }
         const double phi = fmax(ms_field_at(fit->field, place), beyond);
@@ -388,15 +419,15 @@ static int find_moves(const exposed_fit *fit, workspace *work, const ms_ball *ba
     int enough = 1;
 #pragma omp parallel reduction(&& : enough)
     {
-        ms_ball *near = malloc((work->sweep.count + 1) * sizeof *near);
-        enough = near != NULL;
+        caps *block = malloc((work->sweep.count / BLOCK + 1) * sizeof *block);
+        enough = block != NULL;
 #pragma omp for schedule(dynamic, 4)
         for (size_t s = 0; s < count; s++) {
-            if (near) {
-                work->move[s] = find_move(fit, work, near, (uint32_t)s);
+            if (block) {
+                work->move[s] = find_move(fit, work, block, (uint32_t)s);
             }
         }
-        free(near);
+        free(block);
     }
     return enough;
 }

@@ -14,8 +14,12 @@
 static const double SURPLUS = 1.25;
 enum { MORE = 2 };
 
-/* Part of the surplus that is dropped at a time, and part of the spheres that a round adds. */
+/* Part of the surplus that is dropped at a time. */
 static const double DROP = 0.1;
+
+/* Part of the spheres that a round adds, one round after the other: what one cannot better, another may. */
+static const double ADD[] = {0.1, 0.05, 0.2, 0.025};
+enum { ADDS = sizeof ADD / sizeof *ADD };
 
 /* Radii that become smaller, in voxels, say nothing about the shape. */
 static const double LEAST_RADIUS = 0.5;
@@ -430,7 +434,7 @@ static ms_status solver_begin(solver *s, const ms_run *run, const variational_se
 }
 
 /* Adds spheres, drops as many; taken back where it makes the mismatch larger. */
-static ms_status round_trip(solver *s, ms_error *err)
+static ms_status round_trip(solver *s, double part, ms_error *err)
 {
     int64_t before = 0, after = 0;
     const size_t count = s->count;
@@ -439,7 +443,7 @@ static ms_status round_trip(solver *s, ms_error *err)
         kept ? mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     if (status == MS_OK) {
         memcpy(kept, s->ball, count * sizeof *kept);
-        status = add(s, (size_t)ceil(DROP * (double)s->wanted), err);
+        status = add(s, (size_t)ceil(part * (double)s->wanted), err);
     }
     if (status == MS_OK) {
         status = fit(s, DROP_STEPS, 0.8, 0.3, err);
@@ -487,7 +491,7 @@ static ms_status solve(solver *s, ms_error *err)
         status = settle(s, err);
     }
     for (int round = 0; round < s->settings->rounds && status == MS_OK && s->count > 0; round++) {
-        status = round_trip(s, err);
+        status = round_trip(s, ADD[round % ADDS], err);
     }
     return status;
 }
