@@ -21,13 +21,17 @@ typedef struct ms_sphere {
 typedef struct ms_clump {
     size_t n_spheres, capacity;
     ms_sphere *sphere;
+    double *mass; /* of each sphere, kg; NULL where no one has set it (ms_density_solve) */
 } ms_clump;
 
 /**
- * Appends a sphere.
+ * Appends a sphere. Masses hold for the spheres there were: they are dropped.
  * @return MS_OK; MS_ERR_LIMIT above MS_CLUMP_MAX_SPHERES; MS_ERR_NOMEM
  */
 ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err);
+
+/** Room for the mass of each sphere, their values undefined. @return MS_OK; MS_ERR_NOMEM */
+ms_status ms_clump_alloc_masses(ms_clump *clump, ms_error *err);
 
 /** Number of pieces: spheres that overlap belong together. Cost: O(n^2). */
 ms_status ms_clump_pieces(size_t *pieces, const ms_clump *clump, ms_error *err);
