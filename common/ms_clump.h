@@ -44,7 +44,7 @@ double ms_clump_smallest_radius(const ms_clump *clump);
 
 /**
  * Reads spheres from a text file: four numbers a line, x y z r, separated by commas,
- * semicolons or blanks; further columns are ignored. Empty lines, '#' comments and one
+ * semicolons or blanks; a fifth is the mass if the header calls it so, further columns are ignored. Empty lines, '#' comments and one
  * header line before the first sphere are skipped; any other line is an error, and so are an
  * empty column, decimal commas and a header that names x, y, z in other columns.
  *
