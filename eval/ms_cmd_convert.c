@@ -89,6 +89,14 @@ static ms_status work(arguments *a, ms_error *err)
     return status;
 }
 
+/* Checks the flags; what can be written of the clump is known when it is read. */
+static ms_status settle(arguments *a, ms_error *err)
+{
+    const int unit_given = a->mass.unit || a->mass.scale > 0;
+    ms_status status = unit_given ? ms_mass_settle(&a->mass, err) : MS_OK;
+    return status == MS_OK ? ms_outputs_settle(&a->outputs, a->clump, "", MS_NEED_MASSES, 0, err) : status;
+}
+
 static int run(const ms_command *command, int argc, char **argv)
 {
     arguments a = {0};
@@ -102,12 +110,11 @@ static int run(const ms_command *command, int argc, char **argv)
         return ms_wrong_usage(command, "takes one clump file");
     }
     a.clump = argv[first];
-    if (a.mass.unit || a.mass.scale > 0) {
-        if (ms_mass_settle(&a.mass, &err) != MS_OK) {
-            return ms_wrong_usage(command, err.text);
-        }
+    if (settle(&a, &err) != MS_OK) {
+        code = ms_wrong_usage(command, err.text);
+    } else {
+        code = work(&a, &err) == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
     }
-    code = work(&a, &err) == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
     ms_outputs_free(&a.outputs);
     return code;
 }

@@ -161,7 +161,7 @@ const ms_command ms_command_correct = {
     .name = "correct",
     .summary = "give the spheres masses that sum to the true mass and inertia",
     .usage = "CLUMP --target SHAPE --density RHO [--unit m|mm|um] -o FILE...",
-    .example = "mskit correct grain.csv --target grain.stl --density 2650 --unit mm -o grain.lammps",
+    .example = "mskit correct grain.csv --target grain.stl --density 2650 --unit mm -o grain.json -o grain.lammps",
     .flags = FLAGS,
     .run = run,
 };

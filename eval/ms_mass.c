@@ -88,6 +88,7 @@ ms_status ms_mass_correct(ms_mass *mass, ms_clump *clump, const ms_mass_flags *f
     if (status == MS_OK) {
         status = ms_density_solve(clump, &mass->report, &mass->particle, &flags->options, err);
     }
+    mass->all_at_once = flags->options.input_frame;
     mass->corrected = status == MS_OK;
     mass->seconds = omp_get_wtime() - start;
     return status;
@@ -105,6 +106,9 @@ void ms_mass_print(FILE *stream, const ms_mass *mass)
     fprintf(stream, "  %-34s %.4g to %.4g kg\n", "masses of the spheres", r->least_mass, r->most_mass);
     fprintf(stream, "  %-34s %.3g %%\n", "epsilon of the moments", 100 * r->epsilon);
     fprintf(stream, "  %-34s %.3g %%\n", "products of inertia / mean moment", 100 * r->products);
+    if (r->products > 0.01 && !mass->all_at_once) {
+        fprintf(stream, "  %-34s --axes input meets them with the moments, at a larger epsilon\n", "");
+    }
     if (r->centre > 0) {
         fprintf(stream, "  %-34s %.3g\n", "centre of mass / radius of gyration", r->centre);
     }

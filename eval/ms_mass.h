@@ -41,7 +41,8 @@ ms_status ms_mass_settle(ms_mass_flags *flags, ms_error *err);
 typedef struct ms_mass {
     ms_particle particle;
     ms_density_report report;
-    int corrected; /* the report holds */
+    int corrected;   /* the report holds */
+    int all_at_once; /* moments and products, by --axes input */
     double seconds;
 } ms_mass;
 

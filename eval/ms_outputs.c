@@ -95,10 +95,19 @@ static int is_default(const ms_outputs *outputs, const ms_format *format, ms_nee
     return outputs->n_formats == 0 && format->need <= (outputs->folder ? need : MS_NEED_SPHERES);
 }
 
+static void free_files(ms_outputs *outputs)
+{
+    for (size_t f = 0; f < outputs->n_files; f++) {
+        free(outputs->file[f].owned);
+    }
+    outputs->n_files = 0;
+}
+
 ms_status ms_outputs_settle(ms_outputs *outputs, const char *source, const char *behind, ms_need need, int defaults,
                             ms_error *err)
 {
     ms_status status = MS_OK;
+    free_files(outputs);
     if (outputs->folder && (outputs->folder[0] == '\0' || outputs->n_formats)) {
         return ms_fail(err, MS_ERR_ARG, "--all-formats takes the name of a folder, and no --format beside it");
     }
@@ -192,8 +201,6 @@ ms_status ms_outputs_write(const ms_outputs *outputs, const ms_content *content,
 
 void ms_outputs_free(ms_outputs *outputs)
 {
-    for (size_t f = 0; f < outputs->n_files; f++) {
-        free(outputs->file[f].owned);
-    }
+    free_files(outputs);
     memset(outputs, 0, sizeof *outputs);
 }

@@ -36,13 +36,12 @@ typedef struct ms_outputs {
 ms_status ms_outputs_flag(int *taken, ms_outputs *outputs, const char *name, const char *value, ms_error *err);
 
 /**
- * Settles which files are written.
+ * Settles which files are written; may be done again, when more is known.
  *
  * @param source   the file that the clump comes from; its name without folder and ending begins default names
  * @param behind   follows it in default names, as "-mss"
  * @param need     what is known of the clump: formats that need more are refused, or left out of --all-formats
- * @param defaults nonzero: without any output, csv, json and vtk (and if more is known no other) are written; zero: some
- *                 output must be given
+ * @param defaults nonzero: without any output, csv, json and vtk are written; zero: some output must be given
  * @return MS_OK; MS_ERR_ARG; MS_ERR_NOMEM. ms_outputs_free in any case
  */
 ms_status ms_outputs_settle(ms_outputs *outputs, const char *source, const char *behind, ms_need need, int defaults,
