@@ -44,9 +44,10 @@ double ms_clump_smallest_radius(const ms_clump *clump);
 
 /**
  * Reads spheres from a text file: four numbers a line, x y z r, separated by commas,
- * semicolons or blanks; a fifth is the mass if the header calls it so, further columns are ignored. Empty lines, '#' comments and one
- * header line before the first sphere are skipped; any other line is an error, and so are an
- * empty column, decimal commas and a header that names x, y, z in other columns.
+ * semicolons or blanks; a fifth is the mass if the header calls it so, further columns are
+ * ignored. Empty lines, '#' comments and one header line before the first sphere are skipped;
+ * any other line is an error, and so are an empty column, decimal commas and a header that
+ * names x, y, z in other columns.
  *
  * @param[out] clump the caller frees it; empty on failure
  * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line; MS_ERR_LIMIT; MS_ERR_NOMEM

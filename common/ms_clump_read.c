@@ -179,7 +179,8 @@ static ms_status parse(ms_clump *clump, masses *m, ms_bytes *bytes, const char *
             return ms_text_fail(err, &text, "%s", flaw);
         }
         if (header && header_contradicts(&text)) {
-            return ms_text_fail(err, &text, "the header names x, y, z in other columns; the first four must be x, y, z, r");
+            return ms_text_fail(err, &text,
+                                "the header names x, y, z in other columns; the first four must be x, y, z, r");
         }
         m->wanted |= header && header_names_mass(&text);
         ms_status status = header ? MS_OK : read_sphere(clump, m, &text, err);

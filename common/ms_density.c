@@ -150,15 +150,14 @@ static int dimensions(const equations *e)
 
 static ms_status fail_centre(const equations *e, double least_error, double tolerance, ms_error *err)
 {
-    static const char *const FLAT[] = {"all centres coincide", "all centres lie on one line",
-                                       "all centres lie in one plane",
-                                       "it lies outside the hull of the centres, or so near to it that masses within "
-                                       "the bounds do not reach it"};
+    static const char *const WHY[] = {"all centres coincide", "all centres lie on one line",
+                                      "all centres lie in one plane",
+                                      "it is outside the hull of the centres, or too near to it for the bounds"};
     return ms_fail(err, MS_ERR_SHAPE,
                    "no masses of these %zu spheres have the centre of mass of the particle (Yuan's eq. 4): %s; the "
                    "nearest they come is %.3g radii of gyration along an axis, and %.3g is allowed. More spheres would "
                    "help, or a tolerance on the centre of mass of %.2g",
-                   e->n, FLAT[dimensions(e)], least_error, tolerance, 1.01 * least_error);
+                   e->n, WHY[dimensions(e)], least_error, tolerance, 1.01 * least_error);
 }
 
 /* What the masses sum to, by other means than the rows of the programme. */
@@ -166,7 +165,8 @@ static ms_status judge(ms_density_report *report, const equations *e, const ms_c
                        const ms_particle *particle, ms_error *err)
 {
     ms_particle sum;
-    const double unit = ms_particle_gyration(particle), norm = particle->mass * unit * unit * particle->scale * particle->scale;
+    const double unit = ms_particle_gyration(particle), metres = unit * particle->scale;
+    const double norm = particle->mass * metres * metres;
     ms_status status = ms_particle_from_spheres(&sum, clump, particle->scale, err);
     if (status != MS_OK) {
         return status;

@@ -10,7 +10,7 @@ MS_C_BEGIN
 typedef struct ms_density_options {
     int input_frame;         /* 0: moments along the principal axes first, then products (see below);
                                 1: all six elements of the tensor along the clump's own axes at once */
-    double least, most;      /* bounds of a mass / that of the particle; 0: 1/1000, or 1/2n for more than 500 spheres; 1 */
+    double least, most;      /* bounds of a mass / that of the particle; 0: 1/1000, or 1/2n above 500 spheres; 1 */
     double centre_tolerance; /* how far the centre of mass may be off / radius of gyration */
 } ms_density_options;
 

@@ -47,8 +47,8 @@ static ms_status give_up(const guard *g, ms_programme *p, ms_error *err)
     end_quiet(g);
     glp_free_env();
     p->problem = NULL;
-    return ms_fail(err, MS_ERR_NOMEM, "GLPK could not go on with a programme of %zu spheres; most likely it has no memory",
-                   p->n);
+    return ms_fail(err, MS_ERR_NOMEM,
+                   "GLPK could not go on with a programme of %zu spheres; most likely it has no memory", p->n);
 }
 
 static void make_columns(ms_programme *p, double least)

@@ -20,8 +20,10 @@ static ms_status refuse(ms_clump *clump, ms_particle *particle, ms_bytes *bytes,
     (void)clump;
     (void)particle;
     (void)bytes;
-    return ms_fail(err, MS_ERR_ARG, "%s: this format is written and not read; clumps are read from .csv, .json, .lammps, "
-                   ".liggghts, .yade and other text of x y z r", name);
+    return ms_fail(err, MS_ERR_ARG,
+                   "%s: this format is written and not read; clumps are read from .csv, .json, .lammps, .liggghts, "
+                   ".yade and other text of x y z r",
+                   name);
 }
 
 static parser *parser_of(const char *path)
@@ -29,8 +31,8 @@ static parser *parser_of(const char *path)
     static const struct {
         const char *ending;
         parser *parse;
-    } READERS[] = {{"json", ms_parse_json}, {"lammps", ms_parse_lammps}, {"vtk", refuse}, {"clu", refuse}, {"pfc", refuse},
-                   {"mfix", refuse}};
+    } READERS[] = {{"json", ms_parse_json}, {"lammps", ms_parse_lammps}, {"vtk", refuse},
+                   {"clu", refuse},         {"pfc", refuse},             {"mfix", refuse}};
     char ending[16];
     ms_file_ending(ending, path);
     for (size_t r = 0; r < sizeof READERS / sizeof *READERS; r++) {

@@ -17,7 +17,10 @@ MS_C_BEGIN
  */
 ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path, ms_error *err);
 
-/** Reads the particle from a STEM.frame.json or the JSON of a clump. @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_NOMEM */
+/**
+ * Reads the particle from a STEM.frame.json or the JSON of a clump.
+ * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_NOMEM
+ */
 ms_status ms_read_particle(ms_particle *particle, const char *path, ms_error *err);
 
 MS_C_END

@@ -63,7 +63,8 @@ static ms_status parse_root(json_t **root, const ms_bytes *bytes, const char *na
 {
     json_error_t where;
     *root = json_loadb((const char *)bytes->data, bytes->size, 0, &where);
-    return *root ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "%s: line %d: %s; this is no JSON", name, where.line, where.text);
+    return *root ? MS_OK
+                 : ms_fail(err, MS_ERR_FORMAT, "%s: line %d: %s; this is no JSON", name, where.line, where.text);
 }
 
 /* Do the columns say that a mass follows the radius? */

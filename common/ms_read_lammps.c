@@ -42,7 +42,8 @@ static ms_status read_section(table *t, ms_text *text, int section, ms_error *er
 static ms_status start_table(table *t, ms_text *text, double n, ms_error *err)
 {
     if (t->row || !(n >= 1 && n <= MS_CLUMP_MAX_SPHERES && n == floor(n))) {
-        return ms_text_fail(err, text, "the number of atoms is given twice or is not from 1 to %d", MS_CLUMP_MAX_SPHERES);
+        return ms_text_fail(err, text, "the number of atoms is given twice or is not from 1 to %d",
+                            MS_CLUMP_MAX_SPHERES);
     }
     t->n = (size_t)n;
     t->row = calloc(t->n, sizeof *t->row);
@@ -103,7 +104,8 @@ static ms_status read_line(table *t, ms_particle *particle, ms_text *text, ms_er
 static ms_status fill_clump(ms_clump *clump, ms_particle *particle, const table *t, const char *name, ms_error *err)
 {
     if (t->n == 0 || !t->seen[0] || !t->seen[1]) {
-        return ms_fail(err, MS_ERR_FORMAT, "%s: a molecule of spheres has the number of atoms, Coords and Diameters", name);
+        return ms_fail(err, MS_ERR_FORMAT, "%s: a molecule of spheres has the number of atoms, Coords and Diameters",
+                       name);
     }
     ms_status status = MS_OK;
     for (size_t s = 0; s < t->n && status == MS_OK; s++) {

@@ -91,7 +91,8 @@ ms_status ms_write_vtk(FILE *stream, const ms_content *content, ms_error *err)
 
 const ms_format ms_formats[] = {
     {"csv", "csv", "x,y,z,r in the unit and frame of the shape", MS_NEED_SPHERES, {{"", ms_write_csv}}},
-    {"json", "json", "spheres, scores and all that is needed to repeat the run", MS_NEED_SPHERES, {{"", ms_write_json}}},
+    {"json", "json", "spheres, scores and all that is needed to repeat the run", MS_NEED_SPHERES,
+     {{"", ms_write_json}}},
     {"vtk", "vtk", "points with radius, for ParaView", MS_NEED_SPHERES, {{"", ms_write_vtk}}},
     {"liggghts", "liggghts", "sphere file, and a script with its particletemplate/multisphere", MS_NEED_PARTICLE,
      {{"", ms_write_liggghts}, {".in", ms_write_liggghts_script}}},
@@ -163,7 +164,9 @@ static ms_status make_folders(char *path, size_t from, ms_error *err)
     return MS_OK;
 }
 
-static ms_status write_part(const ms_content *content, const char *path, size_t stem, const ms_part *part, ms_error *err)
+/* The path that is written to is the first `stem` characters of `path` and the suffix. */
+static ms_status write_part(const ms_content *content, const char *path, size_t stem, const ms_part *part,
+                            ms_error *err)
 {
     ms_output output;
     const size_t room = stem + strlen(part->suffix) + 1;
@@ -223,7 +226,8 @@ static ms_status check_need(const ms_content *content, const ms_format *format, 
                        format->name);
     }
     if (format->need == MS_NEED_MASSES && !content->clump->mass) {
-        return ms_fail(err, MS_ERR_ARG, "a %s template needs a mass for each sphere; correct the clump first (mskit correct)",
+        return ms_fail(err, MS_ERR_ARG,
+                       "a %s template needs a mass for each sphere; correct the clump first (mskit correct)",
                        format->name);
     }
     return MS_OK;

@@ -50,8 +50,8 @@ ms_status ms_write_lammps(FILE *stream, const ms_content *content, ms_error *err
 {
     static const char *const SECTIONS[] = {"Coords", "Types", "Diameters", "Masses"};
     (void)err;
-    fprintf(stream, "clump by mskit " MS_VERSION ", SI, from the centre of mass along the principal axes\n\n%zu atoms\n",
-            content->clump->n_spheres);
+    fputs("clump by mskit " MS_VERSION ", SI, from the centre of mass along the principal axes\n\n", stream);
+    fprintf(stream, "%zu atoms\n", content->clump->n_spheres);
     fprintf(stream, "%s mass\n0 0 0 com\n", ms_number_text(content->particle->mass).text);
     write_moments(stream, content->particle, 1, " ");
     fputs(" 0 0 0 inertia\n", stream);
@@ -129,8 +129,8 @@ ms_status ms_write_kratos(FILE *stream, const ms_content *content, ms_error *err
     return MS_OK;
 }
 
-/* Lengths over the diameter of the ball around the particle. Areas and neighbours serve heat transfer alone; each sphere
- * has its share of the surface and no neighbours. */
+/* Lengths over the diameter of the ball around the particle. Areas and neighbours serve heat transfer alone; each
+ * sphere has its own surface and no neighbours. */
 ms_status ms_write_mfix(FILE *stream, const ms_content *content, ms_error *err)
 {
     const ms_clump *clump = content->clump;
@@ -139,7 +139,8 @@ ms_status ms_write_mfix(FILE *stream, const ms_content *content, ms_error *err)
     fputs("#version = 1\nx,y,z,rel_d,rel_sa,w,e,s,n,t,b,w_na,e_na,s_na,n_na,t_na,b_na,pid\n", stream);
     for (size_t s = 0; s < clump->n_spheres; s++) {
         const double *c = clump->sphere[s].centre, d = 2 * clump->sphere[s].radius / bound;
-        ms_write_numbers(stream, (const double[]){c[0] / bound, c[1] / bound, c[2] / bound, d, acos(-1.0) * d * d}, 5, ",");
+        const double row[5] = {c[0] / bound, c[1] / bound, c[2] / bound, d, acos(-1.0) * d * d};
+        ms_write_numbers(stream, row, 5, ",");
         fputs(",-1,-1,-1,-1,-1,-1,0,0,0,0,0,0,1\n", stream);
     }
     return MS_OK;

@@ -49,10 +49,9 @@ ms_status ms_write_liggghts_script(FILE *stream, const ms_content *content, ms_e
     fprintf(stream, "timestep %s\n", text(d.step, &a));
     fputs("fix gravity all gravity 9.81 vector 0 0 -1\n"
           "fix floor all wall/gran model hertz tangential history primitive type 1 zplane 0\n\n", stream);
-    fprintf(stream, "# The template: mass and inertia about its origin, along its axes.\n"
-                    "fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 density constant %s "
-                    "nspheres %zu "
-                    "ntry 1000 spheres file %s scale 1.0 type 1 mass %s inertia_tensor",
+    fputs("# The template: mass and inertia about its origin, along its axes.\n", stream);
+    fprintf(stream, "fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 "
+                    "density constant %s nspheres %zu ntry 1000 spheres file %s scale 1.0 type 1 mass %s inertia_tensor",
             text(p->density, &a), content->clump->n_spheres, content->name, text(p->mass, &b));
     for (int k = 0; k < 6; k++) {
         fprintf(stream, " %s", k == 0 || k == 3 || k == 5 ? text(p->inertia[k / 2][k / 2], &c) : "0");
@@ -93,14 +92,14 @@ ms_status ms_write_lammps_script(FILE *stream, const ms_content *content, ms_err
     fprintf(stream, "region above block -%s %s -%s %s", text(d.reach, &a), a.text, a.text, a.text);
     fprintf(stream, " %s %s\n", text(1.5 * d.reach, &b), text(2 * d.reach, &c));
     fputs("fix insert all deposit 1 0 1 32452843 region above mol clump rigid move\n\n", stream);
-    fprintf(stream, "thermo_style custom step atoms\nthermo_modify lost error\nthermo %.0f\nrun %.0f\n", ceil(d.end / d.step / 10),
-            ceil(d.end / d.step));
+    fputs("thermo_style custom step atoms\nthermo_modify lost error\n", stream);
+    fprintf(stream, "thermo %.0f\nrun %.0f\n", ceil(d.end / d.step / 10), ceil(d.end / d.step));
     return MS_OK;
 }
 
-/* YADE sums spheres by volume and density, and turns the clump into the axes of that sum. Spheres without density around
- * four small ones, a cross of unequal arms, sum to the centre and the axes of the template; mass and inertia can then be
- * set. */
+/* YADE sums spheres by volume and density, and turns the clump into the axes of that sum. Spheres without density
+ * around four small ones, a cross of unequal arms, sum to the centre and the axes of the template; mass and inertia can
+ * then be set. */
 static void write_yade_particle(FILE *stream, const ms_content *content)
 {
     const ms_particle *p = content->particle;
@@ -132,8 +131,10 @@ ms_status ms_write_yade_script(FILE *stream, const ms_content *content, ms_error
     fprintf(stream, "# Drops %s on a plane: yade -x -n %s.py\nfrom yade import ymport\n\n", content->name,
             content->name);
     for (int m = 0; m < 3; m++) {
-        fprintf(stream, "O.materials.append(FrictMat(label='%s', young=%s, poisson=0.3, density=%s, frictionAngle=0.46))\n",
-                MATERIALS[m], text(d.young, &a), m == 0 ? text(content->particle->density, &b) : m == 1 ? "0" : "1");
+        const double density[] = {content->particle->density, 0, 1};
+        fprintf(stream,
+                "O.materials.append(FrictMat(label='%s', young=%s, poisson=0.3, density=%s, frictionAngle=0.46))\n",
+                MATERIALS[m], text(d.young, &a), text(density[m], &b));
     }
     fputs("\n\n", stream);
     write_yade_particle(stream, content);

@@ -41,8 +41,8 @@ static ms_status complete(ms_particle *particle, const arguments *a, const ms_cl
                        a->mass.scale);
     }
     if (particle->density > 0 && a->mass.density > 0 && a->mass.density != particle->density) {
-        return ms_fail(err, MS_ERR_ARG, "%s says that its density is %.9g kg/m^3; another takes mskit correct", a->clump,
-                       particle->density);
+        return ms_fail(err, MS_ERR_ARG, "%s says that its density is %.9g kg/m^3; another takes mskit correct",
+                       a->clump, particle->density);
     }
     if (!(particle->mass > 0) && clump->mass) {
         ms_status status = ms_particle_from_spheres(particle, clump, a->mass.scale > 0 ? a->mass.scale : 1, err);

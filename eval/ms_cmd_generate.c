@@ -128,12 +128,8 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
         a->target_grid = value;
         return MS_OK;
     }
-    if (strcmp(name, "json") == 0) {
-        a->json = 1;
-        return MS_OK;
-    }
-    if (strcmp(name, "correct") == 0) {
-        a->correct = 1;
+    if (strcmp(name, "json") == 0 || strcmp(name, "correct") == 0) {
+        *(name[0] == 'j' ? &a->json : &a->correct) = 1;
         return MS_OK;
     }
     if (strcmp(name, "until") == 0) {
@@ -165,8 +161,8 @@ static ms_status settle_outputs(arguments *a, ms_error *err)
 {
     char behind[64];
     snprintf(behind, sizeof behind, "-%s", a->generator->name);
-    ms_status status = ms_outputs_settle(&a->outputs, a->shape, behind, a->correct ? MS_NEED_MASSES : MS_NEED_SPHERES, 1,
-                                         err);
+    const ms_need known = a->correct ? MS_NEED_MASSES : MS_NEED_SPHERES;
+    ms_status status = ms_outputs_settle(&a->outputs, a->shape, behind, known, 1, err);
     const int to_stdout = a->json + ms_outputs_to_stdout(&a->outputs) +
                           (a->target_grid && strcmp(a->target_grid, "-") == 0);
     return status == MS_OK && to_stdout > 1
@@ -249,7 +245,8 @@ static ms_status write_outputs(const arguments *a, const ms_input *input, const 
                                ms_error *err)
 {
     FILE *words = writes_to_stdout(a) ? stderr : stdout;
-    const ms_content content = {.clump = &r->clump, .particle = a->correct ? &r->mass.particle : NULL, .record = record};
+    const ms_particle *particle = a->correct ? &r->mass.particle : NULL;
+    const ms_content content = {.clump = &r->clump, .particle = particle, .record = record};
     ms_status status = ms_outputs_write(&a->outputs, &content, words, err);
     if (status == MS_OK && a->target_grid) {
         status = ms_write_grid(&input->target.grid, a->target_grid, err);

@@ -6,7 +6,8 @@
 #include <string.h>
 
 /* Takes one of two words; 1 for the second. */
-static ms_status take_choice(int *second, const char *name, const char *value, const char *const words[2], ms_error *err)
+static ms_status take_choice(int *second, const char *name, const char *value, const char *const words[2],
+                             ms_error *err)
 {
     *second = strcmp(value, words[1]) == 0;
     return *second || strcmp(value, words[0]) == 0

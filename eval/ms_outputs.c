@@ -46,8 +46,8 @@ static ms_status check_need(const ms_format *format, ms_need need, ms_error *err
 {
     return format->need <= need ? MS_OK
                                 : ms_fail(err, MS_ERR_ARG,
-                                          "a %s template needs the mass of the particle%s: use mskit correct, or generate "
-                                          "--correct --density RHO",
+                                          "a %s template needs the mass of the particle%s: use mskit correct, or "
+                                          "generate --correct --density RHO",
                                           format->name, format->need == MS_NEED_MASSES ? " and of each sphere" : "");
 }
 
@@ -60,8 +60,9 @@ static ms_status add_asked(ms_outputs *outputs, const char *path, ms_need need, 
         return ms_fail(err, MS_ERR_ARG, "--output '' names no file; use - for standard output");
     }
     if (!format) {
-        return ms_fail(err, MS_ERR_ARG, "the ending of --output '%.200s' names no format, and --format is not given: %s",
-                       path, cause.text);
+        return ms_fail(err, MS_ERR_ARG,
+                       "the ending of --output '%.200s' names no format, and --format is not given: %s", path,
+                       cause.text);
     }
     outputs->file[outputs->n_files++] = (ms_output_file){path, NULL, format};
     return check_need(format, need, err);

@@ -103,8 +103,8 @@ class Clump:
         self.folder = os.path.join(folder, name)
         os.mkdir(self.folder)
         self.mskit("shape", kind, *parameters, "-o", "c.stl")
-        self.mskit("generate", "c.stl", "-g", "setcover", "-n", str(n), "--cells", "50", "--correct", "--density", str(DENSITY),
-                   "--unit", "mm", "-o", "c.liggghts", "-o", "c.lammps", "-o", "c.yade", "-o", "c.json")
+        self.mskit("generate", "c.stl", "-g", "setcover", "-n", str(n), "--cells", "50", "--correct",
+                   "--density", str(DENSITY), "--unit", "mm", "-o", "c.liggghts", "-o", "c.lammps", "-o", "c.yade", "-o", "c.json")
         with open(self.path("c.json"), encoding="utf-8") as f:
             self.record = json.load(f)
         self.masses = self.record["masses"]
