@@ -101,6 +101,24 @@ static ms_status read_line(table *t, ms_particle *particle, ms_text *text, ms_er
                         ms_word_quote(&word).text);
 }
 
+/* A file may leave out mass and inertia; what it says must make sense. */
+static ms_status settle_particle(ms_particle *particle, const char *name, ms_error *err)
+{
+    const double *i[3] = {particle->inertia[0], particle->inertia[1], particle->inertia[2]};
+    if (particle->mass == 0 && i[0][0] == 0) {
+        memset(particle, 0, sizeof *particle);
+        return MS_OK;
+    }
+    for (int k = 0; k < 3; k++) {
+        if (!(particle->mass > 0) || !isfinite(particle->mass) || !(i[k][k] > 0) || !isfinite(i[k][k]) ||
+            !isfinite(particle->centre[k])) {
+            return ms_fail(err, MS_ERR_FORMAT, "%s: mass and inertia of its header must both be above 0 and finite", name);
+        }
+    }
+    particle->scale = 1;
+    return MS_OK;
+}
+
 static ms_status fill_clump(ms_clump *clump, ms_particle *particle, const table *t, const char *name, ms_error *err)
 {
     if (t->n == 0 || !t->seen[0] || !t->seen[1]) {
@@ -118,12 +136,7 @@ static ms_status fill_clump(ms_clump *clump, ms_particle *particle, const table 
             clump->mass[s] = t->row[s][4];
         }
     }
-    if (!(particle->mass > 0) || !(particle->inertia[0][0] > 0)) {
-        memset(particle, 0, sizeof *particle);
-    } else {
-        particle->scale = 1;
-    }
-    return status;
+    return status == MS_OK ? settle_particle(particle, name, err) : status;
 }
 
 ms_status ms_parse_lammps(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)

@@ -249,6 +249,29 @@ static void what_the_other_engines_are_told(void **state)
     ms_clump_free(&clump);
 }
 
+static void vtk_has_masses_and_densities(void **state)
+{
+    char folder[64], path[128];
+    double v[200];
+    ms_clump clump;
+    ms_particle particle;
+    (void)state;
+    make_folder(folder);
+    make_clump(&clump, &particle);
+    const ms_content content = {.clump = &clump, .particle = &particle};
+    snprintf(path, sizeof path, "%s/c.vtk", folder);
+    assert_int_equal(ms_write_clump(&content, path, NULL, NULL), MS_OK);
+    const size_t n = numbers_of(v, 200, folder, "c.vtk");
+    for (size_t s = 0; s < 6; s++) { /* radii, a 1, masses, a 1, densities */
+        const double r = SCALE * clump.sphere[s].radius;
+        expect_close(v[n - 20 + s], clump.sphere[s].radius, 0);
+        expect_close(v[n - 13 + s], clump.mass[s], 0);
+        expect_close(v[n - 6 + s] * ball_volume(r), clump.mass[s], 1e-15);
+    }
+    clean(folder);
+    ms_clump_free(&clump);
+}
+
 static void templates_need_a_particle(void **state)
 {
     char folder[64], path[128];
@@ -353,6 +376,10 @@ static void bad_files_are_refused(void **state)
     expect_refused(folder, "a.lammps", "t\n2 atoms\n\nCoords\n\n1 0 0 0\n", "after 1 of 2");
     expect_refused(folder, "a.lammps", "t\n1 atoms\n\nCoords\n\n1 0 0 0\n", "Diameters");
     expect_refused(folder, "a.lammps", "t\n1 atoms\n\nCoords\n\n1 0 0 0\n\nDiameters\n\n1 0\n", "radii above 0");
+    expect_refused(folder, "a.lammps", "t\n1 atoms\ninf mass\n1 1 1 0 0 0 inertia\n\nCoords\n\n1 0 0 0\n\nDiameters\n\n1 1\n",
+                   "above 0 and finite");
+    expect_refused(folder, "a.lammps", "t\n1 atoms\n1 mass\n\nCoords\n\n1 0 0 0\n\nDiameters\n\n1 1\n",
+                   "above 0 and finite");
     expect_refused(folder, "a.pfc", "clump", "written and not read");
     assert_int_equal(rmdir(folder), 0);
 }
@@ -364,6 +391,7 @@ int main(void)
         cmocka_unit_test(a_body_without_axes_of_its_own_keeps_those_of_the_input),
         cmocka_unit_test(round_trips),
         cmocka_unit_test(what_the_other_engines_are_told),
+        cmocka_unit_test(vtk_has_masses_and_densities),
         cmocka_unit_test(templates_need_a_particle),
         cmocka_unit_test(a_decimal_comma_changes_nothing),
         cmocka_unit_test(bad_files_are_refused),
