@@ -1,4 +1,5 @@
 /* mskit correct CLUMP --target SHAPE --density RHO */
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -97,6 +98,9 @@ static ms_status work(const arguments *a, ms_error *err)
     ms_particle unused;
     ms_body body = {0};
     ms_mass mass;
+    if (a->input.threads) {
+        omp_set_num_threads(a->input.threads);
+    }
     ms_status status = ms_read_clump(&clump, &unused, a->clump, err);
     if (status != MS_OK) {
         return status;
