@@ -21,6 +21,18 @@ ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err)
         clump->capacity = capacity;
     }
     clump->sphere[clump->n_spheres++] = *sphere;
+    free(clump->mass);
+    clump->mass = NULL;
+    return MS_OK;
+}
+
+ms_status ms_clump_alloc_masses(ms_clump *clump, ms_error *err)
+{
+    double *mass = realloc(clump->mass, (clump->n_spheres + 1) * sizeof *mass);
+    if (!mass) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the masses of %zu spheres", clump->n_spheres);
+    }
+    clump->mass = mass;
     return MS_OK;
 }
 
@@ -87,6 +99,7 @@ void ms_clump_free(ms_clump *clump)
 {
     if (clump) {
         free(clump->sphere);
+        free(clump->mass);
         memset(clump, 0, sizeof *clump);
     }
 }

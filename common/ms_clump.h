@@ -21,13 +21,17 @@ typedef struct ms_sphere {
 typedef struct ms_clump {
     size_t n_spheres, capacity;
     ms_sphere *sphere;
+    double *mass; /* of each sphere, kg; NULL where no one has set it (ms_density_solve) */
 } ms_clump;
 
 /**
- * Appends a sphere.
+ * Appends a sphere. Masses hold for the spheres there were: they are dropped.
  * @return MS_OK; MS_ERR_LIMIT above MS_CLUMP_MAX_SPHERES; MS_ERR_NOMEM
  */
 ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err);
+
+/** Room for the mass of each sphere, their values undefined. @return MS_OK; MS_ERR_NOMEM */
+ms_status ms_clump_alloc_masses(ms_clump *clump, ms_error *err);
 
 /** Number of pieces: spheres that overlap belong together. Cost: O(n^2). */
 ms_status ms_clump_pieces(size_t *pieces, const ms_clump *clump, ms_error *err);
@@ -40,9 +44,10 @@ double ms_clump_smallest_radius(const ms_clump *clump);
 
 /**
  * Reads spheres from a text file: four numbers a line, x y z r, separated by commas,
- * semicolons or blanks; further columns are ignored. Empty lines, '#' comments and one
- * header line before the first sphere are skipped; any other line is an error, and so are an
- * empty column, decimal commas and a header that names x, y, z in other columns.
+ * semicolons or blanks; a fifth is the mass if the header calls it so, further columns are
+ * ignored. Empty lines, '#' comments and one header line before the first sphere are skipped;
+ * any other line is an error, and so are an empty column, decimal commas and a header that
+ * names x, y, z in other columns.
  *
  * @param[out] clump the caller frees it; empty on failure
  * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line; MS_ERR_LIMIT; MS_ERR_NOMEM

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "ms_clump.h"
@@ -106,10 +107,44 @@ static int header_contradicts(const ms_text *text)
     return 0;
 }
 
-static ms_status read_sphere(ms_clump *clump, ms_text *text, ms_error *err)
+/* Does the header say that a mass follows the radius? */
+static int header_names_mass(const ms_text *text)
 {
-    double v[4];
-    ms_status status = ms_text_doubles(v, 4, text, "a sphere (x y z r)", err);
+    ms_text ahead = *text;
+    ms_word word;
+    int column = 0;
+    while (column < 5 && ms_text_word(&word, &ahead)) {
+        column++;
+    }
+    return column == 5 && ms_word_is(&word, "mass");
+}
+
+/* The masses, as the clump grows. */
+typedef struct masses {
+    int wanted;
+    size_t capacity;
+    double *value;
+} masses;
+
+static ms_status add_mass(masses *m, const ms_clump *clump, double mass, ms_error *err)
+{
+    if (clump->n_spheres > m->capacity) {
+        double *grown = realloc(m->value, clump->capacity * sizeof *grown);
+        if (!grown) {
+            return ms_fail(err, MS_ERR_NOMEM, "no memory for the masses of %zu spheres", clump->n_spheres);
+        }
+        m->value = grown;
+        m->capacity = clump->capacity;
+    }
+    m->value[clump->n_spheres - 1] = mass;
+    return MS_OK;
+}
+
+static ms_status read_sphere(ms_clump *clump, masses *m, ms_text *text, ms_error *err)
+{
+    double v[5];
+    ms_status status = ms_text_doubles(v, m->wanted ? 5 : 4, text,
+                                       m->wanted ? "a sphere (x y z r mass)" : "a sphere (x y z r)", err);
     if (status != MS_OK) {
         return status;
     }
@@ -118,10 +153,11 @@ static ms_status read_sphere(ms_clump *clump, ms_text *text, ms_error *err)
                             v[0], v[1], v[2], v[3]);
     }
     const ms_sphere sphere = {.centre = {v[0], v[1], v[2]}, .radius = v[3]};
-    return ms_clump_add(clump, &sphere, err);
+    status = ms_clump_add(clump, &sphere, err);
+    return status == MS_OK && m->wanted ? add_mass(m, clump, v[4], err) : status;
 }
 
-static ms_status parse(ms_clump *clump, ms_bytes *bytes, const char *name, ms_error *err)
+static ms_status parse(ms_clump *clump, masses *m, ms_bytes *bytes, const char *name, ms_error *err)
 {
     ms_text text;
     int header_allowed = 1;
@@ -143,9 +179,11 @@ static ms_status parse(ms_clump *clump, ms_bytes *bytes, const char *name, ms_er
             return ms_text_fail(err, &text, "%s", flaw);
         }
         if (header && header_contradicts(&text)) {
-            return ms_text_fail(err, &text, "the header names x, y, z in other columns; the first four must be x, y, z, r");
+            return ms_text_fail(err, &text,
+                                "the header names x, y, z in other columns; the first four must be x, y, z, r");
         }
-        ms_status status = header ? MS_OK : read_sphere(clump, &text, err);
+        m->wanted |= header && header_names_mass(&text);
+        ms_status status = header ? MS_OK : read_sphere(clump, m, &text, err);
         if (status != MS_OK) {
             return status;
         }
@@ -159,8 +197,10 @@ static ms_status parse(ms_clump *clump, ms_bytes *bytes, const char *name, ms_er
 
 ms_status ms_clump_parse(ms_clump *clump, ms_bytes *bytes, const char *name, ms_error *err)
 {
+    masses m = {0};
     memset(clump, 0, sizeof *clump);
-    ms_status status = parse(clump, bytes, name, err);
+    ms_status status = parse(clump, &m, bytes, name, err);
+    clump->mass = m.value;
     if (status != MS_OK) {
         ms_clump_free(clump);
     }

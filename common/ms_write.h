@@ -1,20 +1,44 @@
-/** Clump files: CSV, JSON and VTK. */
+/** Clump files: tables and pictures, and the templates of DEM engines. */
 #ifndef MS_WRITE_H
 #define MS_WRITE_H
 
 #include <stdio.h>
 
-#include "ms_clump.h"
 #include "ms_grid.h"
+#include "ms_template.h"
 
 MS_C_BEGIN
 
+/** What is known of a clump when it is written. All borrowed. */
+typedef struct ms_content {
+    const ms_clump *clump;       /* masses are written where there are any; they need the particle */
+    const ms_particle *particle; /* what the clump stands for; NULL where that is not known */
+    const char *record;          /* a JSON object in text that says how the clump came about; NULL without */
+    const char *name;            /* of the first file without its folder; ms_write_clump sets it */
+} ms_content;
+
+/** One file of a format. */
+typedef struct ms_part {
+    const char *suffix; /* behind the path: "" for the first file, ".in" for a script, "/Clump/Clump.txt" in a folder */
+    ms_status (*write)(FILE *stream, const ms_content *content, ms_error *err);
+} ms_part;
+
+/* What a format must know of a clump. */
+typedef enum ms_need {
+    MS_NEED_SPHERES,  /* written in the unit and frame of the shape */
+    MS_NEED_PARTICLE, /* a template: in metres, from the centre of mass, along the principal axes */
+    MS_NEED_MASSES    /* a template that also takes a mass for each sphere */
+} ms_need;
+
+enum { MS_FORMAT_MAX_PARTS = 5 };
+
 /** A format of clump files. A table of them ends with a NULL name. */
 typedef struct ms_format {
-    const char *name;    /* what --format takes; also the file ending */
+    const char *name;    /* what --format takes */
+    const char *ending;  /* of its files */
     const char *summary; /* one line */
-    /** @param record a JSON object in text that says how the clump came about; NULL without */
-    ms_status (*write)(FILE *stream, const ms_clump *clump, const char *record, ms_error *err);
+    ms_need need;
+    ms_part part[MS_FORMAT_MAX_PARTS]; /* ends with a NULL suffix */
 } ms_format;
 
 extern const ms_format ms_formats[];
@@ -22,16 +46,22 @@ extern const ms_format ms_formats[];
 /** The format of that name, or NULL with a message that lists the names. */
 const ms_format *ms_format_find(const char *name, ms_error *err);
 
+/** The format that the ending of a path names, csv for "-"; or NULL with a message. */
+const ms_format *ms_format_of_path(const char *path, ms_error *err);
+
+/** Nonzero if its files stand in a folder of the path's name. */
+int ms_format_is_folder(const ms_format *format);
+
 /**
- * Writes a clump under a temporary name, then renames it to `path`.
+ * Writes a clump, each file under a temporary name that is then renamed. Beside a template stands the way back to the
+ * frame of the shape, STEM.frame.json, where STEM is the path without its ending.
  *
- * @param path   "-" for standard output
+ * @param path   "-" for standard output, which takes the first file of the format alone
  * @param format NULL: by the ending of the path; csv for standard output
- * @param record as above; only JSON keeps it
- * @return MS_OK; MS_ERR_ARG for an unknown ending; MS_ERR_IO; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for an unknown ending, or where the format needs what is not known; MS_ERR_IO;
+ *         MS_ERR_NOMEM
  */
-ms_status ms_write_clump(const ms_clump *clump, const char *path, const ms_format *format, const char *record,
-                         ms_error *err);
+ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err);
 
 /** Writes a grid as VTK structured points (binary), 1 inside, for ParaView. */
 ms_status ms_write_grid(const ms_grid *grid, const char *path, ms_error *err);

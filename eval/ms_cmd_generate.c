@@ -3,20 +3,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "ms_commands.h"
 #include "ms_curve.h"
-#include "ms_file.h"
 #include "ms_generator.h"
 #include "ms_input.h"
+#include "ms_mass.h"
+#include "ms_outputs.h"
 #include "ms_record.h"
 #include "ms_report.h"
 #include "ms_text.h"
-#include "ms_write.h"
 
-enum { MAX_OUTPUTS = 16, MAX_SETTINGS = 256, DEFAULT_SPHERES = 50 };
+enum { MAX_SETTINGS = 256, DEFAULT_SPHERES = 50 };
 
 static const ms_flag FLAGS[] = {
     {"generator", 'g', "NAME", "the method, mss, setcover or variational (mss); mskit generators lists them"},
@@ -25,8 +24,9 @@ static const ms_flag FLAGS[] = {
      "end when eta, dice, coverage or inertia is as good, or spheres would be smaller than radius; may be repeated"},
     {"set", 0, "OPTION=VALUE", "an option of the method (mskit help NAME); --OPTION VALUE does the same"},
     {"seed", 0, "S", "seed of methods that draw random numbers (1)"},
-    {"output", 'o', "FILE", "csv, json or vtk by its ending, - for standard output; may be repeated"},
-    {"format", 0, "F", "format of the outputs whatever their ending"},
+    MS_OUTPUT_FLAGS,
+    {"correct", 0, NULL, "give the spheres masses that sum to the true mass and inertia; takes --density"},
+    MS_MASS_FLAGS,
     {"target-grid", 0, "FILE", "also write the voxels of the shape as VTK"},
     {"curve", 0, "FILE",
      "also write the scores of the clumps of 1 to n spheres as CSV; each is a run of its own if they are not prefixes"},
@@ -51,10 +51,9 @@ typedef struct arguments {
     ms_settings settings;
     ms_stop stop;
     double seed;
-    const char *output[MAX_OUTPUTS];
-    int n_outputs;
-    char default_output[MAX_OUTPUTS][512];
-    const ms_format *format;
+    ms_outputs outputs;
+    ms_mass_flags mass;
+    int correct;
     const char *target_grid, *curve;
     int json;
 } arguments;
@@ -91,15 +90,6 @@ static ms_status take_until(arguments *a, const char *text, ms_error *err)
     return status == MS_OK ? ms_stop_set(&a->stop, name, number, err) : status;
 }
 
-static ms_status take_output(arguments *a, const char *path, ms_error *err)
-{
-    if (a->n_outputs == MAX_OUTPUTS) {
-        return ms_fail(err, MS_ERR_LIMIT, "more than %d outputs", MAX_OUTPUTS);
-    }
-    a->output[a->n_outputs++] = path;
-    return MS_OK;
-}
-
 /* Which options there are is known when all flags are read: the generator may come last. */
 static ms_status take_wish(arguments *a, const char *name, const char *text, ms_error *err)
 {
@@ -116,6 +106,12 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
     double number;
     int taken;
     ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
+    if (!taken) {
+        status = ms_mass_flag(&taken, &a->mass, name, value, err);
+    }
+    if (!taken) {
+        status = ms_outputs_flag(&taken, &a->outputs, name, value, err);
+    }
     if (taken) {
         return status;
     }
@@ -131,10 +127,6 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
     if (strcmp(name, "seed") == 0) {
         return ms_flag_whole(&a->seed, name, value, 0, 9007199254740992.0, err);
     }
-    if (strcmp(name, "format") == 0) {
-        a->format = ms_format_find(value, err);
-        return a->format ? MS_OK : MS_ERR_ARG;
-    }
     if (strcmp(name, "target-grid") == 0) {
         a->target_grid = value;
         return MS_OK;
@@ -143,15 +135,12 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
         a->curve = value;
         return MS_OK;
     }
-    if (strcmp(name, "json") == 0) {
-        a->json = 1;
+    if (strcmp(name, "json") == 0 || strcmp(name, "correct") == 0) {
+        *(name[0] == 'j' ? &a->json : &a->correct) = 1;
         return MS_OK;
     }
     if (strcmp(name, "until") == 0) {
         return take_until(a, value, err);
-    }
-    if (strcmp(name, "output") == 0) {
-        return take_output(a, value, err);
     }
     return take_wish(a, strcmp(name, "set") == 0 ? NULL : name, value, err);
 }
@@ -174,94 +163,43 @@ static ms_status settle_generator(arguments *a, ms_error *err)
     return status;
 }
 
-/* The format of an output; NULL with a message. */
-static const ms_format *format_of(const arguments *a, const char *path, ms_error *err)
+/* Number of files that go to standard output. */
+static int outputs_to_stdout(const arguments *a)
 {
-    char ending[16];
-    ms_error cause;
-    if (a->format) {
-        return a->format;
-    }
-    ms_file_ending(ending, path);
-    const ms_format *format = ms_format_find(strcmp(path, "-") == 0 ? "csv" : ending, &cause);
-    if (!format) {
-        ms_fail(err, MS_ERR_ARG, "the ending of --output '%.200s' names no format, and --format is not given: %s",
-                path, cause.text);
-    }
-    return format;
-}
-
-/* Without --output: NAME-GENERATOR.csv, .json and .vtk in the working folder. */
-static void add_default_outputs(arguments *a)
-{
-    const char *slash = strrchr(a->shape, '/'), *base = slash ? slash + 1 : a->shape, *dot = strrchr(base, '.');
-    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
-    for (const ms_format *f = ms_formats; f->name && a->n_outputs < MAX_OUTPUTS; f++) {
-        char *path = a->default_output[a->n_outputs];
-        if (!a->format || f == a->format) {
-            snprintf(path, sizeof a->default_output[0], "%.*s-%s.%s", length, base, a->generator->name, f->name);
-            a->output[a->n_outputs++] = path;
-        }
-    }
+    return ms_outputs_to_stdout(&a->outputs) + (a->target_grid && strcmp(a->target_grid, "-") == 0) +
+           (a->curve && strcmp(a->curve, "-") == 0);
 }
 
 /* Checks before the work what can be known of the outputs. */
 static ms_status settle_outputs(arguments *a, ms_error *err)
 {
-    int to_stdout = a->json;
-    for (int o = 0; o < a->n_outputs; o++) {
-        if (a->output[o][0] == '\0') {
-            return ms_fail(err, MS_ERR_ARG, "--output '' names no file; use - for standard output");
-        }
-        if (!format_of(a, a->output[o], err)) {
-            return MS_ERR_ARG;
-        }
-        to_stdout += strcmp(a->output[o], "-") == 0;
-    }
-    if (a->n_outputs == 0) {
-        add_default_outputs(a);
-    }
-    to_stdout += (a->target_grid && strcmp(a->target_grid, "-") == 0) + (a->curve && strcmp(a->curve, "-") == 0);
-    return to_stdout > 1 ? ms_fail(err, MS_ERR_ARG, "--json and each - write to standard output; choose one of them")
-                         : MS_OK;
+    char behind[64];
+    snprintf(behind, sizeof behind, "-%s", a->generator->name);
+    const ms_need known = a->correct ? MS_NEED_MASSES : MS_NEED_SPHERES;
+    ms_status status = ms_outputs_settle(&a->outputs, a->shape, behind, known, 1, err);
+    return status == MS_OK && a->json + outputs_to_stdout(a) > 1
+               ? ms_fail(err, MS_ERR_ARG, "--json and each - write to standard output; choose one of them")
+               : status;
 }
 
-/* Are both the same file? */
-static int same_file(const char *a, const char *b)
+static ms_status settle_masses(arguments *a, ms_error *err)
 {
-    struct stat first, second;
-    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
-           first.st_ino == second.st_ino;
-}
-
-/* Can this file be made? A device or a pipe is not tried, since that would be noticed at its other end. */
-static ms_status try_output(const char *shape, const char *path, ms_error *err)
-{
-    ms_output output;
-    struct stat info;
-    if (strcmp(path, "-") == 0 || (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))) {
-        return MS_OK;
+    if (!a->correct && a->mass.any) {
+        return ms_fail(err, MS_ERR_ARG, "flags about masses take --correct beside them");
     }
-    if (same_file(shape, path)) {
-        return ms_fail(err, MS_ERR_ARG, "%s is the shape itself; it is not overwritten", path);
+    if (a->correct && !(a->mass.density > 0)) {
+        return ms_fail(err, MS_ERR_ARG, "--correct takes --density RHO, in kg/m^3");
     }
-    ms_status status = ms_output_open(&output, path, err);
-    if (status == MS_OK) {
-        ms_output_close(&output, MS_ERR_IO, NULL); /* removes it */
-    }
-    return status;
+    return ms_mass_settle(&a->mass, err);
 }
 
 static ms_status try_outputs(const arguments *a, ms_error *err)
 {
-    ms_status status = a->target_grid ? try_output(a->shape, a->target_grid, err) : MS_OK;
+    ms_status status = a->target_grid ? ms_outputs_try_file(a->shape, a->target_grid, err) : MS_OK;
     if (a->curve && status == MS_OK) {
-        status = try_output(a->shape, a->curve, err);
+        status = ms_outputs_try_file(a->shape, a->curve, err);
     }
-    for (int o = 0; o < a->n_outputs && status == MS_OK; o++) {
-        status = try_output(a->shape, a->output[o], err);
-    }
-    return status;
+    return status == MS_OK ? ms_outputs_try(&a->outputs, a->shape, err) : status;
 }
 
 /* A line on the terminal, kept up to date. */
@@ -313,8 +251,12 @@ static ms_status generate(ms_result *r, const arguments *a, const ms_input *inpu
         status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump,
                                     ms_input_max_voxels(&a->input), err);
     }
-    r->generate_seconds = generated - start;
     r->score_seconds = omp_get_wtime() - generated;
+    if (status == MS_OK && a->correct) {
+        status = ms_mass_correct(&r->mass, &r->clump, &a->mass, &input->target.body, ms_input_max_voxels(&a->input),
+                                 err);
+    }
+    r->generate_seconds = generated - start;
     return status;
 }
 
@@ -337,12 +279,7 @@ static ms_status write_curve(const arguments *a, const ms_input *input, const ms
 
 static int writes_to_stdout(const arguments *a)
 {
-    int found = a->json || (a->target_grid && strcmp(a->target_grid, "-") == 0) ||
-                (a->curve && strcmp(a->curve, "-") == 0);
-    for (int o = 0; o < a->n_outputs; o++) {
-        found |= strcmp(a->output[o], "-") == 0;
-    }
-    return found;
+    return a->json || outputs_to_stdout(a) > 0;
 }
 
 static void say_written(FILE *words, const char *path)
@@ -356,13 +293,9 @@ static ms_status write_outputs(const arguments *a, const ms_input *input, const 
                                ms_error *err)
 {
     FILE *words = writes_to_stdout(a) ? stderr : stdout;
-    ms_status status = MS_OK;
-    for (int o = 0; o < a->n_outputs && status == MS_OK; o++) {
-        status = ms_write_clump(&r->clump, a->output[o], a->format, record, err);
-        if (status == MS_OK) {
-            say_written(words, a->output[o]);
-        }
-    }
+    const ms_particle *particle = a->correct ? &r->mass.particle : NULL;
+    const ms_content content = {.clump = &r->clump, .particle = particle, .record = record};
+    ms_status status = ms_outputs_write(&a->outputs, &content, words, err);
     if (status == MS_OK && a->target_grid) {
         status = ms_write_grid(&input->target.grid, a->target_grid, err);
         if (status == MS_OK) {
@@ -392,6 +325,9 @@ static ms_status report(const arguments *a, const ms_input *input, const ms_resu
         fprintf(words, "%s with %s, stopped by %s, %.3g s\n", input->path, a->generator->name,
                 ms_stop_name(r->reason), r->generate_seconds);
         ms_report_metrics(words, &r->metrics, &input->target);
+        if (r->mass.corrected) {
+            ms_mass_print(words, &r->mass);
+        }
     }
     status = write_outputs(a, input, r, record, err);
     free(record);
@@ -434,6 +370,9 @@ static ms_status settle(arguments *a, ms_error *err)
         a->stop.spheres = DEFAULT_SPHERES;
     }
     ms_status status = settle_generator(a, err);
+    if (status == MS_OK) {
+        status = settle_masses(a, err);
+    }
     return status == MS_OK ? settle_outputs(a, err) : status;
 }
 
@@ -452,6 +391,7 @@ static int run(const ms_command *command, int argc, char **argv)
     }
     a.shape = argv[first];
     code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_wrong_usage(command, err.text);
+    ms_outputs_free(&a.outputs);
     ms_settings_free(&a.settings);
     return code;
 }

@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_clump.h"
 #include "ms_commands.h"
 #include "ms_input.h"
 #include "ms_metrics.h"
+#include "ms_read.h"
 #include "ms_report.h"
 
 static const ms_flag FLAGS[] = {
@@ -68,6 +68,7 @@ static int run(const ms_command *command, int argc, char **argv)
     ms_error err;
     ms_input input;
     ms_clump clump;
+    ms_particle unused;
     ms_input_defaults(&a.input);
     const int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
     if (code != MS_FLAGS_GO_ON) {
@@ -79,7 +80,7 @@ static int run(const ms_command *command, int argc, char **argv)
     if (a.json && a.curve) {
         return ms_wrong_usage(command, "--curve prints CSV and --json JSON; choose one of them");
     }
-    ms_status status = ms_clump_read(&clump, argv[first], &err);
+    ms_status status = ms_read_clump(&clump, &unused, argv[first], &err);
     if (status != MS_OK) {
         return ms_fail_command(command, &err);
     }

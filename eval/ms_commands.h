@@ -4,6 +4,8 @@
 
 #include "ms_flags.h"
 
+extern const ms_command ms_command_convert;
+extern const ms_command ms_command_correct;
 extern const ms_command ms_command_generate;
 extern const ms_command ms_command_generators;
 extern const ms_command ms_command_help;

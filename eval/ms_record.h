@@ -6,6 +6,7 @@
 
 #include "ms_generator.h"
 #include "ms_input.h"
+#include "ms_mass.h"
 #include "ms_metrics.h"
 
 /** All that a run gave. */
@@ -13,6 +14,7 @@ typedef struct ms_result {
     ms_clump clump;
     ms_stop_reason reason;
     ms_metrics metrics;
+    ms_mass mass; /* zeros without --correct */
     double generate_seconds, score_seconds;
 } ms_result;
 

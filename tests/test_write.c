@@ -27,9 +27,17 @@ static void write_clump(char path[128], const char *folder, const char *name, co
 {
     ms_error err = {{0}};
     snprintf(path, 128, "%s/%s", folder, name);
-    if (ms_write_clump(clump, path, format ? ms_format_find(format, NULL) : NULL, record, &err) != MS_OK) {
+    const ms_content content = {.clump = clump, .record = record};
+    if (ms_write_clump(&content, path, format ? ms_format_find(format, NULL) : NULL, &err) != MS_OK) {
         fail_msg("%s", err.text);
     }
+}
+
+static ms_status write_to(const ms_clump *clump, const char *path, const ms_format *format, const char *record,
+                          ms_error *err)
+{
+    const ms_content content = {.clump = clump, .record = record};
+    return ms_write_clump(&content, path, format, err);
 }
 
 static char *text_of(const char *path)
@@ -183,7 +191,7 @@ static void the_ending_names_the_format(void **state)
     static const char *const bad[] = {"a", "a.xyz", "a.csv.gz", "a.", ".csv/a"};
     for (int b = 0; b < 5; b++) {
         snprintf(path, sizeof path, "%s/%s", folder, bad[b]);
-        assert_int_equal(ms_write_clump(&clump, path, NULL, NULL, &err), MS_ERR_ARG);
+        assert_int_equal(write_to(&clump, path, NULL, NULL, &err), MS_ERR_ARG);
         expect_message(&err, "csv, json, vtk");
         assert_int_not_equal(access(path, F_OK), 0);
     }
@@ -192,10 +200,9 @@ static void the_ending_names_the_format(void **state)
     ms_clump_free(&clump);
 }
 
-static ms_status failing_format(FILE *stream, const ms_clump *clump, const char *record, ms_error *err)
+static ms_status failing_format(FILE *stream, const ms_content *content, ms_error *err)
 {
-    (void)clump;
-    (void)record;
+    (void)content;
     fputs("half of a file", stream);
     return ms_fail(err, MS_ERR_SHAPE, "this format fails");
 }
@@ -206,16 +213,16 @@ static void a_failure_leaves_the_file_that_was_there(void **state)
     char folder[64], path[128];
     ms_clump clump = {0}, bad = {0};
     ms_error err = {{0}};
-    const ms_format failing = {"failing", "fails", failing_format};
+    const ms_format failing = {"failing", "failing", "fails", MS_NEED_SPHERES, {{"", failing_format}}};
     add_sphere(&clump, 1, 2, 3, 4);
     add_sphere(&bad, 1, 2, (double)NAN, 4); /* JSON has no such number */
     make_folder(folder);
     write_clump(path, folder, "a.csv", NULL, &clump, NULL);
-    assert_int_equal(ms_write_clump(&clump, path, &failing, NULL, &err), MS_ERR_SHAPE);
+    assert_int_equal(write_to(&clump, path, &failing, NULL, &err), MS_ERR_SHAPE);
     expect_message(&err, "this format fails");
-    assert_int_equal(ms_write_clump(&bad, path, ms_format_find("json", NULL), NULL, &err), MS_ERR_IO);
-    assert_int_equal(ms_write_clump(&clump, path, ms_format_find("json", NULL), "[1, 2", &err), MS_ERR_IO);
-    assert_int_equal(ms_write_clump(&clump, path, ms_format_find("json", NULL), "[1, 2]", &err), MS_ERR_IO);
+    assert_int_equal(write_to(&bad, path, ms_format_find("json", NULL), NULL, &err), MS_ERR_IO);
+    assert_int_equal(write_to(&clump, path, ms_format_find("json", NULL), "[1, 2", &err), MS_ERR_IO);
+    assert_int_equal(write_to(&clump, path, ms_format_find("json", NULL), "[1, 2]", &err), MS_ERR_IO);
     char *text = text_of(path);
     assert_string_equal(text, "x,y,z,r\n1,2,3,4\n");
     free(text);
@@ -229,7 +236,7 @@ static void expect_unwritable(const ms_clump *clump, const char *path)
 {
     const ms_grid grid = {.n = {1, 1, 1}, .h = 1, .inside = (uint8_t[]){1}};
     ms_error err = {{0}};
-    assert_int_equal(ms_write_clump(clump, path, ms_formats, NULL, &err), MS_ERR_IO);
+    assert_int_equal(write_to(clump, path, ms_formats, NULL, &err), MS_ERR_IO);
     expect_message(&err, path);
     err.text[0] = '\0';
     assert_int_equal(ms_write_grid(&grid, path, &err), MS_ERR_IO);

@@ -63,7 +63,10 @@ class Documents(Case):
         for shape in ("box.obj", "scan.npy"):
             grid = ("--cells", "20") if shape == "box.obj" else ()
             self.mskit("generate", shape, *grid, "-n", "2", "-o", "c.json", "-o", "c.csv")
-            records = [json.loads(self.read("c.json")), self.mskit("info", shape, "--json").json,
+            self.mskit("correct", "c.csv", "--target", shape, *grid, "--density", "1", "--centre-tolerance", "1", "-o",
+                       "d.json", "-o", "d.yade")
+            records = [json.loads(self.read("c.json")), json.loads(self.read("d.json")),
+                       json.loads(self.read("d.frame.json")), self.mskit("info", shape, "--json").json,
                        self.mskit("score", "c.csv", "--target", shape, *grid, "--json").json]
             for record in records:
                 record.pop("options", None)  # those of a method are on its own page

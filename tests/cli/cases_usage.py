@@ -4,7 +4,7 @@ import shlex
 
 from support import Case, box_obj
 
-COMMANDS = ("generate", "score", "info", "shape", "generators", "help")
+COMMANDS = ("generate", "score", "correct", "convert", "info", "shape", "generators", "help")
 
 
 class Help(Case):
@@ -36,7 +36,7 @@ class Help(Case):
     def test_examples_of_the_help_work(self):
         """Every example is run as it stands, in a folder that holds what it names."""
         self.shape("grain", "fineness=8", name="grain.stl")
-        self.mskit("generate", "grain.stl", "-n", "3", "--cells", "20", "-o", "grain.csv")
+        self.mskit("generate", "grain.stl", "-n", "30", "--cells", "20", "-o", "grain.csv")
         for command in COMMANDS:
             example = re.search(r"example: mskit (.+)", self.mskit(command, "--help").out).group(1)
             with self.subTest(example=example):

@@ -1,0 +1,273 @@
+#include "ms_density.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_programme.h"
+#include "ms_vector.h"
+
+/* Errors below this are rounding. */
+static const double EXACT = 1e-9;
+
+/* The equations (2) to (5) without units: lengths over the radius of gyration and from the true centre, masses over
+ * that of the particle, along the axes in which they are solved. */
+typedef struct equations {
+    size_t n;
+    double (*place)[3];
+    double *square; /* of the radius */
+    double axis[3][3];
+    double moment[3], product[3]; /* what they shall sum to; products yz, zx, xy */
+    double mean;                  /* of the moments */
+} equations;
+
+static void free_equations(equations *e)
+{
+    free(e->place);
+    free(e->square);
+}
+
+/* The axes, and the tensor along them. */
+static ms_status settle_tensor(equations *e, const ms_particle *particle, int input_frame, double unit, ms_error *err)
+{
+    ms_principal principal = {.axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    ms_body body = {.volume = 1};
+    for (int i = 0; i < 9; i++) {
+        body.inertia[i / 3][i % 3] = particle->inertia[i / 3][i % 3] / particle->mass / unit / unit;
+    }
+    ms_status status = input_frame ? MS_OK : ms_inertia_principal(&principal, &body, err);
+    for (int m = 0; m < 3; m++) {
+        const int i = (m + 1) % 3, j = (m + 2) % 3;
+        e->moment[m] = input_frame ? body.inertia[m][m] : principal.moment[m];
+        e->product[m] = input_frame ? body.inertia[i][j] : 0;
+        e->mean += e->moment[m] / 3;
+    }
+    memcpy(e->axis, principal.axis, sizeof e->axis);
+    return status;
+}
+
+static ms_status make_equations(equations *e, const ms_clump *clump, const ms_particle *particle, int input_frame,
+                                ms_error *err)
+{
+    const double unit = ms_particle_gyration(particle);
+    memset(e, 0, sizeof *e);
+    e->n = clump->n_spheres;
+    e->place = malloc(e->n * sizeof *e->place);
+    e->square = malloc(e->n * sizeof *e->square);
+    if (!e->place || !e->square) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the equations of %zu spheres", e->n);
+    }
+    ms_status status = settle_tensor(e, particle, input_frame, unit * particle->scale, err);
+    for (size_t s = 0; s < e->n && status == MS_OK; s++) {
+        const double r = clump->sphere[s].radius / unit;
+        double from_centre[3];
+        for (int k = 0; k < 3; k++) {
+            from_centre[k] = (clump->sphere[s].centre[k] - particle->centre[k]) / unit;
+        }
+        for (int m = 0; m < 3; m++) {
+            e->place[s][m] = ms_dot(e->axis[m], from_centre);
+        }
+        e->square[s] = r * r;
+        if (!(ms_dot(from_centre, from_centre) + e->square[s] < 1e12)) {
+            status = ms_fail(err, MS_ERR_ARG,
+                             "sphere %zu is more than a million radii of gyration away from the centre of the "
+                             "particle; are clump and particle in one unit and frame?",
+                             s + 1);
+        }
+    }
+    return status;
+}
+
+/* How much a unit of mass at sphere s adds to the moment about axis m, and to the product of the other two. */
+static double moment_of(const equations *e, size_t s, int m)
+{
+    const double a = e->place[s][(m + 1) % 3], b = e->place[s][(m + 2) % 3];
+    return a * a + b * b + 0.4 * e->square[s];
+}
+
+static double product_of(const equations *e, size_t s, int m)
+{
+    return -e->place[s][(m + 1) % 3] * e->place[s][(m + 2) % 3];
+}
+
+/* The goals in their order: each is a column that is made least and then held. */
+enum goal { CENTRE, EPSILON, PRODUCTS, GOALS };
+
+static ms_programme *make_programme(const equations *e, double least, double most, int input_frame, ms_error *err)
+{
+    double *row = malloc((e->n + 1) * sizeof *row);
+    ms_programme *p = row ? ms_programme_new(e->n, GOALS, least, most, err) : NULL;
+    if (!row) {
+        ms_fail(err, MS_ERR_NOMEM, "no memory for the equations of %zu spheres", e->n);
+        return NULL;
+    }
+    for (size_t s = 0; s < e->n; s++) {
+        row[s] = 1;
+    }
+    ms_status status = p ? ms_programme_equation(p, row, 1, -1, 0, err) : MS_ERR_NOMEM;
+    for (int m = 0; m < 9 && status == MS_OK; m++) {
+        const int axis = m % 3, kind = m / 3;
+        const double right[3] = {0, e->moment[axis], e->product[axis]}, slack[3] = {1, e->moment[axis], e->mean};
+        const int goal[3] = {CENTRE, EPSILON, input_frame ? EPSILON : PRODUCTS};
+        for (size_t s = 0; s < e->n; s++) {
+            row[s] = kind == 0 ? e->place[s][axis] : kind == 1 ? moment_of(e, s, axis) : product_of(e, s, axis);
+        }
+        status = ms_programme_equation(p, row, right[kind], goal[kind], slack[kind], err);
+    }
+    free(row);
+    if (status != MS_OK) {
+        ms_programme_free(p);
+        return NULL;
+    }
+    return p;
+}
+
+/* Do all centres lie on a point (0), a line (1), in a plane (2), or not (3)? */
+static int dimensions(const equations *e)
+{
+    ms_principal principal;
+    ms_body spread = {.volume = 1};
+    double mean[3] = {0};
+    for (size_t s = 0; s < e->n; s++) {
+        for (int k = 0; k < 3; k++) {
+            mean[k] += e->place[s][k] / (double)e->n;
+        }
+    }
+    for (size_t s = 0; s < e->n; s++) {
+        for (int k = 0; k < 9; k++) {
+            spread.inertia[k / 3][k % 3] += (e->place[s][k / 3] - mean[k / 3]) * (e->place[s][k % 3] - mean[k % 3]);
+        }
+    }
+    int found = 0;
+    if (ms_inertia_principal(&principal, &spread, NULL) != MS_OK) {
+        return 3;
+    }
+    for (int m = 0; m < 3; m++) {
+        found += principal.moment[m] > EXACT * EXACT * (double)e->n;
+    }
+    return found;
+}
+
+static ms_status fail_centre(const equations *e, double least_error, double tolerance, ms_error *err)
+{
+    static const char *const WHY[] = {"all centres coincide", "all centres lie on one line",
+                                      "all centres lie in one plane",
+                                      "it is outside the hull of the centres, or too near to it for the bounds"};
+    return ms_fail(err, MS_ERR_SHAPE,
+                   "no masses of these %zu spheres have the centre of mass of the particle (Yuan's eq. 4): %s; the "
+                   "nearest they come is %.3g radii of gyration along an axis, and %.3g is allowed. More spheres would "
+                   "help, or a tolerance on the centre of mass of %.2g",
+                   e->n, WHY[dimensions(e)], least_error, tolerance, 1.01 * least_error);
+}
+
+/* What the masses sum to, by other means than the rows of the programme. */
+static ms_status judge(ms_density_report *report, const equations *e, const ms_clump *clump,
+                       const ms_particle *particle, ms_error *err)
+{
+    ms_particle sum;
+    const double unit = ms_particle_gyration(particle), metres = unit * particle->scale;
+    const double norm = particle->mass * metres * metres;
+    ms_status status = ms_particle_from_spheres(&sum, clump, particle->scale, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    report->error_mass = sum.mass / particle->mass - 1;
+    report->error_centre = sqrt(ms_squared_distance(sum.centre, particle->centre)) / unit;
+    for (int m = 0; m < 3; m++) {
+        const double *one = e->axis[m], *two = e->axis[(m + 1) % 3], *three = e->axis[(m + 2) % 3];
+        double moment = 0, product = 0;
+        for (int k = 0; k < 9; k++) {
+            const double element = sum.inertia[k / 3][k % 3] / norm;
+            moment += one[k / 3] * element * one[k % 3];
+            product += two[k / 3] * element * three[k % 3];
+        }
+        report->error_moment[m] = moment / e->moment[m] - 1;
+        report->error_product[m] = (product - e->product[m]) / e->mean;
+    }
+    report->least_mass = report->most_mass = clump->mass[0];
+    for (size_t s = 1; s < clump->n_spheres; s++) {
+        report->least_mass = fmin(report->least_mass, clump->mass[s]);
+        report->most_mass = fmax(report->most_mass, clump->mass[s]);
+    }
+    return MS_OK;
+}
+
+static ms_status solve(ms_clump *clump, ms_density_report *report, const equations *e, ms_programme *p,
+                       const ms_particle *particle, double centre_tolerance, ms_error *err)
+{
+    double reached[GOALS] = {0};
+    ms_status status = MS_OK;
+    for (int goal = 0; goal < GOALS && status == MS_OK; goal++) {
+        status = ms_programme_least(p, goal, EXACT, &reached[goal], err);
+        if (goal == CENTRE && status == MS_OK && reached[CENTRE] > centre_tolerance) {
+            return fail_centre(e, reached[CENTRE], centre_tolerance, err);
+        }
+    }
+    if (status == MS_OK) {
+        status = ms_clump_alloc_masses(clump, err);
+    }
+    if (status == MS_OK) {
+        status = ms_programme_spread(p, clump->mass, err);
+    }
+    for (size_t s = 0; s < e->n && status == MS_OK; s++) {
+        clump->mass[s] *= particle->mass;
+    }
+    report->centre = reached[CENTRE];
+    report->epsilon = reached[EPSILON];
+    report->products = reached[PRODUCTS];
+    return status == MS_OK ? judge(report, e, clump, particle, err) : status;
+}
+
+static ms_status check(const ms_clump *clump, double least, double most, const ms_density_options *options,
+                       ms_error *err)
+{
+    const double n = (double)clump->n_spheres;
+    if (clump->n_spheres == 0) {
+        return ms_fail(err, MS_ERR_ARG, "a clump without spheres has no masses");
+    }
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        const ms_sphere *b = &clump->sphere[s];
+        if (!isfinite(b->centre[0] + b->centre[1] + b->centre[2]) || !isfinite(b->radius) || !(b->radius > 0)) {
+            return ms_fail(err, MS_ERR_ARG, "sphere %zu is not finite or its radius is not above 0", s + 1);
+        }
+    }
+    if (!(least >= 0) || !(most >= least) || !(n * least <= 1 + EXACT) || !(n * most >= 1 - EXACT)) {
+        return ms_fail(err, MS_ERR_ARG,
+                       "no masses of %zu spheres, each from %g to %g of the whole, sum to the whole (Yuan's eq. 5); "
+                       "lower the least or raise the greatest mass",
+                       clump->n_spheres, least, most);
+    }
+    if (!(options->centre_tolerance >= 0) || !isfinite(options->centre_tolerance)) {
+        return ms_fail(err, MS_ERR_ARG, "the tolerance on the centre of mass, %g, is not 0 or more",
+                       options->centre_tolerance);
+    }
+    return MS_OK;
+}
+
+ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_particle *particle,
+                           const ms_density_options *options, ms_error *err)
+{
+    const double n = (double)clump->n_spheres;
+    const double least = options->least > 0 ? options->least : fmin(1e-3, 0.5 / n);
+    const double most = options->most > 0 ? options->most : 1;
+    equations e = {0};
+    ms_programme *programme = NULL;
+    memset(report, 0, sizeof *report);
+    ms_status status = check(clump, least, most, options, err);
+    if (status == MS_OK) {
+        status = make_equations(&e, clump, particle, options->input_frame, err);
+    }
+    if (status == MS_OK) {
+        programme = make_programme(&e, least, most, options->input_frame, err);
+        status = programme ? solve(clump, report, &e, programme, particle, options->centre_tolerance, err)
+                           : MS_ERR_NOMEM;
+    }
+    if (status != MS_OK) {
+        memset(report, 0, sizeof *report);
+        free(clump->mass);
+        clump->mass = NULL;
+    }
+    ms_programme_free(programme);
+    free_equations(&e);
+    return status;
+}

@@ -1,0 +1,52 @@
+/** Masses of the spheres of a clump such that their sums are mass, centre and inertia of the true particle. */
+#ifndef MS_DENSITY_H
+#define MS_DENSITY_H
+
+#include "ms_particle.h"
+
+MS_C_BEGIN
+
+/** What is asked of the masses; a zeroed struct holds the defaults. */
+typedef struct ms_density_options {
+    int input_frame;         /* 0: moments along the principal axes first, then products (see below);
+                                1: all six elements of the tensor along the clump's own axes at once */
+    double least, most;      /* bounds of a mass / that of the particle; 0: 1/1000, or 1/2n above 500 spheres; 1 */
+    double centre_tolerance; /* how far the centre of mass may be off / radius of gyration */
+} ms_density_options;
+
+/** What was reached. Errors are relative: of the mass and the moments to their own true values, of the products of
+ * inertia to the mean moment, of the centre to the radius of gyration. */
+typedef struct ms_density_report {
+    double centre;   /* the least largest error along an axis that masses within the bounds can have; 0: none */
+    double epsilon;  /* likewise of the moments (eq. 8), with that centre */
+    double products; /* likewise of the products of inertia, with that centre and these moments */
+    double least_mass, most_mass; /* kg */
+    /* Recomputed from the masses, by other code than that which found them, along the axes of the programme: */
+    double error_mass, error_centre, error_moment[3], error_product[3]; /* signed but the centre; products yz, zx, xy */
+} ms_density_report;
+
+/**
+ * Finds the masses by linear programmes: first the least error of the centre of mass, then the least epsilon, then
+ * the least error of the products of inertia, and of all masses that are left the ones whose smallest is greatest.
+ *
+ * Yuan's seven equations (mass, centre, principal moments) leave the products of inertia open; he takes them to follow,
+ * but they need not. Here they come third, so that his epsilon stays the least one, and the whole tensor is met
+ * wherever some masses do so.
+ *
+ * @param[in,out] clump    its masses are set; on failure it has none
+ * @param[out]    report   zeros on failure
+ * @param         particle what the clump stands for
+ * @return MS_OK; MS_ERR_ARG for no spheres, a radius or place that is not finite, or bounds that no masses obey;
+ *         MS_ERR_SHAPE if the centre of mass cannot be met, with the reason and what would help; MS_ERR_LIMIT if the
+ *         simplex method finds no end; MS_ERR_NOMEM
+ *
+ * GLPK's error hook is used during the call and none is set afterwards; its terminal setting comes back.
+ *
+ * Source: Yuan 2019, section 4, eqs. 2 to 5, 7, 8; GLPK's simplex method. Cost: 1000 spheres in hundredths of a second.
+ */
+ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_particle *particle,
+                           const ms_density_options *options, ms_error *err);
+
+MS_C_END
+
+#endif

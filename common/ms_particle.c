@@ -1,0 +1,162 @@
+#include "ms_particle.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "ms_raster.h"
+
+static int is_positive(double value)
+{
+    return isfinite(value) && value >= DBL_MIN;
+}
+
+static ms_status check(ms_particle *particle, ms_error *err)
+{
+    for (int k = 0; k < 3; k++) {
+        if (!is_positive(particle->mass) || !isfinite(particle->centre[k]) || !is_positive(particle->inertia[k][k])) {
+            *particle = (ms_particle){0};
+            return ms_fail(err, MS_ERR_ARG,
+                           "mass or inertia of the particle is 0 or not finite in SI; check density, unit and scale");
+        }
+    }
+    return MS_OK;
+}
+
+ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, double density, double scale,
+                                ms_error *err)
+{
+    *particle = (ms_particle){0};
+    if (!is_positive(density) || !is_positive(scale) || !is_positive(body->volume)) {
+        return ms_fail(err, MS_ERR_ARG, "density %g, scale %g and volume %g must be above 0 and finite", density, scale,
+                       body->volume);
+    }
+    particle->scale = scale;
+    particle->density = density;
+    particle->mass = density * body->volume * scale * scale * scale;
+    for (int i = 0; i < 3; i++) {
+        particle->centre[i] = body->centroid[i];
+        for (int j = 0; j < 3; j++) {
+            particle->inertia[i][j] = density * body->inertia[i][j] * scale * scale * scale * scale * scale;
+        }
+    }
+    return check(particle, err);
+}
+
+/* Adds the tensor of a solid sphere about the centre, in the clump's unit. */
+static void add_sphere(double inertia[3][3], const ms_sphere *sphere, double mass, const double centre[3])
+{
+    double p[3], square = 0;
+    for (int k = 0; k < 3; k++) {
+        p[k] = sphere->centre[k] - centre[k];
+        square += p[k] * p[k];
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            inertia[i][j] -= mass * p[i] * p[j];
+        }
+        inertia[i][i] += mass * (square + 0.4 * sphere->radius * sphere->radius);
+    }
+}
+
+ms_status ms_particle_from_spheres(ms_particle *particle, const ms_clump *clump, double scale, ms_error *err)
+{
+    *particle = (ms_particle){0};
+    if (!clump->mass || clump->n_spheres == 0 || !is_positive(scale)) {
+        return ms_fail(err, MS_ERR_ARG, "the spheres have no masses to sum, or the scale %g is not above 0", scale);
+    }
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        particle->mass += clump->mass[s];
+    }
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        for (int k = 0; k < 3; k++) {
+            particle->centre[k] += clump->mass[s] / particle->mass * clump->sphere[s].centre[k];
+        }
+    }
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        add_sphere(particle->inertia, &clump->sphere[s], clump->mass[s], particle->centre);
+    }
+    for (int i = 0; i < 9; i++) {
+        particle->inertia[i / 3][i % 3] *= scale * scale;
+    }
+    particle->scale = scale;
+    return check(particle, err);
+}
+
+double ms_particle_gyration(const ms_particle *p)
+{
+    return sqrt((p->inertia[0][0] + p->inertia[1][1] + p->inertia[2][2]) / (2 * p->mass)) / p->scale;
+}
+
+/* A grid of lattice constant h that holds the spheres. */
+static ms_status grid_around(ms_grid *grid, const ms_clump *clump, double h, size_t max_voxels, ms_error *err)
+{
+    double lo[3], hi[3], origin[3], voxels = 1;
+    int n[3];
+    ms_clump_box(lo, hi, clump);
+    for (int a = 0; a < 3; a++) {
+        const double cells = ceil((hi[a] - lo[a]) / h) + 2 * MS_GRID_HULL;
+        voxels *= cells;
+        if (!(cells <= MS_GRID_MAX_EXTENT) || !(voxels <= (double)max_voxels)) {
+            return ms_fail(err, MS_ERR_LIMIT,
+                           "the union of the spheres takes a grid of more than %zu voxels; are all spheres of one "
+                           "particle?",
+                           max_voxels);
+        }
+        n[a] = (int)cells;
+        origin[a] = (lo[a] + hi[a]) / 2 - h * (n[a] - 1) / 2;
+    }
+    return ms_grid_alloc(grid, n, h, origin, err);
+}
+
+static ms_status count_union(ms_body *body, const ms_clump *clump, double h, size_t max_voxels, ms_error *err)
+{
+    ms_grid grid;
+    ms_raster raster;
+    ms_tally sum = {0};
+    ms_status status = grid_around(&grid, clump, h, max_voxels, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    status = ms_raster_alloc(&raster, &grid, MS_VOXEL_HALF, err);
+    for (size_t s = 0; s < clump->n_spheres && status == MS_OK; s++) {
+        ms_ball ball = {.radius = clump->sphere[s].radius / h};
+        for (int a = 0; a < 3; a++) {
+            ball.centre[a] = (clump->sphere[s].centre[a] - grid.origin[a]) / h;
+        }
+        status = ms_raster_add(&raster, &ball, 1, err);
+    }
+    for (size_t s = 0; s < clump->n_spheres && status == MS_OK; s++) {
+        ms_tally_add(&sum, &raster.tally[s]);
+    }
+    ms_tally_body(body, &sum, &grid);
+    ms_raster_free(&raster);
+    ms_grid_free(&grid);
+    return status;
+}
+
+/* The volume on a first grid says how fine the second must be. */
+ms_status ms_particle_union(ms_body *body, const ms_clump *clump, size_t max_voxels, ms_error *err)
+{
+    enum { FIRST_CELLS = 64, CELLS = 200 };
+    double lo[3], hi[3], side = 0, largest = 0;
+    *body = (ms_body){0};
+    if (clump->n_spheres == 0) {
+        return ms_fail(err, MS_ERR_ARG, "a clump without spheres has no union");
+    }
+    ms_clump_box(lo, hi, clump);
+    for (int a = 0; a < 3; a++) {
+        side = fmax(side, hi[a] - lo[a]);
+    }
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        largest = fmax(largest, clump->sphere[s].radius);
+    }
+    ms_status status = count_union(body, clump, fmin(side / FIRST_CELLS, largest / 8), max_voxels, err);
+    if (status == MS_OK) {
+        status = count_union(body, clump, cbrt(6 * body->volume / acos(-1.0)) / CELLS, max_voxels, err);
+    }
+    if (status != MS_OK) {
+        *body = (ms_body){0};
+    }
+    return status;
+}

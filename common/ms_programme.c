@@ -1,0 +1,213 @@
+#include "ms_programme.h"
+
+#include <glpk.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdlib.h>
+
+/*
+ * Columns: n excesses, then the smallest share u, then the goals. The share of s is u plus its excess, so that the
+ * bound m_s >= u, which would be a row for each sphere, is the bound 0 of a column.
+ */
+struct ms_programme {
+    glp_prob *problem;
+    size_t n;
+    int n_goals;
+    double most;
+    int *index; /* room for a row; GLPK counts from 1 */
+    double *value;
+};
+
+/* GLPK aborts when it has no memory; this returns to where it was called instead. */
+typedef struct guard {
+    jmp_buf back;
+    int terminal; /* its former setting */
+} guard;
+
+static void leave(void *info)
+{
+    longjmp(((guard *)info)->back, 1);
+}
+
+static void begin_quiet(guard *g)
+{
+    g->terminal = glp_term_out(GLP_OFF);
+    glp_error_hook(leave, g);
+}
+
+static void end_quiet(const guard *g)
+{
+    glp_error_hook(NULL, NULL);
+    glp_term_out(g->terminal);
+}
+
+/* After an error GLPK has nothing left that may be used. */
+static ms_status give_up(const guard *g, ms_programme *p, ms_error *err)
+{
+    end_quiet(g);
+    glp_free_env();
+    p->problem = NULL;
+    return ms_fail(err, MS_ERR_NOMEM,
+                   "GLPK could not go on with a programme of %zu spheres; most likely it has no memory", p->n);
+}
+
+static void make_columns(ms_programme *p, double least)
+{
+    const int n = (int)p->n;
+    p->problem = glp_create_prob();
+    glp_set_obj_dir(p->problem, GLP_MIN);
+    glp_add_cols(p->problem, n + 1 + p->n_goals);
+    for (int c = 1; c <= n + 1 + p->n_goals; c++) {
+        glp_set_col_bnds(p->problem, c, GLP_LO, c == n + 1 ? least : 0, 0);
+    }
+}
+
+/* Rows m_s <= most, where that does not follow from the sum. */
+static void make_upper_bounds(ms_programme *p)
+{
+    const int n = (int)p->n, first = glp_add_rows(p->problem, n);
+    const double ones[3] = {0, 1, 1};
+    for (int s = 0; s < n; s++) {
+        const int columns[3] = {0, s + 1, n + 1};
+        glp_set_row_bnds(p->problem, first + s, GLP_UP, 0, p->most);
+        glp_set_mat_row(p->problem, first + s, 2, columns, ones);
+    }
+}
+
+static ms_status make_problem(ms_programme *p, double least, ms_error *err)
+{
+    guard g;
+    begin_quiet(&g);
+    if (setjmp(g.back)) {
+        return give_up(&g, p, err);
+    }
+    make_columns(p, least);
+    if (p->most < 1) {
+        make_upper_bounds(p);
+    }
+    end_quiet(&g);
+    return MS_OK;
+}
+
+ms_programme *ms_programme_new(size_t n, int n_goals, double least, double most, ms_error *err)
+{
+    ms_programme *p = calloc(1, sizeof *p);
+    if (p) {
+        *p = (ms_programme){.n = n, .n_goals = n_goals, .most = most};
+        p->index = malloc((n + 4) * sizeof *p->index);
+        p->value = malloc((n + 4) * sizeof *p->value);
+    }
+    if (!p || !p->index || !p->value) {
+        ms_fail(err, MS_ERR_NOMEM, "no memory for a programme of %zu spheres", n);
+        ms_programme_free(p);
+        return NULL;
+    }
+    if (make_problem(p, least, err) != MS_OK) {
+        ms_programme_free(p);
+        return NULL;
+    }
+    return p;
+}
+
+/* The row's coefficients in GLPK's arrays; returns how many. */
+static int fill_row(ms_programme *p, const double *row, int goal, double weight)
+{
+    const int n = (int)p->n;
+    double sum = 0;
+    int used = 0;
+    for (int s = 0; s < n; s++) {
+        sum += row[s];
+        if (row[s] != 0) {
+            p->index[++used] = s + 1;
+            p->value[used] = row[s];
+        }
+    }
+    p->index[++used] = n + 1;
+    p->value[used] = sum;
+    if (goal >= 0) {
+        p->index[++used] = n + 2 + goal;
+        p->value[used] = weight;
+    }
+    return used;
+}
+
+ms_status ms_programme_equation(ms_programme *p, const double *row, double right, int goal, double weight,
+                                ms_error *err)
+{
+    guard g;
+    begin_quiet(&g);
+    if (setjmp(g.back)) {
+        return give_up(&g, p, err);
+    }
+    for (int side = 0; side < (goal < 0 ? 1 : 2); side++) {
+        const int at = glp_add_rows(p->problem, 1);
+        const int used = fill_row(p, row, goal, side == 0 ? -weight : weight);
+        glp_set_mat_row(p->problem, at, used, p->index, p->value);
+        glp_set_row_bnds(p->problem, at, goal < 0 ? GLP_FX : side == 0 ? GLP_UP : GLP_LO, right, right);
+    }
+    end_quiet(&g);
+    return MS_OK;
+}
+
+/* Minimises the objective that is set. */
+static ms_status minimise(ms_programme *p, ms_error *err)
+{
+    glp_smcp how;
+    guard g;
+    begin_quiet(&g);
+    if (setjmp(g.back)) {
+        return give_up(&g, p, err);
+    }
+    glp_init_smcp(&how);
+    how.msg_lev = GLP_MSG_OFF;
+    how.tol_bnd = how.tol_dj = 1e-10;
+    how.it_lim = 20000 + 20 * (int)p->n;
+    const int failed = glp_simplex(p->problem, &how), status = glp_get_status(p->problem);
+    end_quiet(&g);
+    if (failed || status != GLP_OPT) {
+        return ms_fail(err, MS_ERR_LIMIT,
+                       "the simplex method found no masses for %zu spheres (code %d, status %d); leave out spheres "
+                       "that all but coincide",
+                       p->n, failed, status);
+    }
+    return MS_OK;
+}
+
+ms_status ms_programme_least(ms_programme *p, int goal, double zero, double *value, ms_error *err)
+{
+    const int column = (int)p->n + 2 + goal;
+    glp_set_obj_coef(p->problem, column, 1);
+    ms_status status = minimise(p, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    *value = glp_get_col_prim(p->problem, column);
+    *value = *value > zero ? *value : 0;
+    glp_set_obj_coef(p->problem, column, 0);
+    /* A hair above the least value, lest rounding leave nothing. */
+    glp_set_col_bnds(p->problem, column, *value > 0 ? GLP_DB : GLP_FX, 0, *value * (1 + zero));
+    return MS_OK;
+}
+
+ms_status ms_programme_spread(ms_programme *p, double *share, ms_error *err)
+{
+    const int u = (int)p->n + 1;
+    glp_set_obj_coef(p->problem, u, -1);
+    ms_status status = minimise(p, err);
+    for (size_t s = 0; s < p->n && status == MS_OK; s++) {
+        share[s] = glp_get_col_prim(p->problem, u) + glp_get_col_prim(p->problem, (int)s + 1);
+    }
+    return status;
+}
+
+void ms_programme_free(ms_programme *p)
+{
+    if (p) {
+        if (p->problem) {
+            glp_delete_prob(p->problem);
+        }
+        free(p->index);
+        free(p->value);
+        free(p);
+    }
+}

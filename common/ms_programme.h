@@ -1,0 +1,40 @@
+/** A linear programme for shares of a whole, with goals met one after the other, by GLPK. Private to ms_density. */
+#ifndef MS_PROGRAMME_H
+#define MS_PROGRAMME_H
+
+#include <stddef.h>
+
+#include "ms_error.h"
+
+/**
+ * Shares m_1..m_n within bounds; equations on them that may be off by a goal's column times a weight.
+ */
+typedef struct ms_programme ms_programme;
+
+/** @return NULL without memory. @param least, most bounds of each share, 0 <= least <= most */
+ms_programme *ms_programme_new(size_t n, int n_goals, double least, double most, ms_error *err);
+
+/**
+ * Adds |sum row_s m_s - right| <= weight * goal; goal -1: equal.
+ *
+ * @param row n coefficients
+ * @return MS_OK; MS_ERR_NOMEM
+ */
+ms_status ms_programme_equation(ms_programme *p, const double *row, double right, int goal, double weight,
+                                ms_error *err);
+
+/**
+ * Makes a goal's column least, then holds it there.
+ *
+ * @param      zero  what is below counts as 0
+ * @param[out] value the least one
+ * @return MS_OK; MS_ERR_LIMIT if the simplex method finds no end; MS_ERR_NOMEM
+ */
+ms_status ms_programme_least(ms_programme *p, int goal, double zero, double *value, ms_error *err);
+
+/** Makes the smallest share greatest. @param[out] share n values. @return as ms_programme_least */
+ms_status ms_programme_spread(ms_programme *p, double *share, ms_error *err);
+
+void ms_programme_free(ms_programme *p);
+
+#endif

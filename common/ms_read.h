@@ -1,0 +1,28 @@
+/** Clump files back in: spheres, and what else the file knows. */
+#ifndef MS_READ_H
+#define MS_READ_H
+
+#include "ms_particle.h"
+
+MS_C_BEGIN
+
+/**
+ * Reads a clump file; its ending names the format. CSV gives masses if its header says so (x,y,z,r,mass), JSON also
+ * the particle, a LAMMPS molecule (.lammps) both, without the density. Sphere files of LIGGGHTS and YADE, and any
+ * other text, are read as ms_clump_read does. Files of formats that mskit only writes are refused.
+ *
+ * @param[out] clump    the caller frees it; empty on failure
+ * @param[out] particle zeros where the file does not know it
+ * @return as ms_clump_read; MS_ERR_ARG for a format that is not read
+ */
+ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path, ms_error *err);
+
+/**
+ * Reads the particle from a STEM.frame.json or the JSON of a clump.
+ * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_NOMEM
+ */
+ms_status ms_read_particle(ms_particle *particle, const char *path, ms_error *err);
+
+MS_C_END
+
+#endif

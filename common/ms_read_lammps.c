@@ -1,0 +1,159 @@
+/* LAMMPS molecule files, as mskit writes them: a header, then sections with a line for each sphere. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_read_formats.h"
+#include "ms_text.h"
+
+/* What the file says of each sphere. */
+typedef struct table {
+    size_t n;
+    double (*row)[5]; /* x, y, z, diameter, mass */
+    int seen[3];      /* sections: Coords, Diameters, Masses */
+} table;
+
+static const struct {
+    const char *name;
+    size_t first, count; /* columns of the row */
+} SECTIONS[] = {{"coords", 0, 3}, {"diameters", 3, 1}, {"masses", 4, 1}};
+
+static ms_status read_section(table *t, ms_text *text, int section, ms_error *err)
+{
+    for (size_t s = 0; s < t->n; s++) {
+        double v[4];
+        if (!ms_text_seek(text)) {
+            return ms_text_fail(err, text, "the section ends after %zu of %zu spheres", s, t->n);
+        }
+        ms_status status = ms_text_doubles(v, SECTIONS[section].count + 1, text, "a sphere of the section", err);
+        if (status != MS_OK) {
+            return status;
+        }
+        if (!(v[0] >= 1 && v[0] <= (double)t->n && v[0] == floor(v[0]))) {
+            return ms_text_fail(err, text, "there is no sphere %g among %zu", v[0], t->n);
+        }
+        memcpy(t->row[(size_t)v[0] - 1] + SECTIONS[section].first, v + 1, SECTIONS[section].count * sizeof *v);
+        ms_text_skip_line(text);
+    }
+    t->seen[section] = 1;
+    return MS_OK;
+}
+
+static ms_status start_table(table *t, ms_text *text, double n, ms_error *err)
+{
+    if (t->row || !(n >= 1 && n <= MS_CLUMP_MAX_SPHERES && n == floor(n))) {
+        return ms_text_fail(err, text, "the number of atoms is given twice or is not from 1 to %d",
+                            MS_CLUMP_MAX_SPHERES);
+    }
+    t->n = (size_t)n;
+    t->row = calloc(t->n, sizeof *t->row);
+    return t->row ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "%s: no memory for %zu spheres", text->name, t->n);
+}
+
+/* A line "numbers keyword" of the header. */
+static ms_status read_header_line(table *t, ms_particle *particle, ms_text *text, const double *v, int n,
+                                  const ms_word *keyword, ms_error *err)
+{
+    if (n == 1 && ms_word_is(keyword, "atoms")) {
+        return start_table(t, text, v[0], err);
+    }
+    if (n == 1 && ms_word_is(keyword, "mass")) {
+        particle->mass = v[0];
+    } else if (n == 3 && ms_word_is(keyword, "com")) {
+        memcpy(particle->centre, v, 3 * sizeof *v);
+    } else if (n == 6 && ms_word_is(keyword, "inertia")) {
+        if (v[3] != 0 || v[4] != 0 || v[5] != 0) {
+            return ms_text_fail(err, text, "the inertia has products; only principal axes are read");
+        }
+        for (int k = 0; k < 3; k++) {
+            particle->inertia[k][k] = v[k];
+        }
+    } else {
+        return ms_text_fail(err, text, "this line of the header is not understood; give atoms, mass, com, inertia");
+    }
+    return MS_OK;
+}
+
+static ms_status read_line(table *t, ms_particle *particle, ms_text *text, ms_error *err)
+{
+    double v[6];
+    ms_word word;
+    int n = 0;
+    while (ms_text_word(&word, text) && n < 6 && ms_word_double(&v[n], &word)) {
+        n++;
+    }
+    if (n > 0) {
+        return read_header_line(t, particle, text, v, n, &word, err);
+    }
+    if (ms_word_is(&word, "types")) {
+        for (size_t s = 0; s < t->n && ms_text_seek(text); s++) {
+            ms_text_skip_line(text);
+        }
+        return MS_OK;
+    }
+    for (int section = 0; section < 3; section++) {
+        if (ms_word_is(&word, SECTIONS[section].name)) {
+            ms_text_skip_line(text);
+            return read_section(t, text, section, err);
+        }
+    }
+    return ms_text_fail(err, text, "'%s' is no section that is read; these are Coords, Types, Diameters, Masses",
+                        ms_word_quote(&word).text);
+}
+
+/* A file may leave out mass and inertia; what it says must make sense. */
+static ms_status settle_particle(ms_particle *particle, const char *name, ms_error *err)
+{
+    const double *i[3] = {particle->inertia[0], particle->inertia[1], particle->inertia[2]};
+    if (particle->mass == 0 && i[0][0] == 0) {
+        memset(particle, 0, sizeof *particle);
+        return MS_OK;
+    }
+    for (int k = 0; k < 3; k++) {
+        if (!(particle->mass > 0) || !isfinite(particle->mass) || !(i[k][k] > 0) || !isfinite(i[k][k]) ||
+            !isfinite(particle->centre[k])) {
+            return ms_fail(err, MS_ERR_FORMAT, "%s: mass and inertia of its header must both be above 0 and finite", name);
+        }
+    }
+    particle->scale = 1;
+    return MS_OK;
+}
+
+static ms_status fill_clump(ms_clump *clump, ms_particle *particle, const table *t, const char *name, ms_error *err)
+{
+    if (t->n == 0 || !t->seen[0] || !t->seen[1]) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: a molecule of spheres has the number of atoms, Coords and Diameters",
+                       name);
+    }
+    ms_status status = MS_OK;
+    for (size_t s = 0; s < t->n && status == MS_OK; s++) {
+        const double *row = t->row[s];
+        status = ms_parse_sphere(clump, (const double[]){row[0], row[1], row[2], row[3] / 2}, name, err);
+    }
+    if (status == MS_OK && t->seen[2]) {
+        status = ms_clump_alloc_masses(clump, err);
+        for (size_t s = 0; s < t->n && status == MS_OK; s++) {
+            clump->mass[s] = t->row[s][4];
+        }
+    }
+    return status == MS_OK ? settle_particle(particle, name, err) : status;
+}
+
+ms_status ms_parse_lammps(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
+{
+    ms_text text;
+    table t = {0};
+    ms_status status = MS_OK;
+    ms_text_start(&text, bytes, name);
+    text.comment = '#';
+    ms_text_skip_line(&text); /* the first line is a title */
+    while (status == MS_OK && ms_text_seek(&text)) {
+        status = read_line(&t, particle, &text, err);
+        ms_text_skip_line(&text);
+    }
+    if (status == MS_OK) {
+        status = fill_clump(clump, particle, &t, name, err);
+    }
+    free(t.row);
+    return status;
+}

@@ -1,0 +1,129 @@
+/* mskit convert CLUMP -o FILE */
+#include <string.h>
+
+#include "ms_commands.h"
+#include "ms_mass.h"
+#include "ms_outputs.h"
+#include "ms_read.h"
+
+static const ms_flag FLAGS[] = {
+    {"frame", 0, "FILE", "the STEM.frame.json beside a template: carries it back into the frame of the shape"},
+    MS_UNIT_FLAGS,
+    MS_OUTPUT_FLAGS,
+    {0},
+};
+
+typedef struct arguments {
+    const char *clump, *frame;
+    ms_mass_flags mass;
+    ms_outputs outputs;
+} arguments;
+
+static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+{
+    arguments *a = context;
+    int taken;
+    ms_status status = ms_mass_flag(&taken, &a->mass, name, value, err);
+    if (!taken) {
+        status = ms_outputs_flag(&taken, &a->outputs, name, value, err);
+    }
+    if (!taken) {
+        a->frame = value;
+    }
+    return status;
+}
+
+/* What the file does not say of the particle: from the sums of the spheres and from the flags. */
+static ms_status complete(ms_particle *particle, const arguments *a, const ms_clump *clump, ms_error *err)
+{
+    if (particle->mass > 0 && (a->mass.unit || a->mass.scale > 0) && a->mass.scale != particle->scale) {
+        return ms_fail(err, MS_ERR_ARG, "%s says that its unit is %g m, and not %g", a->clump, particle->scale,
+                       a->mass.scale);
+    }
+    if (particle->density > 0 && a->mass.density > 0 && a->mass.density != particle->density) {
+        return ms_fail(err, MS_ERR_ARG, "%s says that its density is %.9g kg/m^3; another takes mskit correct",
+                       a->clump, particle->density);
+    }
+    if (!(particle->mass > 0) && clump->mass) {
+        ms_status status = ms_particle_from_spheres(particle, clump, a->mass.scale > 0 ? a->mass.scale : 1, err);
+        if (status != MS_OK) {
+            return status;
+        }
+    }
+    if (particle->mass > 0 && a->mass.density > 0) {
+        particle->density = a->mass.density;
+    }
+    return MS_OK;
+}
+
+static ms_status read(ms_clump *clump, ms_particle *particle, const arguments *a, ms_error *err)
+{
+    ms_status status = ms_read_clump(clump, particle, a->clump, err);
+    if (status == MS_OK && a->frame) {
+        status = ms_read_particle(particle, a->frame, err);
+        if (status == MS_OK) {
+            status = ms_template_undo(clump, particle, err);
+        }
+    }
+    return status == MS_OK ? complete(particle, a, clump, err) : status;
+}
+
+static ms_status work(arguments *a, ms_error *err)
+{
+    ms_clump clump;
+    ms_particle particle;
+    ms_status status = read(&clump, &particle, a, err);
+    if (status == MS_OK) {
+        const int known = particle.mass > 0 && particle.density > 0;
+        const ms_need need = !known ? MS_NEED_SPHERES : clump.mass ? MS_NEED_MASSES : MS_NEED_PARTICLE;
+        const ms_content content = {.clump = &clump, .particle = particle.mass > 0 ? &particle : NULL};
+        status = ms_outputs_settle(&a->outputs, a->clump, "", need, 0, err);
+        if (status == MS_OK) {
+            status = ms_outputs_try(&a->outputs, a->clump, err);
+        }
+        if (status == MS_OK) {
+            status = ms_outputs_write(&a->outputs, &content, ms_outputs_to_stdout(&a->outputs) ? stderr : stdout, err);
+        }
+    }
+    ms_clump_free(&clump);
+    return status;
+}
+
+/* Checks the flags; what can be written of the clump is known when it is read. */
+static ms_status settle(arguments *a, ms_error *err)
+{
+    const int unit_given = a->mass.unit || a->mass.scale > 0;
+    ms_status status = unit_given ? ms_mass_settle(&a->mass, err) : MS_OK;
+    return status == MS_OK ? ms_outputs_settle(&a->outputs, a->clump, "", MS_NEED_MASSES, 0, err) : status;
+}
+
+static int run(const ms_command *command, int argc, char **argv)
+{
+    arguments a = {0};
+    int first;
+    ms_error err;
+    int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
+    if (code != MS_FLAGS_GO_ON) {
+        return code;
+    }
+    if (argc - first != 1) {
+        return ms_wrong_usage(command, "takes one clump file");
+    }
+    a.clump = argv[first];
+    if (settle(&a, &err) != MS_OK) {
+        code = ms_wrong_usage(command, err.text);
+    } else {
+        code = work(&a, &err) == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+    }
+    ms_outputs_free(&a.outputs);
+    return code;
+}
+
+const ms_command ms_command_convert = {
+    .name = "convert",
+    .summary = "write a clump file in other formats",
+    .usage = "CLUMP -o FILE...",
+    .example = "mskit convert grain.json -o grain.liggghts -o grain.yade",
+    .flags = FLAGS,
+    .run = run,
+};

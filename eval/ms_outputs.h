@@ -1,0 +1,64 @@
+/** Where a command writes its clump: flags, checks before the work, the writing. */
+#ifndef MS_OUTPUTS_H
+#define MS_OUTPUTS_H
+
+#include "ms_flags.h"
+#include "ms_write.h"
+
+enum { MS_OUTPUTS_MAX = 16, MS_OUTPUTS_FORMATS = 16 };
+
+/* clang-format off */
+#define MS_OUTPUT_FLAGS \
+    {"output", 'o', "FILE", "the clump, its format by its ending, - for standard output; may be repeated"}, \
+    {"format", 0, "F", "format of the outputs whatever their ending; repeated: one file of each, by default names"}, \
+    {"all-formats", 0, "DIR", "one file of each format into this folder"}
+/* clang-format on */
+
+/** One file to write. */
+typedef struct ms_output_file {
+    const char *path;
+    char *owned; /* the same, if it was made here */
+    const ms_format *format;
+} ms_output_file;
+
+/** A zeroed struct has no outputs. */
+typedef struct ms_outputs {
+    const char *asked[MS_OUTPUTS_MAX];
+    size_t n_asked;
+    const ms_format *format[MS_OUTPUTS_FORMATS];
+    size_t n_formats;
+    const char *folder;
+    ms_output_file file[MS_OUTPUTS_MAX + MS_OUTPUTS_FORMATS];
+    size_t n_files;
+} ms_outputs;
+
+/** Takes a flag if it is one of MS_OUTPUT_FLAGS. @param[out] taken 0 if it is not */
+ms_status ms_outputs_flag(int *taken, ms_outputs *outputs, const char *name, const char *value, ms_error *err);
+
+/**
+ * Settles which files are written; may be done again, when more is known.
+ *
+ * @param source   the file that the clump comes from; its name without folder and ending begins default names
+ * @param behind   follows it in default names, as "-mss"
+ * @param need     what is known of the clump: formats that need more are refused, or left out of --all-formats
+ * @param defaults nonzero: without any output, csv, json and vtk are written; zero: some output must be given
+ * @return MS_OK; MS_ERR_ARG; MS_ERR_NOMEM. ms_outputs_free in any case
+ */
+ms_status ms_outputs_settle(ms_outputs *outputs, const char *source, const char *behind, ms_need need, int defaults,
+                            ms_error *err);
+
+/** Number of files that go to standard output. */
+int ms_outputs_to_stdout(const ms_outputs *outputs);
+
+/** Can this file be made, and is it not the source itself? @return MS_OK; MS_ERR_ARG; MS_ERR_IO */
+ms_status ms_outputs_try_file(const char *source, const char *path, ms_error *err);
+
+/** The same of all files; makes the folder of --all-formats. */
+ms_status ms_outputs_try(const ms_outputs *outputs, const char *source, ms_error *err);
+
+/** Writes all files and says so on `words`. @return as ms_write_clump */
+ms_status ms_outputs_write(const ms_outputs *outputs, const ms_content *content, FILE *words, ms_error *err);
+
+void ms_outputs_free(ms_outputs *outputs);
+
+#endif

@@ -1,0 +1,160 @@
+"""Masses and templates: mskit correct, convert and generate --correct. Sums are made again here."""
+import json
+import math
+import os
+
+from support import Case, box_obj, npy
+
+DENSITY = 2650
+GRID = ("--cells", "20")
+
+
+def sums(rows, scale):
+    """Mass, centre and inertia of solid spheres x, y, z, r, mass."""
+    mass = sum(row[4] for row in rows)
+    centre = [sum(row[4] * row[k] for row in rows) / mass for k in range(3)]
+    inertia = [[0.0] * 3 for _ in range(3)]
+    for *place, r, m in (row[:5] for row in rows):
+        p = [scale * (x - c) for x, c in zip(place, centre)]
+        for i in range(3):
+            inertia[i][i] += m * (sum(x * x for x in p) + 0.4 * (scale * r) ** 2)
+            for j in range(3):
+                inertia[i][j] -= m * p[i] * p[j]
+    return mass, centre, inertia
+
+
+class Correct(Case):
+    def setUp(self):
+        super().setUp()
+        self.write("box.obj", box_obj((1, 1, 1), (4, 3, 2)))
+        self.mskit("generate", "box.obj", "-g", "setcover", *GRID, "-n", "60", "-o", "c.csv")
+
+    def rows(self, name):
+        lines = self.read(name).decode().split("\n")
+        self.assertEqual(lines[0], "x,y,z,r,mass,density")
+        return [[float(word) for word in line.split(",")] for line in lines[1:] if line]
+
+    def test_the_sums_are_those_of_the_box(self):
+        """In millimetres: 6 mm^3; the inertia of a box is m (b^2 + c^2) / 12."""
+        self.mskit("correct", "c.csv", "--target", "box.obj", "--density", DENSITY, "--unit", "mm", "-o", "d.csv")
+        rows = self.rows("d.csv")
+        mass, centre, inertia = sums(rows, 1e-3)
+        truth = 6e-9 * DENSITY
+        self.assert_close(mass, truth, 1e-12)
+        for k, middle in enumerate((2.5, 2, 1.5)):
+            self.assert_close(centre[k], middle, 1e-9)
+        report = self.mskit("correct", "c.csv", "--target", "box.obj", "--density", DENSITY, "--unit", "mm",
+                            "--json").json
+        moments = [truth * square * 1e-6 / 12 for square in (5, 10, 13)]
+        for k, moment in enumerate(moments):
+            self.assert_close(report["particle"]["principal_moments"][k], moment, 1e-12)
+            self.assertLessEqual(abs(inertia[k][k] / moment - 1), report["masses"]["epsilon"] + 1e-9)
+            self.assert_close(report["masses"]["error_moments"][k], inertia[k][k] / moment - 1, 1e-9)
+        for row in rows:
+            self.assert_close(row[5] * 4 / 3 * math.pi * (1e-3 * row[3]) ** 3, row[4], 1e-14)
+            self.assertGreaterEqual(row[4], truth / 1000 * (1 - 1e-9))
+
+    def test_units(self):
+        mass = {}
+        for flags in (("--unit", "um"), ("--scale", "1e-6"), ("--unit", "m"), ()):
+            mass[flags] = self.mskit("correct", "c.csv", "--target", "box.obj", "--density", "1", *flags,
+                                     "--json").json["particle"]["mass"]
+        self.assert_close(mass[("--unit", "um")], 6e-18, 1e-12)
+        self.assertEqual(mass[("--unit", "um")], mass[("--scale", "1e-6")])
+        self.assertEqual(mass[()], mass[("--unit", "m")])
+        self.assert_close(mass[()], 6, 1e-12)
+
+    def test_union(self):
+        """Two balls that do not touch are their own union."""
+        self.write("two.csv", "0,0,0,1\n3,0,0,1\n")
+        report = self.mskit("correct", "two.csv", "--properties", "union", "--density", "3", "--json").json
+        self.assert_close(report["particle"]["mass"], 8 * math.pi, 1e-3)
+        self.assert_close(report["masses"]["least"], report["masses"]["most"], 1e-3)
+
+    def test_volume(self):
+        self.write("scan.npy", npy([7] * 1000, (10, 10, 10)))
+        self.mskit("generate", "scan.npy", "-g", "setcover", "-n", "40", "-o", "v.csv")
+        report = self.mskit("correct", "v.csv", "--target", "scan.npy", "--density", "2", "--json").json
+        self.assert_close(report["particle"]["mass"], 2000, 1e-12)
+        self.assert_close(report["particle"]["principal_moments"][0], 2000 * 200 / 12, 1e-12)
+
+    def test_generate_and_correct_are_one(self):
+        mass = ("--density", DENSITY, "--unit", "mm")
+        self.mskit("generate", "box.obj", "-g", "setcover", *GRID, "-n", "60", "--correct", *mass, "-o", "a.csv",
+                   "-o", "a.json")
+        self.mskit("correct", "c.csv", "--target", "box.obj", *mass, "-o", "b.csv")
+        self.assertEqual(self.read("a.csv"), self.read("b.csv"))
+        record = json.loads(self.read("a.json"))
+        self.assertEqual(record["columns"], ["x", "y", "z", "r", "mass", "density"])
+        self.assertIn("epsilon", record["masses"])
+        self.assertIn("scores", record)
+
+    def test_all_formats(self):
+        self.mskit("correct", "c.csv", "--target", "box.obj", "--density", DENSITY, "--unit", "mm",
+                   "--all-formats", "out")
+        names = sorted(os.listdir(self.path("out")))
+        endings = "clu csv deme frame.json json lammps lammps.in liggghts liggghts.in mercury mfix pfc vtk yade yade.py"
+        self.assertEqual(names, ["c." + ending for ending in endings.split()])
+
+    def test_formats_are_repeatable(self):
+        self.mskit("generate", "box.obj", *GRID, "-n", "30", "--correct", "--density", "1", "--format", "liggghts",
+                   "--format", "csv")
+        self.assertEqual([n for n in self.files() if n.startswith("box-mss")],
+                         ["box-mss.csv", "box-mss.frame.json", "box-mss.liggghts", "box-mss.liggghts.in"])
+
+    def test_there_and_back(self):
+        """A template with its frame gives the spheres of the shape again."""
+        self.mskit("correct", "c.csv", "--target", "box.obj", "--density", DENSITY, "--unit", "mm", "-o", "d.json")
+        self.mskit("convert", "d.json", "-o", "t.liggghts", "-o", "t.lammps", "-o", "t.yade")
+        before = self.spheres("c.csv")
+        for name in ("t.liggghts", "t.lammps", "t.yade"):
+            self.mskit("convert", name, "--frame", "t.frame.json", "-o", "back.csv")
+            after = [line.split(",")[:4] for line in self.read("back.csv").decode().split("\n")[1:] if line]
+            self.assertEqual(len(after), len(before))
+            for one, other in zip(before, after):
+                self.assertLess(math.dist(one, [float(word) for word in other]), 1e-14, name)
+        self.mskit("convert", "d.json", "-o", "e.csv", "-o", "e.json")
+        self.mskit("convert", "e.csv", "--unit", "mm", "-o", "f.csv")
+        self.assertEqual(self.read("e.csv"), self.read("f.csv"))
+        self.assertEqual(json.loads(self.read("e.json"))["particle"], json.loads(self.read("d.json"))["particle"])
+
+    def test_csv_with_masses_makes_templates(self):
+        """The particle is then the sum of the spheres."""
+        self.mskit("correct", "c.csv", "--target", "box.obj", "--density", DENSITY, "--unit", "mm", "-o", "d.csv")
+        self.assert_refused("convert", "d.csv", "-o", "t.lammps", code=1, says=("needs the mass",))
+        self.mskit("convert", "d.csv", "--unit", "mm", "--density", DENSITY, "-o", "t.lammps")
+        self.assert_close(float(self.read("t.lammps").decode().split("\n")[3].split()[0]), 6e-9 * DENSITY, 1e-12)
+
+    def test_what_cannot_be(self):
+        target = ("--target", "box.obj", "--density", "1")
+        self.write("flat.csv", "2,2,1.2,0.1\n3,2,1.2,0.1\n2,2.5,1.2,0.1\n3,1.5,1.2,0.1\n")
+        self.assert_refused("correct", "flat.csv", *target, "-o", "d.csv", code=1,
+                            says=("in one plane", "eq. 4", "tolerance"))
+        self.mskit("correct", "flat.csv", *target, "--centre-tolerance", "1", "-o", "d.csv")
+        self.assert_refused("correct", "c.csv", *target, "--least-mass", "0.5", "-o", "e.csv", code=1, says=("eq. 5",))
+        self.assert_refused("correct", "c.csv", *target, "-o", "c.csv", code=1, says=("is the input itself",))
+        self.assert_refused("correct", "c.csv", "--target", "missing.stl", "--density", "1", "-o", "e.csv", code=1,
+                            says=("missing.stl",))
+        self.assert_refused("convert", "c.csv", "-o", "t.liggghts", code=1, says=("mskit correct",))
+        self.assert_refused("convert", "c.csv", "--frame", "c.csv", "-o", "e.csv", code=1, says=("no JSON",))
+
+    def test_wrong_usage(self):
+        whole = ("correct", "c.csv", "--target", "box.obj", "--density", "1")
+        for args, says in (
+                (("correct", "c.csv", "-o", "d.csv", "--density", "1"), "--target SHAPE or --properties union"),
+                (("correct", "c.csv", "-o", "d.csv", "--target", "box.obj"), "--density"),
+                (whole, "-o FILE"),
+                ((*whole, "--density", "0", "-o", "d.csv"), "--density '0'"),
+                ((*whole, "--unit", "ft", "-o", "d.csv"), "'ft'"),
+                ((*whole, "--unit", "m", "--scale", "1", "-o", "d.csv"), "exclude"),
+                ((*whole, "--axes", "x", "-o", "d.csv"), "principal or input"),
+                ((*whole, "--format", "csv", "--format", "csv"), "twice"),
+                (("convert", "c.csv"), "-o FILE"),
+                (("convert", "c.csv", "-o", "a.xyz"), "names no format"),
+                (("convert", "c.csv", "-o", "a.csv", "--unit", "ft"), "'ft'"),
+                (("generate", "box.obj", "--correct"), "--density"),
+                (("generate", "box.obj", "--density", "1"), "--correct"),
+                (("generate", "box.obj", "-o", "a.liggghts"), "--correct --density"),
+                (("generate", "box.obj", "--format", "csv", "--format", "vtk", "-o", "a.csv"), "once")):
+            with self.subTest(args=args):
+                self.assert_refused(*args, code=2, says=(says,))
