@@ -18,7 +18,7 @@
 enum { MAX_OUTPUTS = 16, MAX_SETTINGS = 256, DEFAULT_SPHERES = 50 };
 
 static const ms_flag FLAGS[] = {
-    {"generator", 'g', "NAME", "the method, mss, setcover or variational (mss); mskit generators lists them"},
+    {"generator", 'g', "NAME", "the method, mss, setcover, fcm or variational (mss); mskit generators lists them"},
     {"spheres", 'n', "N", "at most N spheres (50, if no --until is given)"},
     {"until", 0, "MEASURE=VALUE",
      "end when eta, dice, coverage or inertia is as good, or spheres would be smaller than radius; may be repeated"},

@@ -4,14 +4,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ms_nodes.h"
-
 /* Centres drawn at a time; their radii are found in parallel. */
 enum { BATCH = 8192 };
 
 typedef struct filling {
     const ms_target *target;
-    ms_nodes nodes;
+    const ms_nodes *nodes;
     double lo[3], hi[3]; /* box of the centres, in voxels */
     uint8_t *covered;    /* one per node */
     size_t n_covered;
@@ -26,27 +24,24 @@ static void find_box(filling *f)
     for (int a = 0; a < 3; a++) {
         f->lo[a] = HUGE_VAL;
         f->hi[a] = -HUGE_VAL;
-        for (size_t n = 0; n < f->nodes.count; n++) {
-            f->lo[a] = fmin(f->lo[a], f->nodes.at[n][a]);
-            f->hi[a] = fmax(f->hi[a], f->nodes.at[n][a]);
+        for (size_t n = 0; n < f->nodes->count; n++) {
+            f->lo[a] = fmin(f->lo[a], f->nodes->at[n][a]);
+            f->hi[a] = fmax(f->hi[a], f->nodes->at[n][a]);
         }
         f->lo[a] -= f->target->mesh ? 0 : 0.5;
         f->hi[a] += f->target->mesh ? 0 : 0.5;
     }
 }
 
-static ms_status open_filling(filling *f, const ms_target *target, uint64_t seed, ms_error *err)
+static ms_status open_filling(filling *f, const ms_target *target, const ms_nodes *nodes, uint64_t seed,
+                              ms_error *err)
 {
-    *f = (filling){.target = target};
-    ms_status status = ms_nodes_of_target(&f->nodes, target, err);
-    if (status != MS_OK) {
-        return status;
-    }
+    *f = (filling){.target = target, .nodes = nodes};
     find_box(f);
-    f->covered = calloc(f->nodes.count, sizeof *f->covered);
+    f->covered = calloc(f->nodes->count, sizeof *f->covered);
     f->random = gsl_rng_alloc(gsl_rng_mt19937);
     if (!f->covered || !f->random) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory to fill a shape of %zu nodes", f->nodes.count);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to fill a shape of %zu nodes", f->nodes->count);
     }
     gsl_rng_set(f->random, (unsigned long)seed);
     return MS_OK;
@@ -54,7 +49,6 @@ static ms_status open_filling(filling *f, const ms_target *target, uint64_t seed
 
 static void close_filling(filling *f)
 {
-    ms_nodes_free(&f->nodes);
     free(f->covered);
     if (f->random) {
         gsl_rng_free(f->random);
@@ -95,7 +89,7 @@ static ms_status make_room(filling *f, ms_error *err)
 
 static int is_full(const filling *f, const ms_fill_rule *rule)
 {
-    return f->count >= rule->least && (double)f->n_covered >= rule->nodes_covered * (double)f->nodes.count;
+    return f->count >= rule->least && (double)f->n_covered >= rule->nodes_covered * (double)f->nodes->count;
 }
 
 /* Keeps the spheres of a batch, one after the other, until the shape is full. */
@@ -118,25 +112,26 @@ static void draw_batch(filling *f, size_t tries, const ms_fill_rule *rule)
     const double beyond = rule->offset + (f->target->mesh ? 0 : 0.5);
 #pragma omp parallel for schedule(dynamic, 64)
     for (size_t b = 0; b < drawn; b++) {
-        touched[b] = ms_nodes_nearest(&ball[b].radius, &f->nodes, ball[b].centre);
+        touched[b] = ms_nodes_nearest(&ball[b].radius, f->nodes, ball[b].centre, rule->norm);
         ball[b].radius += beyond;
     }
     keep(f, drawn, touched, rule);
 }
 
-ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const ms_fill_rule *rule, ms_error *err)
+ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,
+                  const ms_fill_rule *rule, ms_error *err)
 {
     filling f;
     *ball = NULL;
     *count = 0;
-    ms_status status = open_filling(&f, target, rule->seed, err);
+    ms_status status = open_filling(&f, target, nodes, rule->seed, err);
     for (size_t left = rule->tries; status == MS_OK && !is_full(&f, rule);) {
         const size_t tries = left < BATCH ? left : BATCH;
         left -= tries;
         if (tries == 0) {
             status = ms_fail(err, MS_ERR_LIMIT, "%zu tries left %zu spheres, and %.4g %% of %zu nodes covered, of %g %% "
                              "asked for; ask for less", rule->tries, f.count, 100 * (double)f.n_covered /
-                             (double)f.nodes.count, f.nodes.count, 100 * rule->nodes_covered);
+                             (double)f.nodes->count, f.nodes->count, 100 * rule->nodes_covered);
         } else if ((status = make_room(&f, err)) == MS_OK) {
             draw_batch(&f, tries, rule);
         }

@@ -2,6 +2,7 @@
 #ifndef MS_FILL_H
 #define MS_FILL_H
 
+#include "ms_nodes.h"
 #include "ms_target.h"
 
 MS_C_BEGIN
@@ -10,6 +11,7 @@ MS_C_BEGIN
 typedef struct ms_fill_rule {
     double nodes_covered; /* share of the nodes that have to be touched by a sphere, from 0 to 1 */
     size_t least;         /* as many spheres at least */
+    ms_norm norm;         /* of the distance to a node */
     double offset;        /* added to each radius, in voxels */
     size_t tries;         /* centres drawn at most */
     uint64_t seed;
@@ -24,13 +26,15 @@ typedef struct ms_fill_rule {
  *
  * @param[out] ball  in voxels of the target's grid, in the order drawn; the caller frees it; NULL on failure
  * @param[out] count how many
+ * @param      nodes of the target
  * @return MS_OK; MS_ERR_LIMIT if the tries run out: the message says what share of the nodes was
  *         covered; MS_ERR_NOMEM
  *
  * Source: MT19937 of GSL for the random numbers. Cost: tries * O(log nodes), all cores; the same spheres at any
  * number of threads.
  */
-ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const ms_fill_rule *rule, ms_error *err);
+ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,
+                  const ms_fill_rule *rule, ms_error *err);
 
 MS_C_END
 

@@ -151,15 +151,19 @@ ms_status ms_nodes_of_target(ms_nodes *nodes, const ms_target *target, ms_error 
 /* The nearest point so far. */
 typedef struct finding {
     const double *place;
-    double square; /* of the distance */
+    ms_norm norm;
+    double away; /* of the Euclidean distance the square */
     size_t index;
 } finding;
 
 static void try_node(finding *best, const ms_nodes *nodes, size_t p)
 {
-    const double square = ms_squared_distance(nodes->at[p], best->place);
-    if (square < best->square) {
-        best->square = square;
+    const double *a = nodes->at[p], *b = best->place;
+    const double away = best->norm == MS_NORM_EUCLIDEAN
+                            ? ms_squared_distance(a, b)
+                            : fabs(a[0] - b[0]) + fabs(a[1] - b[1]) + fabs(a[2] - b[2]);
+    if (away < best->away) {
+        best->away = away;
         best->index = p;
     }
 }
@@ -173,7 +177,7 @@ static void search(finding *best, const ms_nodes *nodes, range r)
         const range lower = {r.first, middle}, upper = {middle + 1, r.end};
         try_node(best, nodes, middle);
         search(best, nodes, beyond < 0 ? lower : upper);
-        if (beyond * beyond >= best->square) {
+        if ((best->norm == MS_NORM_EUCLIDEAN ? beyond * beyond : fabs(beyond)) >= best->away) {
             return;
         }
         r = beyond < 0 ? upper : lower;
@@ -183,11 +187,11 @@ static void search(finding *best, const ms_nodes *nodes, range r)
     }
 }
 
-size_t ms_nodes_nearest(double *distance, const ms_nodes *nodes, const double place[3])
+size_t ms_nodes_nearest(double *distance, const ms_nodes *nodes, const double place[3], ms_norm norm)
 {
-    finding best = {.place = place, .square = HUGE_VAL};
+    finding best = {.place = place, .norm = norm, .away = HUGE_VAL};
     search(&best, nodes, (range){0, nodes->count});
-    *distance = sqrt(best.square);
+    *distance = norm == MS_NORM_EUCLIDEAN ? sqrt(best.away) : best.away;
     return best.index;
 }
 

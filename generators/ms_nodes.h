@@ -6,6 +6,12 @@
 
 MS_C_BEGIN
 
+/** How far apart two points are. */
+typedef enum ms_norm {
+    MS_NORM_EUCLIDEAN,
+    MS_NORM_SUM /* |x| + |y| + |z| */
+} ms_norm;
+
 /** A search tree: each range of points is split at its middle one. Threads may share one. */
 typedef struct ms_nodes {
     size_t count;
@@ -36,7 +42,7 @@ ms_status ms_nodes_of_target(ms_nodes *nodes, const ms_target *target, ms_error 
  *
  * Cost: O(log count) typical; all points where all are about as far.
  */
-size_t ms_nodes_nearest(double *distance, const ms_nodes *nodes, const double place[3]);
+size_t ms_nodes_nearest(double *distance, const ms_nodes *nodes, const double place[3], ms_norm norm);
 
 void ms_nodes_free(ms_nodes *nodes);
 
