@@ -35,7 +35,7 @@ enum { RADIUS_NODE, RADIUS_MEAN };
 static const ms_option OPTIONS[] = {
     [NODES_COVERED] = {"nodes-covered", MS_OPTION_REAL, 0.9, 0, 1, NULL, NULL,
                        "share of the nodes that the filling has to touch (section 3)"},
-    [FILLING] = {"filling", MS_OPTION_INTEGER, 5000, 0, 1e7, NULL, NULL,
+    [FILLING] = {"filling", MS_OPTION_INTEGER, 10000, 0, 1e7, NULL, NULL,
                  "spheres that are clustered: the first so many that were drawn; 0: those it took to cover the nodes "
                  "(the paper)"},
     [TRIES] = {"tries", MS_OPTION_INTEGER, 1e7, 1, 1e9, NULL, NULL, "centres drawn at most to cover the nodes"},
@@ -46,7 +46,7 @@ static const ms_option OPTIONS[] = {
     [CLUSTERING] = {"clustering", MS_OPTION_CHOICE, CLUSTERING_FUZZY, 0, 0, "fuzzy|kmeans", NULL,
                     "fuzzy c-means (eq. 4) or k-means (eq. 3)"},
     [FUZZIFIER] = {"fuzzifier", MS_OPTION_REAL, 0, 0, 100, NULL, NULL,
-                   "m of eq. 4, from 1.01; 0: 1.5, 2, 2.5 and 3 are tried, and the best is kept (algorithm 1)"},
+                   "m of eq. 4, from 1.01; 0: the best from 1.5 to 3, in steps of 0.25 (algorithm 1)"},
     [SCALE_RADIUS] = {"scale-radius", MS_OPTION_REAL, 1, 1e-3, 1e3, NULL, NULL,
                       "weighs radii against coordinates when distances between spheres are measured"},
     [START] = {"start", MS_OPTION_CHOICE, MS_CLUSTER_FAR, 0, 0, "far|random", NULL,
@@ -63,10 +63,13 @@ static const ms_option OPTIONS[] = {
 };
 
 /* Values of m between which the best is sought (section 5.1). */
-static const double SWEEP[] = {1.5, 2, 2.5, 3};
+static const double SWEEP[] = {1.5, 1.75, 2, 2.25, 2.5, 2.75, 3};
+
+/* Nearer to 1 nothing changes but the time. */
+static const double LEAST_FUZZIFIER = 1.01;
 
 /* The clustering ends when the objective falls by less than this part of itself, or after as many steps. */
-static const double TOLERANCE = 1e-4;
+static const double TOLERANCE = 1e-3;
 enum { ITERATIONS = 500 };
 
 /* The volume criterion where nothing else is asked for (section 7). */
@@ -82,6 +85,8 @@ typedef struct fcm {
     size_t filled;     /* spheres to cluster */
     int dropped;       /* some were smaller than the least radius */
     double off_volume; /* to be reached; 0: not asked for */
+    double (*few)[4];  /* centres of the last number of clusters that was not enough, at the first m */
+    size_t n_few;
 } fcm;
 
 /* Spheres, and what they are worth. */
@@ -154,14 +159,19 @@ static ms_status fill(fcm *f, ms_error *err)
     return status;
 }
 
-/* The best start for n clusters. */
+/* The best start for n clusters: the first one goes on from fewer. */
 static ms_status start(double (*centre)[4], size_t n, const ms_cluster_rule *rule, const fcm *f, ms_error *err)
 {
     double (*trial)[4] = malloc(n * sizeof *trial), least = HUGE_VAL;
     ms_status status = trial ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu clusters", n);
     for (size_t r = 0; status == MS_OK && r < (size_t)option(f, RESTARTS); r++) {
         ms_cluster_result result;
-        status = ms_cluster_start(trial, 0, n, f->cluster, (ms_cluster_spread)option(f, START), f->run->seed + r, err);
+        const size_t given = r == 0 && f->n_few < n ? f->n_few : 0;
+        if (given > 0) {
+            memcpy(trial, f->few, given * sizeof *trial);
+        }
+        status = ms_cluster_start(trial, given, n, f->cluster, (ms_cluster_spread)option(f, START), f->run->seed + r,
+                                  err);
         if (status == MS_OK) {
             status = ms_cluster_run(&result, trial, n, f->cluster, rule, err);
         }
@@ -254,25 +264,64 @@ static int is_better(const attempt *a, const attempt *b)
     return a->dice < b->dice;
 }
 
-/* One value of m after the other, each from the centres of the one before. */
-static ms_status sweep(attempt *best, attempt *next, double (*centre)[4], size_t n, const fcm *f, ms_error *err)
+/* What a number of clusters is worked out in. */
+typedef struct trials {
+    size_t n;
+    double (*first)[4];  /* centres at the first m */
+    double (*centre)[4]; /* at this m */
+    attempt best, next;
+} trials;
+
+static void close_trials(trials *t)
 {
-    const int fuzzy = option(f, CLUSTERING) == CLUSTERING_FUZZY, all = fuzzy && option(f, FUZZIFIER) == 0;
-    ms_cluster_rule rule = {.fuzzifier = fuzzy ? option(f, FUZZIFIER) : 1,
-                            .tolerance = TOLERANCE,
-                            .iterations = ITERATIONS};
+    free(t->first);
+    free(t->centre);
+    free(t->best.ball);
+    free(t->next.ball);
+}
+
+static ms_status open_trials(trials *t, size_t n, ms_error *err)
+{
+    *t = (trials){.n = n};
+    t->first = calloc(n + 1, sizeof *t->first);
+    t->centre = calloc(n + 1, sizeof *t->centre);
+    t->best.ball = calloc(n + 1, sizeof *t->best.ball);
+    t->next.ball = calloc(n + 1, sizeof *t->next.ball);
+    if (!t->first || !t->centre || !t->best.ball || !t->next.ball) {
+        close_trials(t);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu clusters", n);
+    }
+    return MS_OK;
+}
+
+/* The clusters at one value of m: from a start, or from the centres at the last one. */
+static ms_status cluster(trials *t, double m, int is_first, const fcm *f, ms_error *err)
+{
+    const ms_cluster_rule rule = {.fuzzifier = m, .tolerance = TOLERANCE, .iterations = ITERATIONS};
+    if (!is_first) {
+        return ms_cluster_run(NULL, t->centre, t->n, f->cluster, &rule, err);
+    }
+    const ms_status status = start(t->first, t->n, &rule, f, err);
+    memcpy(t->centre, t->first, t->n * sizeof *t->centre);
+    return status;
+}
+
+/* One value of m after the other; the best spheres are kept. */
+static ms_status sweep(trials *t, const fcm *f, ms_error *err)
+{
+    const double given = option(f, CLUSTERING) == CLUSTERING_KMEANS ? 1 : option(f, FUZZIFIER);
+    const size_t values = given > 0 ? 1 : sizeof SWEEP / sizeof *SWEEP;
     ms_status status = MS_OK;
-    for (size_t s = 0; status == MS_OK && s < (all ? sizeof SWEEP / sizeof *SWEEP : 1); s++) {
-        rule.fuzzifier = all ? SWEEP[s] : rule.fuzzifier;
-        status = s == 0 ? start(centre, n, &rule, f, err) : ms_cluster_run(NULL, centre, n, f->cluster, &rule, err);
+    for (size_t s = 0; status == MS_OK && s < values; s++) {
+        status = cluster(t, given > 0 ? given : SWEEP[s], s == 0, f, err);
         if (status == MS_OK) {
-            make_spheres(next, (const double (*)[4])centre, n, f);
-            status = judge(next, f, err);
+            make_spheres(&t->next, (const double (*)[4])t->centre, t->n, f);
+            status = judge(&t->next, f, err);
         }
-        if (status == MS_OK && (s == 0 || is_better(next, best))) {
-            const attempt swap = *best;
-            *best = *next;
-            *next = swap;
+        if (status == MS_OK && (s == 0 || is_better(&t->next, &t->best))) {
+            const attempt swap = t->best;
+            t->best = t->next;
+            t->next = swap;
         }
     }
     return status;
@@ -308,31 +357,38 @@ static ms_status order(ms_clump *clump, const attempt *a, const ms_run *run, ms_
     return status;
 }
 
-/* The clump of n spheres. */
+/* Where more clusters start from. */
+static void remember(fcm *f, trials *t)
+{
+    double (*swap)[4] = f->few;
+    f->few = t->first;
+    f->n_few = t->n;
+    t->first = swap;
+}
+
+/* The clump of n spheres; ms_solve. */
 static ms_status solve(void *context, ms_clump *clump, ms_stop_reason *reason, size_t n, ms_error *err)
 {
-    const fcm *f = context;
-    const size_t clusters = n < f->filled ? n : f->filled;
-    attempt best = {.reason = MS_STOP_NOT}, next = {.reason = MS_STOP_NOT};
-    double (*centre)[4] = malloc((clusters + 1) * sizeof *centre);
-    best.ball = malloc((clusters + 1) * sizeof *best.ball);
-    next.ball = malloc((clusters + 1) * sizeof *next.ball);
-    ms_status status = MS_OK;
-    if (!centre || !best.ball || !next.ball) {
-        status = ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", n);
-    } else if (clusters > 0) {
-        status = sweep(&best, &next, centre, clusters, f, err);
+    fcm *f = context;
+    trials t;
+    ms_status status = open_trials(&t, n < f->filled ? n : f->filled, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    if (t.n > 0) {
+        status = sweep(&t, f, err);
     }
     if (status == MS_OK) {
-        status = order(clump, &best, f->run, err);
+        status = order(clump, &t.best, f->run, err);
     }
-    *reason = best.reason;
-    if (best.reason == MS_STOP_NOT && clump->n_spheres < n) {
-        *reason = f->dropped ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
+    *reason = t.best.reason;
+    if (*reason == MS_STOP_NOT) {
+        remember(f, &t);
+        if (t.n < n) {
+            *reason = f->dropped ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
+        }
     }
-    free(centre);
-    free(best.ball);
-    free(next.ball);
+    close_trials(&t);
     return status;
 }
 
@@ -341,24 +397,37 @@ static int has_measure(const ms_stop *stop)
     return stop->eta >= 0 || stop->dice >= 0 || stop->coverage >= 0 || stop->inertia >= 0;
 }
 
+/* A number is solved for; for a measure it is sought. */
+static ms_status make_clump(ms_clump *clump, ms_stop_reason *reason, fcm *f, ms_error *err)
+{
+    const ms_stop *stop = &f->run->stop;
+    if (f->off_volume == 0 && stop->spheres == 0 && !has_measure(stop)) {
+        f->off_volume = DEFAULT_OFF_VOLUME;
+    }
+    if (has_measure(stop) || f->off_volume > 0) {
+        const size_t most = stop->spheres > 0 ? stop->spheres : MS_CLUMP_MAX_SPHERES;
+        return ms_search(clump, reason, most, solve, f, err);
+    }
+    const ms_status status = solve(f, clump, reason, stop->spheres, err);
+    if (*reason == MS_STOP_NOT) {
+        *reason = MS_STOP_EXHAUSTED; /* some clusters coincide */
+    }
+    return status;
+}
+
 static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
 {
-    const ms_stop *stop = &run->stop;
     fcm f = {.run = run, .off_volume = run->settings->value[OFF_VOLUME]};
     const double m = option(&f, FUZZIFIER);
-    if (m != 0 && m < 1.01) {
-        return ms_fail(err, MS_ERR_ARG, "fuzzifier=%g is too small; give 1.01 or more, or clustering=kmeans", m);
-    }
-    if (f.off_volume == 0 && stop->spheres == 0 && !has_measure(stop)) {
-        f.off_volume = DEFAULT_OFF_VOLUME;
+    if (m != 0 && m < LEAST_FUZZIFIER) {
+        return ms_fail(err, MS_ERR_ARG, "fuzzifier=%g is too small; give %g or more, or clustering=kmeans", m,
+                       LEAST_FUZZIFIER);
     }
     ms_status status = fill(&f, err);
-    if (status == MS_OK && (has_measure(stop) || f.off_volume > 0)) {
-        const size_t most = stop->spheres > 0 ? stop->spheres : MS_CLUMP_MAX_SPHERES;
-        status = ms_search(clump, reason, most, solve, &f, err);
-    } else if (status == MS_OK) {
-        status = solve(&f, clump, reason, stop->spheres, err);
+    if (status == MS_OK) {
+        status = make_clump(clump, reason, &f, err);
     }
+    free(f.few);
     ms_cluster_free(f.cluster);
     ms_nodes_free(&f.nodes);
     return status;

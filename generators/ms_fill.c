@@ -118,6 +118,14 @@ static void draw_batch(filling *f, size_t tries, const ms_fill_rule *rule)
     keep(f, drawn, touched, rule);
 }
 
+static ms_status out_of_tries(const filling *f, const ms_fill_rule *rule, ms_error *err)
+{
+    const double share = 100 * (double)f->n_covered / (double)f->nodes->count;
+    return ms_fail(err, MS_ERR_LIMIT, "%zu random centres gave %zu spheres that touch %.1f %% of %zu nodes, not %g %%; "
+                   "lower nodes-covered, raise tries, or coarsen the mesh", rule->tries, f->count, share,
+                   f->nodes->count, 100 * rule->nodes_covered);
+}
+
 ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,
                   const ms_fill_rule *rule, ms_error *err)
 {
@@ -129,9 +137,7 @@ ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const 
         const size_t tries = left < BATCH ? left : BATCH;
         left -= tries;
         if (tries == 0) {
-            status = ms_fail(err, MS_ERR_LIMIT, "%zu tries left %zu spheres, and %.4g %% of %zu nodes covered, of %g %% "
-                             "asked for; ask for less", rule->tries, f.count, 100 * (double)f.n_covered /
-                             (double)f.nodes->count, f.nodes->count, 100 * rule->nodes_covered);
+            status = out_of_tries(&f, rule, err);
         } else if ((status = make_room(&f, err)) == MS_OK) {
             draw_batch(&f, tries, rule);
         }

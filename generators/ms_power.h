@@ -9,7 +9,7 @@
 #define MS_POWER_ROUND 6755399441055744.0
 
 /**
- * x to the power p, to 1e-10 of itself; 0 where it is below 1e-300. Arithmetic alone, without a branch
+ * x to the power p, to 1e-10 of itself; where that is below 2^-1000, this. Arithmetic alone, without a branch
  * or a call, and hence the same bits from every compiler.
  *
  * @param x above 1e-300, at most 1
@@ -31,15 +31,15 @@ static inline double ms_power(double x, double p)
     memcpy(&whole, &exponent, sizeof whole);
     const double s = (mantissa - 1) / (mantissa + 1), q = s * s;
     const double series = 1 + q * (1.0 / 3 + q * (1.0 / 5 + q * (1.0 / 7 + q * (1.0 / 9 + q * (1.0 / 11)))));
-    const double wanted = p * (whole - 4503599627370496.0 - 1024 + 2.8853900817779268 * s * series); /* log2 of the result */
-    const double y = wanted > -1000 ? wanted : -1000;
+    const double wanted = p * (whole - 4503599627370496.0 - 1024 + 2.8853900817779268 * s * series);
+    const double y = wanted > -1000 ? wanted : -1000; /* log2 of the result */
     const double shifted = y + MS_POWER_ROUND;
     const double g = 0.69314718055994531 * (y - (shifted - MS_POWER_ROUND));
     memcpy(&bits, &shifted, sizeof bits);
     bits = (bits + 1023) << 52;
     memcpy(&scale, &bits, sizeof scale);
-    double taylor = 1.0 / 5040 + g / 40320;
-    taylor = 1 + g * (1 + g * (1.0 / 2 + g * (1.0 / 6 + g * (1.0 / 24 + g * (1.0 / 120 + g * (1.0 / 720 + g * taylor))))));
+    double taylor = 1.0 / 720 + g * (1.0 / 5040 + g * (1.0 / 40320));
+    taylor = 1 + g * (1 + g * (1.0 / 2 + g * (1.0 / 6 + g * (1.0 / 24 + g * (1.0 / 120 + g * taylor)))));
     return scale * taylor;
 }
 
