@@ -9,7 +9,7 @@
 #define MS_POWER_ROUND 6755399441055744.0
 
 /**
- * x to the power p, to 1e-10 of itself; where that is below 2^-1000, this. Arithmetic alone, without a branch
+ * x to the power p, to 1e-8 of itself; where that is below 2^-1000, this. Exact for x = 1. Arithmetic alone, without a branch
  * or a call, and hence the same bits from every compiler.
  *
  * @param x above 1e-300, at most 1
