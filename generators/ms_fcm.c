@@ -80,6 +80,7 @@ static const double SAME = 0.01;
 
 typedef struct fcm {
     const ms_run *run;
+    ms_fill_rule rule;
     ms_nodes nodes;
     ms_cluster *cluster;
     size_t filled;     /* spheres to cluster */
@@ -139,17 +140,17 @@ static ms_status make_points(fcm *f, const ms_ball *ball, size_t count, ms_error
 
 static ms_status fill(fcm *f, ms_error *err)
 {
-    const ms_fill_rule rule = {.nodes_covered = option(f, NODES_COVERED),
-                               .least = (size_t)option(f, FILLING),
-                               .norm = (ms_norm)option(f, NORM),
-                               .offset = option(f, OFFSET),
-                               .tries = (size_t)option(f, TRIES),
-                               .seed = f->run->seed};
+    f->rule = (ms_fill_rule){.nodes_covered = option(f, NODES_COVERED),
+                             .least = (size_t)option(f, FILLING),
+                             .norm = (ms_norm)option(f, NORM),
+                             .offset = option(f, OFFSET),
+                             .tries = (size_t)option(f, TRIES),
+                             .seed = f->run->seed};
     ms_ball *ball = NULL;
     size_t count = 0;
     ms_status status = ms_nodes_of_target(&f->nodes, f->run->target, err);
     if (status == MS_OK) {
-        status = ms_fill(&ball, &count, f->run->target, &f->nodes, &rule, err);
+        status = ms_fill(&ball, &count, f->run->target, &f->nodes, &f->rule, err);
     }
     if (status == MS_OK) {
         drop_small(ball, &count, f);
@@ -184,17 +185,12 @@ static ms_status start(double (*centre)[4], size_t n, const ms_cluster_rule *rul
     return status;
 }
 
-/* The distance from a centre to the nearest node; 0 outside. */
+/* The radius of a filling sphere about a centre; 0 outside. */
 static double free_radius(const fcm *f, const double centre[3])
 {
     const ms_grid *grid = &f->run->target->grid;
-    double distance;
     const size_t voxel = ms_grid_index(grid, (int)rint(centre[0]), (int)rint(centre[1]), (int)rint(centre[2]));
-    if (!grid->inside[voxel]) {
-        return 0;
-    }
-    ms_nodes_nearest(&distance, &f->nodes, centre, (ms_norm)option(f, NORM));
-    return distance + option(f, OFFSET);
+    return grid->inside[voxel] ? ms_fill_radius(NULL, centre, f->run->target, &f->nodes, &f->rule) : 0;
 }
 
 static int is_new(const ms_ball *ball, const attempt *a)

@@ -73,6 +73,17 @@ static int draw(double centre[3], filling *f)
     return grid->inside[ms_grid_index(grid, voxel[0], voxel[1], voxel[2])];
 }
 
+double ms_fill_radius(size_t *touched, const double centre[3], const ms_target *target, const ms_nodes *nodes,
+                      const ms_fill_rule *rule)
+{
+    double distance;
+    const size_t nearest = ms_nodes_nearest(&distance, nodes, centre, rule->norm);
+    if (touched) {
+        *touched = nearest;
+    }
+    return distance + rule->offset + (target->mesh ? 0 : 0.5);
+}
+
 static ms_status make_room(filling *f, ms_error *err)
 {
     if (f->room - f->count < BATCH) {
@@ -109,11 +120,9 @@ static void draw_batch(filling *f, size_t tries, const ms_fill_rule *rule)
     for (size_t t = 0; t < tries; t++) {
         drawn += draw(ball[drawn].centre, f) != 0;
     }
-    const double beyond = rule->offset + (f->target->mesh ? 0 : 0.5);
 #pragma omp parallel for schedule(dynamic, 64)
     for (size_t b = 0; b < drawn; b++) {
-        touched[b] = ms_nodes_nearest(&ball[b].radius, f->nodes, ball[b].centre, rule->norm);
-        ball[b].radius += beyond;
+        ball[b].radius = ms_fill_radius(&touched[b], ball[b].centre, f->target, f->nodes, rule);
     }
     keep(f, drawn, touched, rule);
 }

@@ -36,6 +36,14 @@ typedef struct ms_fill_rule {
 ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,
                   const ms_fill_rule *rule, ms_error *err);
 
+/**
+ * The radius that a sphere about a centre inside has.
+ *
+ * @param[out] touched the node that it touches; may be NULL
+ */
+double ms_fill_radius(size_t *touched, const double centre[3], const ms_target *target, const ms_nodes *nodes,
+                      const ms_fill_rule *rule);
+
 MS_C_END
 
 #endif
