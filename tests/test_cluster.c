@@ -370,7 +370,7 @@ static void threads_do_not_matter(void **state)
 static void bad_arguments_are_refused(void **state)
 {
     (void)state;
-    double point[2][4] = {{1, 2, 3, 4}, {5, 6, 7, NAN}};
+    double point[2][4] = {{1, 2, 3, 4}, {5, 6, 7, (double)NAN}};
     ms_cluster *cluster;
     ms_error err;
     assert_int_equal(ms_cluster_build(&cluster, (const double (*)[4])point, 0, &err), MS_ERR_ARG);
@@ -380,7 +380,7 @@ static void bad_arguments_are_refused(void **state)
     cluster = build((const double (*)[4])point, 1);
     ms_cluster_rule rule = {.fuzzifier = 0.9, .iterations = 1};
     assert_int_equal(ms_cluster_run(NULL, point, 1, cluster, &rule, &err), MS_ERR_ARG);
-    rule.fuzzifier = NAN;
+    rule.fuzzifier = (double)NAN;
     assert_int_equal(ms_cluster_run(NULL, point, 1, cluster, &rule, &err), MS_ERR_ARG);
     rule.fuzzifier = 2;
     assert_int_equal(ms_cluster_run(NULL, point, 0, cluster, &rule, &err), MS_ERR_ARG);
