@@ -255,8 +255,10 @@ static void pass(work *w, const double (*centre)[AXES])
             all->farthest = part->farthest;
             all->point = part->point;
         }
-        for (size_t t = 0; t < TERMS * w->count; t++) {
-            all->sum[0][t] += part->sum[0][t];
+        for (size_t i = 0; i < w->count; i++) {
+            for (int t = 0; t < TERMS; t++) {
+                all->sum[i][t] += part->sum[i][t];
+            }
         }
     }
 }
