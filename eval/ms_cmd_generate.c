@@ -1,4 +1,5 @@
 /* mskit generate SHAPE */
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -266,7 +267,11 @@ static void show_progress(void *context, size_t spheres, double dice)
     const double now = omp_get_wtime();
     if (now - line->shown > 0.1) {
         line->shown = now;
-        fprintf(stderr, "\r%s: %zu spheres, D %.4f ", line->name, spheres, dice);
+        if (isnan(dice)) {
+            fprintf(stderr, "\r%s: %zu spheres to begin with ", line->name, spheres);
+        } else {
+            fprintf(stderr, "\r\033[K%s: %zu spheres, D %.4f ", line->name, spheres, dice);
+        }
     }
 }
 

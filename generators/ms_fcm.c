@@ -38,7 +38,7 @@ static const ms_option OPTIONS[] = {
     [FILLING] = {"filling", MS_OPTION_INTEGER, 10000, 0, 1e7, NULL, NULL,
                  "spheres that are clustered: the first so many that were drawn; 0: those it took to cover the nodes "
                  "(the paper)"},
-    [TRIES] = {"tries", MS_OPTION_INTEGER, 1e7, 1, 1e9, NULL, NULL, "centres drawn at most to cover the nodes"},
+    [TRIES] = {"tries", MS_OPTION_INTEGER, 1e7, 1, 1e8, NULL, NULL, "centres drawn at most to cover the nodes"},
     [NORM] = {"norm", MS_OPTION_CHOICE, MS_NORM_EUCLIDEAN, 0, 0, "euclidean|sum", NULL,
               "distance from a centre to the nodes; sum: eq. 1 as it is printed, |x| + |y| + |z|, up to 1.7 times as "
               "large"},
@@ -145,7 +145,9 @@ static ms_status fill(fcm *f, ms_error *err)
                              .norm = (ms_norm)option(f, NORM),
                              .offset = option(f, OFFSET),
                              .tries = (size_t)option(f, TRIES),
-                             .seed = f->run->seed};
+                             .seed = f->run->seed,
+                             .progress = f->run->progress,
+                             .progress_context = f->run->progress_context};
     ms_ball *ball = NULL;
     size_t count = 0;
     ms_status status = ms_nodes_of_target(&f->nodes, f->run->target, err);

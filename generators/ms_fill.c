@@ -149,6 +149,9 @@ ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const 
             status = out_of_tries(&f, rule, err);
         } else if ((status = make_room(&f, err)) == MS_OK) {
             draw_batch(&f, tries, rule);
+            if (rule->progress) {
+                rule->progress(rule->progress_context, f.count, (double)NAN);
+            }
         }
     }
     if (status == MS_OK) {

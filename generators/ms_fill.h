@@ -2,8 +2,8 @@
 #ifndef MS_FILL_H
 #define MS_FILL_H
 
+#include "ms_generator.h"
 #include "ms_nodes.h"
-#include "ms_target.h"
 
 MS_C_BEGIN
 
@@ -15,6 +15,8 @@ typedef struct ms_fill_rule {
     double offset;        /* added to each radius, in voxels */
     size_t tries;         /* centres drawn at most */
     uint64_t seed;
+    ms_progress progress; /* told the number of filling spheres, D unknown; NULL: nobody listens */
+    void *progress_context;
 } ms_fill_rule;
 
 /**
