@@ -10,8 +10,12 @@ ms_stop ms_stop_none(void)
 
 int ms_stop_is_none(const ms_stop *stop)
 {
-    return stop->spheres == 0 && stop->eta < 0 && stop->dice < 0 && stop->coverage < 0 && stop->inertia < 0 &&
-           stop->radius < 0;
+    return stop->spheres == 0 && stop->radius < 0 && !ms_stop_has_measure(stop);
+}
+
+int ms_stop_has_measure(const ms_stop *stop)
+{
+    return stop->eta >= 0 || stop->dice >= 0 || stop->coverage >= 0 || stop->inertia >= 0;
 }
 
 const char *ms_stop_name(ms_stop_reason reason)

@@ -9,7 +9,7 @@
 
 MS_C_BEGIN
 
-/* Why a run ended; the names are those that --until takes. */
+/* Why a run ended; the names are those that --until takes, but for those that only a method can say. */
 #define MS_STOP_LIST(X)      \
     X(MS_STOP_NOT, "not")    \
     X(MS_STOP_SPHERES, "spheres")   \
@@ -18,6 +18,7 @@ MS_C_BEGIN
     X(MS_STOP_COVERAGE, "coverage") \
     X(MS_STOP_INERTIA, "inertia")   \
     X(MS_STOP_RADIUS, "radius")     \
+    X(MS_STOP_OFF_VOLUME, "off-volume") \
     X(MS_STOP_EXHAUSTED, "exhausted")
 
 #define MS_STOP_ENUM(code, name) code,
@@ -39,6 +40,9 @@ ms_stop ms_stop_none(void);
 
 /** Nonzero if nothing is asked for, so that nothing would end a run. */
 int ms_stop_is_none(const ms_stop *stop);
+
+/** Nonzero if a measure has to be reached, and not only a number or a radius. */
+int ms_stop_has_measure(const ms_stop *stop);
 
 /** "eta", "exhausted", ... */
 const char *ms_stop_name(ms_stop_reason reason);

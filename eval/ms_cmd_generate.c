@@ -1,4 +1,5 @@
 /* mskit generate SHAPE */
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +19,7 @@
 enum { MAX_SETTINGS = 256, DEFAULT_SPHERES = 50 };
 
 static const ms_flag FLAGS[] = {
-    {"generator", 'g', "NAME", "the method, mss, setcover or variational (mss); mskit generators lists them"},
+    {"generator", 'g', "NAME", "the method, mss, setcover, fcm or variational (mss); mskit generators lists them"},
     {"spheres", 'n', "N", "at most N spheres (50, if no --until is given)"},
     {"until", 0, "MEASURE=VALUE",
      "end when eta, dice, coverage or inertia is as good, or spheres would be smaller than radius; may be repeated"},
@@ -214,7 +215,11 @@ static void show_progress(void *context, size_t spheres, double dice)
     const double now = omp_get_wtime();
     if (now - line->shown > 0.1) {
         line->shown = now;
-        fprintf(stderr, "\r%s: %zu spheres, D %.4f ", line->name, spheres, dice);
+        if (isnan(dice)) {
+            fprintf(stderr, "\r%s: %zu spheres to begin with ", line->name, spheres);
+        } else {
+            fprintf(stderr, "\r\033[K%s: %zu spheres, D %.4f ", line->name, spheres, dice);
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "ms_fcm.h"
 #include "ms_mss.h"
 #include "ms_setcover.h"
 #include "ms_variational.h"
@@ -10,6 +11,7 @@
 const ms_generator *const ms_generators[] = {
     &ms_generator_mss,
     &ms_generator_setcover,
+    &ms_generator_fcm,
     &ms_generator_variational,
     NULL,
 };

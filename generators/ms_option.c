@@ -206,6 +206,9 @@ void ms_settings_text(char *out, size_t size, const ms_settings *settings, size_
         const ms_word word = choice(o->choices, (int)value);
         snprintf(out, size, "%.*s", (int)word.length, word.start);
     } else {
-        snprintf(out, size, "%.17g", value);
+        snprintf(out, size, "%.15g", value); /* as it was written: 0.9, not 0.90000000000000002 */
+        if (strtod(out, NULL) != value) {
+            snprintf(out, size, "%.17g", value);
+        }
     }
 }

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "ms_search.h"
 #include "ms_variational_solve.h"
 
 enum { EFFORT, POINTS, PROTRUSION, EQUAL_RADIUS, SYMMETRY, PLANES, REFINE };
@@ -100,8 +101,10 @@ static variational_settings read_settings(const ms_run *run)
     return settings;
 }
 
-static ms_status generate_for(ms_clump *clump, ms_stop_reason *reason, size_t n, const ms_run *run, ms_error *err)
+/* Each number of spheres is a run of its own, since the best n spheres are not among the best n + 1. */
+static ms_status generate_for(void *context, ms_clump *clump, ms_stop_reason *reason, size_t n, ms_error *err)
 {
+    const ms_run *run = context;
     const variational_settings settings = read_settings(run);
     ms_ball *ball;
     size_t count;
@@ -116,57 +119,15 @@ static ms_status generate_for(ms_clump *clump, ms_stop_reason *reason, size_t n,
     return status;
 }
 
-/* Whether a measure, and not only numbers and radii, has to be reached. */
-static int has_measure(const ms_stop *stop)
-{
-    return stop->eta >= 0 || stop->dice >= 0 || stop->coverage >= 0 || stop->inertia >= 0;
-}
-
-static int is_measure(ms_stop_reason reason)
-{
-    return reason != MS_STOP_SPHERES && reason != MS_STOP_RADIUS && reason != MS_STOP_EXHAUSTED;
-}
-
-/* The number of spheres is sought: doubled until enough, then between the last two by halves. Each
- * is a run of its own, since the best n spheres are not among the best n + 1. */
-static ms_status search(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
-{
-    const size_t most = run->stop.spheres > 0 ? run->stop.spheres : MS_CLUMP_MAX_SPHERES;
-    size_t few = 0, enough = 1;
-    ms_status status = generate_for(clump, reason, enough, run, err);
-    while (status == MS_OK && *reason == MS_STOP_NOT) {
-        few = enough;
-        enough = 2 * enough < most ? 2 * enough : most;
-        status = generate_for(clump, reason, enough, run, err);
-        if (enough == most && *reason == MS_STOP_NOT) {
-            *reason = MS_STOP_SPHERES;
-        }
-    }
-    while (status == MS_OK && is_measure(*reason) && enough - few > 1) {
-        const size_t middle = few + (enough - few) / 2;
-        ms_clump fewer = {0};
-        ms_stop_reason why;
-        status = generate_for(&fewer, &why, middle, run, err);
-        if (status == MS_OK && why == *reason) {
-            const ms_clump swap = *clump;
-            *clump = fewer;
-            fewer = swap;
-            enough = middle;
-        } else {
-            few = middle;
-        }
-        ms_clump_free(&fewer);
-    }
-    return status;
-}
-
 static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
 {
     if (run->settings->n_planes > 0 && run->settings->value[SYMMETRY] != 0) {
         return ms_fail(err, MS_ERR_ARG, "give either planes or a symmetry: a mirror image might cross a plane");
     }
     const size_t most = run->stop.spheres > 0 ? run->stop.spheres : MS_CLUMP_MAX_SPHERES;
-    return has_measure(&run->stop) ? search(clump, reason, run, err) : generate_for(clump, reason, most, run, err);
+    ms_run each = *run;
+    return ms_stop_has_measure(&run->stop) ? ms_search(clump, reason, most, generate_for, &each, err)
+                                           : generate_for(&each, clump, reason, most, err);
 }
 
 const ms_generator ms_generator_variational = {

@@ -8,7 +8,7 @@
 #include "ms_generator.h"
 #include "ms_metrics.h"
 
-static const char *const CONTRACTED[] = {"mss", "setcover", "variational"};
+static const char *const CONTRACTED[] = {"mss", "setcover", "fcm", "variational"};
 
 typedef struct outcome {
     ms_clump clump;

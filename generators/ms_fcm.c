@@ -1,0 +1,436 @@
+/*
+ * F. Westbrink, A. Schwung, Improved approximation of arbitrary shapes in DEM simulations with
+ * multi-spheres, COMPLAS XIV (2017). Section, equation and algorithm numbers are of that paper;
+ * docs/methods/fcm.md says what it leaves open and how it was decided.
+ */
+#include "ms_fcm.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_cluster.h"
+#include "ms_cover.h"
+#include "ms_fill.h"
+#include "ms_metrics.h"
+#include "ms_search.h"
+
+enum {
+    NODES_COVERED,
+    FILLING,
+    TRIES,
+    NORM,
+    OFFSET,
+    CLUSTERING,
+    FUZZIFIER,
+    SCALE_RADIUS,
+    START,
+    RESTARTS,
+    RADIUS,
+    OFF_VOLUME
+};
+enum { CLUSTERING_FUZZY, CLUSTERING_KMEANS };
+enum { RADIUS_NODE, RADIUS_MEAN };
+
+static const ms_option OPTIONS[] = {
+    [NODES_COVERED] = {"nodes-covered", MS_OPTION_REAL, 0.9, 0, 1, NULL, NULL,
+                       "share of the nodes that the filling has to touch (section 3)"},
+    [FILLING] = {"filling", MS_OPTION_INTEGER, 10000, 0, 1e7, NULL, NULL,
+                 "spheres that are clustered: the first so many that were drawn; 0: those it took to cover the nodes "
+                 "(the paper)"},
+    [TRIES] = {"tries", MS_OPTION_INTEGER, 1e7, 1, 1e8, NULL, NULL, "centres drawn at most to cover the nodes"},
+    [NORM] = {"norm", MS_OPTION_CHOICE, MS_NORM_EUCLIDEAN, 0, 0, "euclidean|sum", NULL,
+              "distance from a centre to the nodes; sum: eq. 1 as it is printed, |x| + |y| + |z|, up to 1.7 times as "
+              "large"},
+    [OFFSET] = {"radius-offset", MS_OPTION_REAL, 0, -100, 100, NULL, "voxels", "added to every radius (section 3)"},
+    [CLUSTERING] = {"clustering", MS_OPTION_CHOICE, CLUSTERING_FUZZY, 0, 0, "fuzzy|kmeans", NULL,
+                    "fuzzy c-means (eq. 4) or k-means (eq. 3)"},
+    [FUZZIFIER] = {"fuzzifier", MS_OPTION_REAL, 0, 0, 100, NULL, NULL,
+                   "m of eq. 4, from 1.01; 0: the best from 1.5 to 3, in steps of 0.25 (algorithm 1)"},
+    [SCALE_RADIUS] = {"scale-radius", MS_OPTION_REAL, 1, 1e-3, 1e3, NULL, NULL,
+                      "weighs radii against coordinates when distances between spheres are measured"},
+    [START] = {"start", MS_OPTION_CHOICE, MS_CLUSTER_FAR, 0, 0, "far|random", NULL,
+               "centres to begin with: spheres far from each other (k-means++), or any (the paper)"},
+    [RESTARTS] = {"restarts", MS_OPTION_INTEGER, 1, 1, 1000, NULL, NULL,
+                  "starts, of which the one with the least objective is kept"},
+    [RADIUS] = {"radius", MS_OPTION_CHOICE, RADIUS_NODE, 0, 0, "node|mean", NULL,
+                "of a cluster: mean of its spheres' radii (the paper), or, where it is larger, the distance from its "
+                "centre to the nearest node"},
+    [OFF_VOLUME] = {"off-volume", MS_OPTION_REAL, 0, 0, 2, NULL, NULL,
+                    "ends at this volume of the union / of the shape (eq. 2); 0: 0.9, as the paper, where no number "
+                    "and no measure is asked for, else not at all"},
+    {0},
+};
+
+/* Values of m between which the best is sought (section 5.1). */
+static const double SWEEP[] = {1.5, 1.75, 2, 2.25, 2.5, 2.75, 3};
+
+/* Nearer to 1 nothing changes but the time. */
+static const double LEAST_FUZZIFIER = 1.01;
+
+/* The clustering ends when the objective falls by less than this part of itself, or after as many steps. */
+static const double TOLERANCE = 1e-3;
+enum { ITERATIONS = 500 };
+
+/* The volume criterion where nothing else is asked for (section 7). */
+static const double DEFAULT_OFF_VOLUME = 0.9;
+
+/* Spheres whose centres and radii differ by less, in voxels, are one. */
+static const double SAME = 0.01;
+
+typedef struct fcm {
+    const ms_run *run;
+    ms_fill_rule rule;
+    ms_nodes nodes;
+    ms_cluster *cluster;
+    size_t filled;     /* spheres to cluster */
+    int dropped;       /* some were smaller than the least radius */
+    double off_volume; /* to be reached; 0: not asked for */
+    double (*few)[4];  /* centres of the last number of clusters that was not enough, at the first m */
+    size_t n_few;
+} fcm;
+
+/* Spheres, and what they are worth. */
+typedef struct attempt {
+    ms_ball *ball;
+    size_t count;
+    double dice;
+    ms_stop_reason reason;
+} attempt;
+
+static double option(const fcm *f, int which)
+{
+    return f->run->settings->value[which];
+}
+
+/* Keeps the first spheres that are large enough. */
+static void drop_small(ms_ball *ball, size_t *count, fcm *f)
+{
+    const double least = f->run->stop.radius / f->run->target->grid.h;
+    const size_t wanted = option(f, FILLING) > 0 ? (size_t)option(f, FILLING) : *count;
+    size_t kept = 0;
+    for (size_t b = 0; b < *count && kept < wanted; b++) {
+        if (ball[b].radius > 0 && !(ball[b].radius < least)) {
+            ball[kept++] = ball[b];
+        }
+    }
+    f->dropped = kept < *count && kept < wanted;
+    *count = kept;
+}
+
+/* The points (x, y, z, r) that are clustered. */
+static ms_status make_points(fcm *f, const ms_ball *ball, size_t count, ms_error *err)
+{
+    double (*point)[4] = malloc((count + 1) * sizeof *point);
+    ms_status status = MS_OK;
+    if (!point) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to cluster %zu spheres; lower filling", count);
+    }
+    for (size_t b = 0; b < count; b++) {
+        memcpy(point[b], ball[b].centre, sizeof ball[b].centre);
+        point[b][3] = option(f, SCALE_RADIUS) * ball[b].radius;
+    }
+    f->filled = count;
+    if (count > 0) {
+        status = ms_cluster_build(&f->cluster, (const double (*)[4])point, count, err);
+    }
+    free(point);
+    return status;
+}
+
+static ms_status fill(fcm *f, ms_error *err)
+{
+    f->rule = (ms_fill_rule){.nodes_covered = option(f, NODES_COVERED),
+                             .least = (size_t)option(f, FILLING),
+                             .norm = (ms_norm)option(f, NORM),
+                             .offset = option(f, OFFSET),
+                             .tries = (size_t)option(f, TRIES),
+                             .seed = f->run->seed,
+                             .progress = f->run->progress,
+                             .progress_context = f->run->progress_context};
+    ms_ball *ball = NULL;
+    size_t count = 0;
+    ms_status status = ms_nodes_of_target(&f->nodes, f->run->target, err);
+    if (status == MS_OK) {
+        status = ms_fill(&ball, &count, f->run->target, &f->nodes, &f->rule, err);
+    }
+    if (status == MS_OK) {
+        drop_small(ball, &count, f);
+        status = make_points(f, ball, count, err);
+    }
+    free(ball);
+    return status;
+}
+
+/* The best start for n clusters: the first one goes on from fewer. */
+static ms_status start(double (*centre)[4], size_t n, const ms_cluster_rule *rule, const fcm *f, ms_error *err)
+{
+    double (*trial)[4] = malloc(n * sizeof *trial), least = HUGE_VAL;
+    ms_status status = trial ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu clusters", n);
+    for (size_t r = 0; status == MS_OK && r < (size_t)option(f, RESTARTS); r++) {
+        ms_cluster_result result;
+        const size_t given = r == 0 && f->n_few < n ? f->n_few : 0;
+        if (given > 0) {
+            memcpy(trial, f->few, given * sizeof *trial);
+        }
+        status = ms_cluster_start(trial, given, n, f->cluster, (ms_cluster_spread)option(f, START), f->run->seed + r,
+                                  err);
+        if (status == MS_OK) {
+            status = ms_cluster_run(&result, trial, n, f->cluster, rule, err);
+        }
+        if (status == MS_OK && (r == 0 || result.objective < least)) {
+            least = result.objective;
+            memcpy(centre, trial, n * sizeof *trial);
+        }
+    }
+    free(trial);
+    return status;
+}
+
+/* The radius of a filling sphere about a centre; 0 outside. */
+static double free_radius(const fcm *f, const double centre[3])
+{
+    const ms_grid *grid = &f->run->target->grid;
+    const size_t voxel = ms_grid_index(grid, (int)rint(centre[0]), (int)rint(centre[1]), (int)rint(centre[2]));
+    return grid->inside[voxel] ? ms_fill_radius(NULL, centre, f->run->target, &f->nodes, &f->rule) : 0;
+}
+
+static int is_new(const ms_ball *ball, const attempt *a)
+{
+    for (size_t b = 0; b < a->count; b++) {
+        const ms_ball *other = &a->ball[b];
+        if (fabs(other->centre[0] - ball->centre[0]) < SAME && fabs(other->centre[1] - ball->centre[1]) < SAME &&
+            fabs(other->centre[2] - ball->centre[2]) < SAME && fabs(other->radius - ball->radius) < SAME) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Centres of clusters as spheres, those that coincide as one. Means of radii are no smaller than the least
+ * but for rounding. */
+static void make_spheres(attempt *a, const double (*centre)[4], size_t n, const fcm *f)
+{
+    const double least = fmax(0, f->run->stop.radius / f->run->target->grid.h);
+    a->count = 0;
+    for (size_t i = 0; i < n; i++) {
+        ms_ball ball = {.radius = fmax(centre[i][3] / option(f, SCALE_RADIUS), least)};
+        memcpy(ball.centre, centre[i], sizeof ball.centre);
+        if (option(f, RADIUS) == RADIUS_NODE) {
+            ball.radius = fmax(ball.radius, free_radius(f, ball.centre));
+        }
+        if (is_new(&ball, a)) {
+            a->ball[a->count++] = ball;
+        }
+    }
+}
+
+/* Scores the spheres, and says why they are enough; MS_STOP_NOT if they are not. */
+static ms_status judge(attempt *a, const fcm *f, ms_error *err)
+{
+    const ms_target *target = f->run->target;
+    ms_raster raster;
+    ms_tally sum = {0};
+    ms_status status = ms_raster_alloc(&raster, &target->grid, target->rule, err);
+    if (status == MS_OK) {
+        status = ms_raster_add(&raster, a->ball, a->count, err);
+    }
+    for (size_t b = 0; status == MS_OK && b < raster.n_balls; b++) {
+        ms_tally_add(&sum, &raster.tally[b]);
+    }
+    if (status == MS_OK) {
+        const ms_score score = ms_score_of(&sum, target->voxels);
+        a->dice = score.dice;
+        a->reason = ms_stop_reached(&f->run->stop, target, &sum, a->count);
+        if (a->reason == MS_STOP_NOT && f->off_volume > 0 && score.off_volume >= f->off_volume) {
+            a->reason = MS_STOP_OFF_VOLUME;
+        }
+        if (f->run->progress) {
+            f->run->progress(f->run->progress_context, a->count, a->dice);
+        }
+    }
+    ms_raster_free(&raster);
+    return status;
+}
+
+/* Enough spheres are better than too few, then the lower mismatch. */
+static int is_better(const attempt *a, const attempt *b)
+{
+    if ((a->reason == MS_STOP_NOT) != (b->reason == MS_STOP_NOT)) {
+        return a->reason != MS_STOP_NOT;
+    }
+    return a->dice < b->dice;
+}
+
+/* What a number of clusters is worked out in. */
+typedef struct trials {
+    size_t n;
+    double (*first)[4];  /* centres at the first m */
+    double (*centre)[4]; /* at this m */
+    attempt best, next;
+} trials;
+
+static void close_trials(trials *t)
+{
+    free(t->first);
+    free(t->centre);
+    free(t->best.ball);
+    free(t->next.ball);
+}
+
+static ms_status open_trials(trials *t, size_t n, ms_error *err)
+{
+    *t = (trials){.n = n};
+    t->first = calloc(n + 1, sizeof *t->first);
+    t->centre = calloc(n + 1, sizeof *t->centre);
+    t->best.ball = calloc(n + 1, sizeof *t->best.ball);
+    t->next.ball = calloc(n + 1, sizeof *t->next.ball);
+    if (!t->first || !t->centre || !t->best.ball || !t->next.ball) {
+        close_trials(t);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu clusters", n);
+    }
+    return MS_OK;
+}
+
+/* The clusters at one value of m: from a start, or from the centres at the last one. */
+static ms_status cluster(trials *t, double m, int is_first, const fcm *f, ms_error *err)
+{
+    const ms_cluster_rule rule = {.fuzzifier = m, .tolerance = TOLERANCE, .iterations = ITERATIONS};
+    if (!is_first) {
+        return ms_cluster_run(NULL, t->centre, t->n, f->cluster, &rule, err);
+    }
+    const ms_status status = start(t->first, t->n, &rule, f, err);
+    memcpy(t->centre, t->first, t->n * sizeof *t->centre);
+    return status;
+}
+
+/* One value of m after the other; the best spheres are kept. */
+static ms_status sweep(trials *t, const fcm *f, ms_error *err)
+{
+    const double given = option(f, CLUSTERING) == CLUSTERING_KMEANS ? 1 : option(f, FUZZIFIER);
+    const size_t values = given > 0 ? 1 : sizeof SWEEP / sizeof *SWEEP;
+    ms_status status = MS_OK;
+    for (size_t s = 0; status == MS_OK && s < values; s++) {
+        status = cluster(t, given > 0 ? given : SWEEP[s], s == 0, f, err);
+        if (status == MS_OK) {
+            make_spheres(&t->next, (const double (*)[4])t->centre, t->n, f);
+            status = judge(&t->next, f, err);
+        }
+        if (status == MS_OK && (s == 0 || is_better(&t->next, &t->best))) {
+            const attempt swap = t->best;
+            t->best = t->next;
+            t->next = swap;
+        }
+    }
+    return status;
+}
+
+static ms_status add_sphere(ms_clump *clump, const ms_ball *ball, const ms_run *run, ms_error *err)
+{
+    ms_sphere sphere;
+    ms_target_from_voxels(sphere.centre, &sphere.radius, &run->target->grid, ball->centre, ball->radius);
+    sphere.radius = fmax(sphere.radius, run->stop.radius);
+    return ms_clump_add(clump, &sphere, err);
+}
+
+/* The spheres by the voxels of the shape that each adds, those that add none as they come. */
+static ms_status order(ms_clump *clump, const attempt *a, const ms_run *run, ms_error *err)
+{
+    ms_cover *cover = NULL;
+    uint8_t *taken = calloc(a->count + 1, sizeof *taken);
+    size_t which;
+    ms_status status = taken ? ms_cover_build(&cover, &run->target->grid, a->ball, a->count, 0, err)
+                             : ms_fail(err, MS_ERR_NOMEM, "no memory to order %zu spheres", a->count);
+    while (status == MS_OK && ms_cover_next(&which, cover) > 0) {
+        taken[which] = 1;
+        status = add_sphere(clump, &a->ball[which], run, err);
+    }
+    for (size_t b = 0; status == MS_OK && b < a->count; b++) {
+        if (!taken[b]) {
+            status = add_sphere(clump, &a->ball[b], run, err);
+        }
+    }
+    ms_cover_free(cover);
+    free(taken);
+    return status;
+}
+
+/* Where more clusters start from. */
+static void remember(fcm *f, trials *t)
+{
+    double (*swap)[4] = f->few;
+    f->few = t->first;
+    f->n_few = t->n;
+    t->first = swap;
+}
+
+/* The clump of n spheres; ms_solve. */
+static ms_status solve(void *context, ms_clump *clump, ms_stop_reason *reason, size_t n, ms_error *err)
+{
+    fcm *f = context;
+    trials t;
+    ms_status status = open_trials(&t, n < f->filled ? n : f->filled, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    if (t.n > 0) {
+        status = sweep(&t, f, err);
+    }
+    if (status == MS_OK) {
+        status = order(clump, &t.best, f->run, err);
+    }
+    *reason = t.best.reason;
+    if (*reason == MS_STOP_NOT) {
+        remember(f, &t);
+        if (t.n < n) {
+            *reason = f->dropped ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
+        }
+    }
+    close_trials(&t);
+    return status;
+}
+
+/* A number is solved for; for a measure it is sought. */
+static ms_status make_clump(ms_clump *clump, ms_stop_reason *reason, fcm *f, ms_error *err)
+{
+    const ms_stop *stop = &f->run->stop;
+    if (f->off_volume == 0 && stop->spheres == 0 && !ms_stop_has_measure(stop)) {
+        f->off_volume = DEFAULT_OFF_VOLUME;
+    }
+    if (ms_stop_has_measure(stop) || f->off_volume > 0) {
+        const size_t most = stop->spheres > 0 ? stop->spheres : MS_CLUMP_MAX_SPHERES;
+        return ms_search(clump, reason, most, solve, f, err);
+    }
+    const ms_status status = solve(f, clump, reason, stop->spheres, err);
+    if (*reason == MS_STOP_NOT) {
+        *reason = MS_STOP_EXHAUSTED; /* some clusters coincide */
+    }
+    return status;
+}
+
+static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
+{
+    fcm f = {.run = run, .off_volume = run->settings->value[OFF_VOLUME]};
+    const double m = option(&f, FUZZIFIER);
+    if (m != 0 && m < LEAST_FUZZIFIER) {
+        return ms_fail(err, MS_ERR_ARG, "fuzzifier=%g is too small; give %g or more, or clustering=kmeans", m,
+                       LEAST_FUZZIFIER);
+    }
+    ms_status status = fill(&f, err);
+    if (status == MS_OK) {
+        status = make_clump(clump, reason, &f, err);
+    }
+    free(f.few);
+    ms_cluster_free(f.cluster);
+    ms_nodes_free(&f.nodes);
+    return status;
+}
+
+const ms_generator ms_generator_fcm = {
+    .name = "fcm",
+    .summary = "random spheres that touch the surface, put together by fuzzy c-means",
+    .source = "F. Westbrink, A. Schwung, COMPLAS XIV (2017)",
+    .nested = 0,
+    .options = OPTIONS,
+    .generate = generate,
+};

@@ -1,0 +1,165 @@
+#include "ms_fill.h"
+
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Centres drawn at a time; their radii are found in parallel. */
+enum { BATCH = 8192 };
+
+typedef struct filling {
+    const ms_target *target;
+    const ms_nodes *nodes;
+    double lo[3], hi[3]; /* box of the centres, in voxels */
+    uint8_t *covered;    /* one per node */
+    size_t n_covered;
+    ms_ball *ball; /* as many as `room` */
+    size_t count, room;
+    gsl_rng *random;
+} filling;
+
+/* The box of the nodes; of a volume that of its voxels. */
+static void find_box(filling *f)
+{
+    for (int a = 0; a < 3; a++) {
+        f->lo[a] = HUGE_VAL;
+        f->hi[a] = -HUGE_VAL;
+        for (size_t n = 0; n < f->nodes->count; n++) {
+            f->lo[a] = fmin(f->lo[a], f->nodes->at[n][a]);
+            f->hi[a] = fmax(f->hi[a], f->nodes->at[n][a]);
+        }
+        f->lo[a] -= f->target->mesh ? 0 : 0.5;
+        f->hi[a] += f->target->mesh ? 0 : 0.5;
+    }
+}
+
+static ms_status open_filling(filling *f, const ms_target *target, const ms_nodes *nodes, uint64_t seed,
+                              ms_error *err)
+{
+    *f = (filling){.target = target, .nodes = nodes};
+    find_box(f);
+    f->covered = calloc(f->nodes->count, sizeof *f->covered);
+    f->random = gsl_rng_alloc(gsl_rng_mt19937);
+    if (!f->covered || !f->random) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to fill a shape of %zu nodes", f->nodes->count);
+    }
+    gsl_rng_set(f->random, (unsigned long)seed);
+    return MS_OK;
+}
+
+static void close_filling(filling *f)
+{
+    free(f->covered);
+    if (f->random) {
+        gsl_rng_free(f->random);
+    }
+}
+
+/* Draws a centre; 0 if it is outside. */
+static int draw(double centre[3], filling *f)
+{
+    const ms_grid *grid = &f->target->grid;
+    int voxel[3];
+    for (int a = 0; a < 3; a++) {
+        centre[a] = f->lo[a] + (f->hi[a] - f->lo[a]) * gsl_rng_uniform(f->random);
+    }
+    for (int a = 0; a < 3; a++) {
+        voxel[a] = (int)rint(centre[a]);
+        if (voxel[a] < 0 || voxel[a] >= grid->n[a]) {
+            return 0;
+        }
+        centre[a] = f->target->mesh ? centre[a] : voxel[a];
+    }
+    return grid->inside[ms_grid_index(grid, voxel[0], voxel[1], voxel[2])];
+}
+
+double ms_fill_radius(size_t *touched, const double centre[3], const ms_target *target, const ms_nodes *nodes,
+                      const ms_fill_rule *rule)
+{
+    double distance;
+    const size_t nearest = ms_nodes_nearest(&distance, nodes, centre, rule->norm);
+    if (touched) {
+        *touched = nearest;
+    }
+    return distance + rule->offset + (target->mesh ? 0 : 0.5);
+}
+
+static ms_status make_room(filling *f, ms_error *err)
+{
+    if (f->room - f->count < BATCH) {
+        const size_t room = f->room + f->room / 2 + 2 * BATCH;
+        ms_ball *grown = realloc(f->ball, room * sizeof *grown);
+        if (!grown) {
+            return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres that fill the shape", room);
+        }
+        f->ball = grown;
+        f->room = room;
+    }
+    return MS_OK;
+}
+
+static int is_full(const filling *f, const ms_fill_rule *rule)
+{
+    return f->count >= rule->least && (double)f->n_covered >= rule->nodes_covered * (double)f->nodes->count;
+}
+
+/* Keeps the spheres of a batch, one after the other, until the shape is full. */
+static void keep(filling *f, size_t drawn, const size_t *touched, const ms_fill_rule *rule)
+{
+    for (size_t b = 0; b < drawn && !is_full(f, rule); b++) {
+        f->n_covered += !f->covered[touched[b]];
+        f->covered[touched[b]] = 1;
+        f->count++;
+    }
+}
+
+static void draw_batch(filling *f, size_t tries, const ms_fill_rule *rule)
+{
+    size_t drawn = 0, touched[BATCH];
+    ms_ball *ball = f->ball + f->count;
+    for (size_t t = 0; t < tries; t++) {
+        drawn += draw(ball[drawn].centre, f) != 0;
+    }
+#pragma omp parallel for schedule(dynamic, 64)
+    for (size_t b = 0; b < drawn; b++) {
+        ball[b].radius = ms_fill_radius(&touched[b], ball[b].centre, f->target, f->nodes, rule);
+    }
+    keep(f, drawn, touched, rule);
+}
+
+static ms_status out_of_tries(const filling *f, const ms_fill_rule *rule, ms_error *err)
+{
+    const double share = 100 * (double)f->n_covered / (double)f->nodes->count;
+    return ms_fail(err, MS_ERR_LIMIT, "%zu random centres gave %zu spheres that touch %.1f %% of %zu nodes, not %g %%; "
+                   "lower nodes-covered, raise tries, or coarsen the mesh", rule->tries, f->count, share,
+                   f->nodes->count, 100 * rule->nodes_covered);
+}
+
+ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,
+                  const ms_fill_rule *rule, ms_error *err)
+{
+    filling f;
+    *ball = NULL;
+    *count = 0;
+    ms_status status = open_filling(&f, target, nodes, rule->seed, err);
+    for (size_t left = rule->tries; status == MS_OK && !is_full(&f, rule);) {
+        const size_t tries = left < BATCH ? left : BATCH;
+        left -= tries;
+        if (tries == 0) {
+            status = out_of_tries(&f, rule, err);
+        } else if ((status = make_room(&f, err)) == MS_OK) {
+            draw_batch(&f, tries, rule);
+            if (rule->progress) {
+                rule->progress(rule->progress_context, f.count, (double)NAN);
+            }
+        }
+    }
+    if (status == MS_OK) {
+        *ball = f.ball;
+        *count = f.count;
+    } else {
+        free(f.ball);
+    }
+    close_filling(&f);
+    return status;
+}
