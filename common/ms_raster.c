@@ -371,3 +371,19 @@ ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, m
     free(list.ball);
     return status;
 }
+
+ms_status ms_raster_union(ms_tally *sum, const ms_grid *grid, ms_voxel_rule rule, const ms_ball *balls, size_t count,
+                          ms_error *err)
+{
+    ms_raster raster;
+    *sum = (ms_tally){0};
+    ms_status status = ms_raster_alloc(&raster, grid, rule, err);
+    if (status == MS_OK) {
+        status = ms_raster_add(&raster, balls, count, err);
+    }
+    for (size_t b = 0; status == MS_OK && b < raster.n_balls; b++) {
+        ms_tally_add(sum, &raster.tally[b]);
+    }
+    ms_raster_free(&raster);
+    return status;
+}

@@ -62,6 +62,10 @@ ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, m
 
 void ms_raster_free(ms_raster *raster);
 
+/** The sums over the union of spheres. @return, cost: as ms_raster_alloc and ms_raster_add */
+ms_status ms_raster_union(ms_tally *sum, const ms_grid *grid, ms_voxel_rule rule, const ms_ball *balls, size_t count,
+                          ms_error *err);
+
 MS_C_END
 
 #endif

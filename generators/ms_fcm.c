@@ -229,15 +229,8 @@ static void make_spheres(attempt *a, const double (*centre)[4], size_t n, const 
 static ms_status judge(attempt *a, const fcm *f, ms_error *err)
 {
     const ms_target *target = f->run->target;
-    ms_raster raster;
-    ms_tally sum = {0};
-    ms_status status = ms_raster_alloc(&raster, &target->grid, target->rule, err);
-    if (status == MS_OK) {
-        status = ms_raster_add(&raster, a->ball, a->count, err);
-    }
-    for (size_t b = 0; status == MS_OK && b < raster.n_balls; b++) {
-        ms_tally_add(&sum, &raster.tally[b]);
-    }
+    ms_tally sum;
+    const ms_status status = ms_raster_union(&sum, &target->grid, target->rule, a->ball, a->count, err);
     if (status == MS_OK) {
         const ms_score score = ms_score_of(&sum, target->voxels);
         a->dice = score.dice;
@@ -249,7 +242,6 @@ static ms_status judge(attempt *a, const fcm *f, ms_error *err)
             f->run->progress(f->run->progress_context, a->count, a->dice);
         }
     }
-    ms_raster_free(&raster);
     return status;
 }
 

@@ -60,29 +60,28 @@ static ms_status to_clump(ms_clump *clump, const ms_ball *ball, size_t count, co
 /* Why the spheres are enough; MS_STOP_NOT if more are needed. */
 static ms_status judge(ms_stop_reason *reason, const ms_clump *clump, size_t asked, const ms_run *run, ms_error *err)
 {
-    ms_raster raster;
-    ms_tally sum = {0};
-    ms_status status = ms_raster_alloc(&raster, &run->target->grid, run->target->rule, err);
-    for (size_t s = 0; status == MS_OK && s < clump->n_spheres; s++) {
-        ms_ball ball;
-        ms_target_to_voxels(ball.centre, &ball.radius, &run->target->grid, clump->sphere[s].centre,
+    const ms_target *target = run->target;
+    const size_t n = clump->n_spheres;
+    ms_tally sum;
+    ms_ball *ball = malloc((n + 1) * sizeof *ball);
+    for (size_t s = 0; ball && s < n; s++) {
+        ms_target_to_voxels(ball[s].centre, &ball[s].radius, &target->grid, clump->sphere[s].centre,
                             clump->sphere[s].radius);
-        status = ms_raster_add(&raster, &ball, 1, err);
     }
-    for (size_t b = 0; status == MS_OK && b < raster.n_balls; b++) {
-        ms_tally_add(&sum, &raster.tally[b]);
+    const ms_status status = ball ? ms_raster_union(&sum, &target->grid, target->rule, ball, n, err)
+                                  : ms_fail(err, MS_ERR_NOMEM, "no memory to score %zu spheres", n);
+    free(ball);
+    if (status != MS_OK) {
+        return status;
     }
-    if (status == MS_OK) {
-        *reason = clump->n_spheres > 0 ? ms_stop_reached(&run->stop, run->target, &sum, clump->n_spheres) : MS_STOP_NOT;
-        if (*reason == MS_STOP_NOT && clump->n_spheres < asked) {
-            *reason = run->stop.radius > 0 ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
-        }
-        if (run->progress && clump->n_spheres > 0) {
-            run->progress(run->progress_context, clump->n_spheres, ms_score_of(&sum, run->target->voxels).dice);
-        }
+    *reason = n > 0 ? ms_stop_reached(&run->stop, target, &sum, n) : MS_STOP_NOT;
+    if (*reason == MS_STOP_NOT && n < asked) {
+        *reason = run->stop.radius > 0 ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
     }
-    ms_raster_free(&raster);
-    return status;
+    if (run->progress && n > 0) {
+        run->progress(run->progress_context, n, ms_score_of(&sum, target->voxels).dice);
+    }
+    return MS_OK;
 }
 
 static variational_settings read_settings(const ms_run *run)

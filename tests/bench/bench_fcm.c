@@ -5,23 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench_support.h"
 #include "ms_cluster.h"
 #include "ms_fill.h"
 #include "ms_generator.h"
 #include "ms_mss.h"
-#include "ms_shape.h"
 
 enum { MOST = 100 };
-
-static ms_status make_grain(ms_mesh *mesh, ms_error *err)
-{
-    double value[MS_SHAPE_MAX_PARAMETERS];
-    const ms_shape_kind *kind = ms_shape_find("grain", err);
-    for (size_t p = 0; kind && kind->parameters[p].name; p++) {
-        value[p] = kind->parameters[p].fallback;
-    }
-    return kind ? ms_shape_make(mesh, kind, value, err) : MS_ERR_ARG;
-}
 
 static ms_status time_mss(double *seconds, const ms_target *target, ms_error *err)
 {

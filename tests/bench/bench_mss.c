@@ -6,25 +6,15 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "bench_support.h"
 #include "ms_generator.h"
 #include "ms_mss.h"
-#include "ms_shape.h"
 
 static double peak_bytes(void)
 {
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     return 1024.0 * (double)usage.ru_maxrss; /* Linux counts kibibytes */
-}
-
-static ms_status make_grain(ms_mesh *mesh, ms_error *err)
-{
-    double value[MS_SHAPE_MAX_PARAMETERS];
-    const ms_shape_kind *kind = ms_shape_find("grain", err);
-    for (size_t p = 0; kind && kind->parameters[p].name; p++) {
-        value[p] = kind->parameters[p].fallback;
-    }
-    return kind ? ms_shape_make(mesh, kind, value, err) : MS_ERR_ARG;
 }
 
 /* The smallest side of the grain is about 1.6. */

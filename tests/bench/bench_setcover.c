@@ -3,19 +3,9 @@
 #include <omp.h>
 #include <stdio.h>
 
+#include "bench_support.h"
 #include "ms_generator.h"
 #include "ms_setcover.h"
-#include "ms_shape.h"
-
-static ms_status make_grain(ms_mesh *mesh, ms_error *err)
-{
-    double value[MS_SHAPE_MAX_PARAMETERS];
-    const ms_shape_kind *kind = ms_shape_find("grain", err);
-    for (size_t p = 0; kind && kind->parameters[p].name; p++) {
-        value[p] = kind->parameters[p].fallback;
-    }
-    return kind ? ms_shape_make(mesh, kind, value, err) : MS_ERR_ARG;
-}
 
 static ms_status run_setcover(const ms_target *target, double coverage, const char *candidates, ms_error *err)
 {

@@ -4,25 +4,15 @@
 #include <omp.h>
 #include <stdio.h>
 
+#include "bench_support.h"
 #include "ms_generator.h"
 #include "ms_metrics.h"
 #include "ms_mss.h"
 #include "ms_setcover.h"
-#include "ms_shape.h"
 #include "ms_variational.h"
 #include "ms_vector.h"
 
 enum { POINTS = 1000 };
-
-static ms_status make_grain(ms_mesh *mesh, ms_error *err)
-{
-    double value[MS_SHAPE_MAX_PARAMETERS];
-    const ms_shape_kind *kind = ms_shape_find("grain", err);
-    for (size_t p = 0; kind && kind->parameters[p].name; p++) {
-        value[p] = kind->parameters[p].fallback;
-    }
-    return kind ? ms_shape_make(mesh, kind, value, err) : MS_ERR_ARG;
-}
 
 static int is_exposed(const double point[3], const ms_clump *clump, size_t self)
 {
