@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ms_drop.h"
 #include "ms_overlap.h"
 #include "ms_pattern.h"
 #include "ms_variational_start.h"
@@ -35,6 +36,9 @@ static const double SHARP = 0.03;
 
 /* Of the fits, and of the search within bounds. */
 enum { START_STEPS = 40, DROP_STEPS = 20, LONG_STEPS = 100, LAST_STEPS = 60, SEARCH_ROUNDS = 20 };
+
+/* Of idle spheres. */
+enum { REPAIRS = 3 };
 
 /* A sphere whose centre is nearer to a plane of symmetry, as part of its radius, moves onto it. */
 static const double SNAP = 0.3;
@@ -161,127 +165,14 @@ static ms_status settle(solver *s, ms_error *err)
     return pattern_search(s->ball, s->count, &s->run->target->grid, &s->fit, SEARCH_ROUNDS, err);
 }
 
-static int do_overlap(const ms_ball *a, const ms_ball *b)
-{
-    const double reach = a->radius + b->radius;
-    return ms_squared_distance(a->centre, b->centre) < reach * reach;
-}
-
-/* A sphere in voxels of the coarse grid. */
-static ms_ball to_coarse(ms_ball ball, const solver *s)
-{
-    for (int a = 0; a < 3; a++) {
-        ball.centre[a] /= s->step;
-    }
-    ball.radius /= s->step;
-    return ball;
-}
-
 /* All spheres, images too, in voxels of the coarse grid; returns how many. */
 static size_t all_to_coarse(solver *s)
 {
     const size_t all = expand(s);
     for (size_t b = 0; b < all; b++) {
-        s->all[b] = to_coarse(s->all[b], s);
+        s->all[b] = start_to_coarse(&s->all[b], s->step);
     }
     return all;
-}
-
-/* The same of a sphere and its images together, for each of them: as they overlap, one by one. */
-static int64_t loss_of_images(overlap *o, const ms_ball *ball, const solver *s)
-{
-    ms_ball image[8];
-    const int64_t before = o->mismatch;
-    const size_t images = mirrors_expand(image, ball, 1, &s->settings->mirrors);
-    for (size_t i = 0; i < images; i++) {
-        image[i] = to_coarse(image[i], s);
-        overlap_remove(o, &image[i]);
-    }
-    const int64_t loss = o->mismatch - before;
-    for (size_t i = 0; i < images; i++) {
-        overlap_add(o, &image[i]);
-    }
-    return loss / (int64_t)images;
-}
-
-/* What the mismatch would grow by without each sphere, on the coarse grid. */
-static ms_status find_losses(int64_t *loss, solver *s, ms_error *err)
-{
-    overlap o;
-    const size_t all = all_to_coarse(s);
-    const ms_status status = overlap_open(&o, &s->coarse, s->all, all, err);
-    const size_t alone = status == MS_OK && all == s->count ? s->count : 0;
-    const size_t paired = status == MS_OK && all > s->count ? s->count : 0;
-#pragma omp parallel for schedule(dynamic, 4)
-    for (size_t b = 0; b < alone; b++) {
-        loss[b] = overlap_loss(&o, &s->all[b]);
-    }
-    for (size_t b = 0; b < paired; b++) {
-        loss[b] = loss_of_images(&o, &s->ball[b], s);
-    }
-    overlap_close(&o);
-    return status;
-}
-
-/* Moves the sphere that is nearest to a plane of symmetry onto it, which leaves half of its images. */
-static void merge_nearest(solver *s)
-{
-    size_t nearest = 0;
-    int axis = -1;
-    double least = HUGE_VAL, part;
-    for (size_t b = 0; b < s->count; b++) {
-        const int across = mirrors_nearest(&part, &s->settings->mirrors, &s->ball[b]);
-        if (part < least) {
-            least = part;
-            axis = across;
-            nearest = b;
-        }
-    }
-    if (axis >= 0) {
-        s->ball[nearest].centre[axis] = s->settings->mirrors.at[axis];
-    }
-}
-
-/* The cheapest sphere that overlaps none of those dropped already, as their losses have changed, and has no more than
- * that many images. */
-static size_t cheapest(const solver *s, const int64_t *loss, size_t images, const ms_ball *dropped, size_t n_dropped)
-{
-    size_t best = SIZE_MAX;
-    for (size_t b = 0; b < s->count; b++) {
-        int passed = (best != SIZE_MAX && loss[b] >= loss[best]) ||
-                     mirrors_images(&s->settings->mirrors, &s->ball[b]) > images;
-        for (size_t d = 0; d < n_dropped && !passed; d++) {
-            passed = do_overlap(&s->ball[b], &dropped[d]);
-        }
-        if (!passed) {
-            best = b;
-        }
-    }
-    return best;
-}
-
-/* Drops up to `most` spheres, images among them, the least useful ones: at least one, or one that becomes its own
- * image where none has so few. */
-static ms_status drop(solver *s, size_t most, ms_error *err)
-{
-    ms_ball *dropped = malloc((most + 1) * sizeof *dropped);
-    int64_t *loss = malloc((s->count + 1) * sizeof *loss);
-    size_t n_dropped = 0, gone = 0, b;
-    ms_status status = dropped && loss
-                           ? find_losses(loss, s, err)
-                           : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", s->count);
-    while (status == MS_OK && gone < most && (b = cheapest(s, loss, most - gone, dropped, n_dropped)) != SIZE_MAX) {
-        dropped[n_dropped++] = s->ball[b];
-        gone += mirrors_images(&s->settings->mirrors, &s->ball[b]);
-        s->ball[b] = s->ball[--s->count];
-        loss[b] = loss[s->count];
-    }
-    if (status == MS_OK && gone == 0) {
-        merge_nearest(s);
-    }
-    free(dropped);
-    free(loss);
-    return status;
 }
 
 static ms_status prune(solver *s, ms_error *err)
@@ -290,7 +181,8 @@ static ms_status prune(solver *s, ms_error *err)
     const size_t surplus = count > s->wanted ? count - s->wanted : 0, most = (size_t)ceil(DROP * (double)surplus);
     ms_status status = MS_OK;
     while (status == MS_OK && count > s->wanted) {
-        status = drop(s, count - s->wanted < most ? count - s->wanted : most, err);
+        const size_t gone = count - s->wanted < most ? count - s->wanted : most;
+        status = drop_cheapest(s->ball, &s->count, gone, &s->coarse, s->step, &s->settings->mirrors, err);
         if (status == MS_OK) {
             status = fit(s, DROP_STEPS, 0.5, 0.3, err);
         }
@@ -468,6 +360,30 @@ static ms_status round_trip(solver *s, double part, ms_error *err)
     return status;
 }
 
+/* Puts idle spheres where the union leaves most, and drops those that are idle there, too. */
+static ms_status repair(solver *s, ms_error *err)
+{
+    ms_status status = drop_idle(s->ball, &s->count, &s->run->target->grid, &s->settings->mirrors, err);
+    for (int round = 0; round < REPAIRS && status == MS_OK && total(s) < s->wanted; round++) {
+        const size_t before = s->count;
+        status = add(s, s->wanted - total(s), err);
+        while (s->count > before && total(s) > s->wanted) {
+            s->count--; /* a set of images too large */
+        }
+        if (status != MS_OK || s->count == before) {
+            break;
+        }
+        status = fit(s, LAST_STEPS, 0.5, 0.05, err);
+        if (status == MS_OK) {
+            status = settle(s, err);
+        }
+        if (status == MS_OK) {
+            status = drop_idle(s->ball, &s->count, &s->run->target->grid, &s->settings->mirrors, err);
+        }
+    }
+    return status;
+}
+
 /* All stages. */
 static ms_status solve(solver *s, ms_error *err)
 {
@@ -493,7 +409,7 @@ static ms_status solve(solver *s, ms_error *err)
     for (int round = 0; round < s->settings->rounds && status == MS_OK && s->count > 0; round++) {
         status = round_trip(s, ADD[round % ADDS], err);
     }
-    return status;
+    return status == MS_OK ? repair(s, err) : status;
 }
 
 ms_status variational_solve(ms_ball **ball, size_t *count, const ms_run *run, const variational_settings *settings,

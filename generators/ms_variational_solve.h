@@ -17,8 +17,8 @@ typedef struct variational_settings {
  * Places up to n spheres so that |S xor U| is least.
  *
  * @param[out] ball  in voxels of the target's grid, mirror images among them; the caller frees it
- * @param[out] count n; fewer where no other inscribed sphere covers anything, or where n cannot be made of
- *                   whole sets of mirror images; spheres that their bounds leave nothing of have a radius of 0
+ * @param[out] count n; fewer where no other inscribed sphere covers anything, where spheres came to be of no use,
+ *                   or where n cannot be made of whole sets of mirror images
  * @return MS_OK; MS_ERR_NOMEM; MS_ERR_LIMIT
  */
 ms_status variational_solve(ms_ball **ball, size_t *count, const ms_run *run, const variational_settings *settings,

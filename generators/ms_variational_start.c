@@ -28,6 +28,12 @@ ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_e
     return status;
 }
 
+ms_ball start_to_coarse(const ms_ball *ball, int step)
+{
+    const double *c = ball->centre;
+    return (ms_ball){.centre = {c[0] / step, c[1] / step, c[2] / step}, .radius = ball->radius / step};
+}
+
 /* Does no neighbour's inscribed sphere contain that of this voxel, but for some slack? */
 static int is_ridge(const ms_target *target, const float *e, const ms_grid *coarse, int step, int i, int j, int k)
 {

@@ -12,6 +12,9 @@
  */
 ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_error *err);
 
+/** A sphere in voxels of the copy. */
+ms_ball start_to_coarse(const ms_ball *ball, int step);
+
 /**
  * Covers voxels of a coarse copy greedily (ms_cover) by the inscribed spheres about the shape's ridge: the
  * coarse voxels whose sphere no neighbour's sphere contains.

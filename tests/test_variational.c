@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ms_drop.h"
 #include "ms_exposed.h"
 #include "ms_mss.h"
 #include "ms_overlap.h"
@@ -138,6 +139,77 @@ static void losses_are_those_of_brute_force(void **state)
         overlap_close(&o);
     }
     ms_grid_free(&grid);
+}
+
+/* What is left is no worse, and all of it is needed; the cheapest sphere goes first. */
+static void spheres_are_dropped_by_their_loss(void **state)
+{
+    (void)state;
+    static const mirrors NONE = {{0}};
+    ms_grid grid;
+    ms_error err;
+    const int n[3] = {13, 11, 9};
+    const double origin[3] = {0, 0, 0};
+    assert_int_equal(ms_grid_alloc(&grid, n, 1, origin, &err), MS_OK);
+    for (int t = 0; t < 100; t++) {
+        ms_ball ball[8], few[8];
+        size_t count = 8;
+        for (size_t v = 0; v < ms_grid_voxels(&grid); v++) {
+            grid.inside[v] = rand() % 3 != 0;
+        }
+        for (int b = 0; b < 8; b++) {
+            ball[b] = (ms_ball){{uniform(0, 12), uniform(0, 10), uniform(0, 8)}, uniform(0, 5)};
+        }
+        const int64_t before = brute_mismatch(&grid, ball, 8);
+        assert_int_equal(drop_idle(ball, &count, &grid, &NONE, &err), MS_OK);
+        const int64_t after = brute_mismatch(&grid, ball, count);
+        assert_true(after <= before);
+        int64_t least = INT64_MAX;
+        for (size_t gone = 0; gone < count; gone++) {
+            size_t kept = 0;
+            for (size_t b = 0; b < count; b++) {
+                if (b != gone) {
+                    few[kept++] = ball[b];
+                }
+            }
+            const int64_t without = brute_mismatch(&grid, few, kept);
+            assert_true(without > after);
+            least = without < least ? without : least;
+        }
+        if (count > 0) {
+            assert_int_equal(drop_cheapest(ball, &count, 1, &grid, 1, &NONE, &err), MS_OK);
+            assert_int_equal(brute_mismatch(&grid, ball, count), least);
+        }
+    }
+    ms_grid_free(&grid);
+}
+
+/* Two balls and a neck take few spheres; more would be of no use. */
+static void idle_spheres_are_not_given(void **state)
+{
+    (void)state;
+    ms_mesh mesh;
+    ms_target target;
+    make_shape(&mesh, "dumbbell", "");
+    make_target(&target, &mesh, 30, MS_VOXEL_CENTRE);
+    ms_clump clump = generate(&target, 40, NULL);
+    const double dice = dice_of(&target, &clump);
+    assert_true(clump.n_spheres < 40);
+    assert_true(dice < 0.003);
+    for (size_t gone = 0; gone < clump.n_spheres; gone++) {
+        ms_clump fewer = {0};
+        ms_error err;
+        for (size_t s = 0; s < clump.n_spheres; s++) {
+            if (s != gone) {
+                assert_int_equal(ms_clump_add(&fewer, &clump.sphere[s], &err), MS_OK);
+            }
+        }
+        assert_true(dice_of(&target, &fewer) > dice);
+        ms_clump_free(&fewer);
+    }
+    ms_clump_free(&clump);
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
 }
 
 /* The mismatch falls along the step of a fit: finite differences of the voxels' count. */
@@ -423,7 +495,8 @@ int main(void)
         cmocka_unit_test(unions_are_recovered),     cmocka_unit_test(protrusion_is_kept),
         cmocka_unit_test(equal_radii_are_equal),    cmocka_unit_test(effort_does_not_hurt),
         cmocka_unit_test(refining_improves),        cmocka_unit_test(symmetry_is_kept),
-        cmocka_unit_test(planes_are_not_crossed),
+        cmocka_unit_test(planes_are_not_crossed),   cmocka_unit_test(spheres_are_dropped_by_their_loss),
+        cmocka_unit_test(idle_spheres_are_not_given),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,0 +1,152 @@
+#include "ms_drop.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "ms_variational_start.h"
+#include "ms_vector.h"
+
+/* Counts all spheres and their images on the grid; `all` is how many there are. */
+static ms_status count_all(overlap *out, size_t *all, const ms_ball *ball, size_t count, const ms_grid *grid, int step,
+                           const mirrors *m, ms_error *err)
+{
+    ms_ball *image = malloc((8 * count + 1) * sizeof *image);
+    if (!image) {
+        *out = (overlap){0};
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", count);
+    }
+    *all = mirrors_expand(image, ball, count, m);
+    for (size_t i = 0; i < *all; i++) {
+        image[i] = start_to_coarse(&image[i], step);
+    }
+    const ms_status status = overlap_open(out, grid, image, *all, err);
+    free(image);
+    return status;
+}
+
+/* Takes away a sphere and its images; returns by how much the mismatch grows. */
+static int64_t take(overlap *o, ms_ball image[8], size_t *images, const ms_ball *ball, int step, const mirrors *m)
+{
+    const int64_t before = o->mismatch;
+    *images = mirrors_expand(image, ball, 1, m);
+    for (size_t i = 0; i < *images; i++) {
+        image[i] = start_to_coarse(&image[i], step);
+        overlap_remove(o, &image[i]);
+    }
+    return o->mismatch - before;
+}
+
+static void put_back(overlap *o, const ms_ball image[8], size_t images)
+{
+    for (size_t i = 0; i < images; i++) {
+        overlap_add(o, &image[i]);
+    }
+}
+
+/* What the mismatch would grow by without each sphere; of images together, for each of them: as they overlap. */
+static ms_status find_losses(int64_t *loss, const ms_ball *ball, size_t count, const ms_grid *grid, int step,
+                             const mirrors *m, ms_error *err)
+{
+    overlap o;
+    size_t all = 0;
+    const ms_status status = count_all(&o, &all, ball, count, grid, step, m, err);
+    const size_t alone = status == MS_OK && all == count ? count : 0;
+    const size_t paired = status == MS_OK && all > count ? count : 0;
+#pragma omp parallel for schedule(dynamic, 4)
+    for (size_t b = 0; b < alone; b++) {
+        const ms_ball coarse = start_to_coarse(&ball[b], step);
+        loss[b] = overlap_loss(&o, &coarse);
+    }
+    for (size_t b = 0; b < paired; b++) {
+        ms_ball image[8];
+        size_t images;
+        loss[b] = take(&o, image, &images, &ball[b], step, m);
+        put_back(&o, image, images);
+        loss[b] /= (int64_t)images;
+    }
+    overlap_close(&o);
+    return status;
+}
+
+static void move_nearest_onto_plane(ms_ball *ball, size_t count, const mirrors *m)
+{
+    size_t nearest = 0;
+    int axis = -1;
+    double least = HUGE_VAL, part;
+    for (size_t b = 0; b < count; b++) {
+        const int across = mirrors_nearest(&part, m, &ball[b]);
+        if (part < least) {
+            least = part;
+            axis = across;
+            nearest = b;
+        }
+    }
+    if (axis >= 0) {
+        ball[nearest].centre[axis] = m->at[axis];
+    }
+}
+
+static int do_overlap(const ms_ball *a, const ms_ball *b)
+{
+    const double reach = a->radius + b->radius;
+    return ms_squared_distance(a->centre, b->centre) < reach * reach;
+}
+
+/* The cheapest sphere that overlaps none of those dropped already and has no more than that many images. */
+static size_t cheapest(const ms_ball *ball, size_t count, const int64_t *loss, size_t images, const mirrors *m,
+                       const ms_ball *dropped, size_t n_dropped)
+{
+    size_t best = SIZE_MAX;
+    for (size_t b = 0; b < count; b++) {
+        int passed = (best != SIZE_MAX && loss[b] >= loss[best]) || mirrors_images(m, &ball[b]) > images;
+        for (size_t d = 0; d < n_dropped && !passed; d++) {
+            passed = do_overlap(&ball[b], &dropped[d]);
+        }
+        if (!passed) {
+            best = b;
+        }
+    }
+    return best;
+}
+
+ms_status drop_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_grid *grid, int step, const mirrors *m,
+                        ms_error *err)
+{
+    ms_ball *dropped = malloc((most + 1) * sizeof *dropped);
+    int64_t *loss = malloc((*count + 1) * sizeof *loss);
+    size_t n_dropped = 0, gone = 0, b;
+    ms_status status = dropped && loss
+                           ? find_losses(loss, ball, *count, grid, step, m, err)
+                           : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
+    while (status == MS_OK && gone < most &&
+           (b = cheapest(ball, *count, loss, most - gone, m, dropped, n_dropped)) != SIZE_MAX) {
+        dropped[n_dropped++] = ball[b];
+        gone += mirrors_images(m, &ball[b]);
+        ball[b] = ball[--*count];
+        loss[b] = loss[*count];
+    }
+    if (status == MS_OK && gone == 0) {
+        move_nearest_onto_plane(ball, *count, m);
+    }
+    free(dropped);
+    free(loss);
+    return status;
+}
+
+ms_status drop_idle(ms_ball *ball, size_t *count, const ms_grid *grid, const mirrors *m, ms_error *err)
+{
+    overlap o;
+    size_t all, kept = 0;
+    const ms_status status = count_all(&o, &all, ball, *count, grid, 1, m, err);
+    for (size_t b = 0; status == MS_OK && b < *count; b++) {
+        ms_ball image[8];
+        size_t images;
+        if (take(&o, image, &images, &ball[b], 1, m) > 0) {
+            put_back(&o, image, images);
+            ball[kept++] = ball[b];
+        }
+    }
+    *count = status == MS_OK ? kept : *count;
+    overlap_close(&o);
+    return status;
+}

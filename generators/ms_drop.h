@@ -1,0 +1,30 @@
+/** Which spheres a clump can do without. Private to variational. */
+#ifndef MS_DROP_H
+#define MS_DROP_H
+
+#include "ms_mirror.h"
+#include "ms_overlap.h"
+
+/**
+ * Drops the spheres whose loss raises |S xor U| least. Of those dropped at once no two overlap, as the loss of one
+ * changes that of the other.
+ *
+ * @param[in,out] ball  `count` spheres, in voxels of the target's grid
+ * @param         most  up to so many, mirror images among them: at least one; but where all have more images, one
+ *                      moves onto a plane of symmetry instead, which leaves half of its images
+ * @param         grid  where it is counted: every step-th voxel of the target's grid
+ * @return MS_OK; MS_ERR_NOMEM
+ *
+ * Cost: overlap_open, and the voxels of all spheres; all cores.
+ */
+ms_status drop_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_grid *grid, int step, const mirrors *m,
+                        ms_error *err);
+
+/**
+ * Drops spheres without which |S xor U| is no larger: inside others, or where nothing is left to gain.
+ *
+ * @return, cost: as above
+ */
+ms_status drop_idle(ms_ball *ball, size_t *count, const ms_grid *grid, const mirrors *m, ms_error *err);
+
+#endif
