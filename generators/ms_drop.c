@@ -133,20 +133,30 @@ ms_status drop_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_grid
     return status;
 }
 
-ms_status drop_idle(ms_ball *ball, size_t *count, const ms_grid *grid, const mirrors *m, ms_error *err)
+/* Once; a sphere that stays may become idle when a later one goes. Returns how many went. */
+static size_t drop_once(ms_ball *ball, size_t *count, overlap *o, const mirrors *m)
 {
-    overlap o;
-    size_t all, kept = 0;
-    const ms_status status = count_all(&o, &all, ball, *count, grid, 1, m, err);
-    for (size_t b = 0; status == MS_OK && b < *count; b++) {
+    size_t kept = 0;
+    for (size_t b = 0; b < *count; b++) {
         ms_ball image[8];
         size_t images;
-        if (take(&o, image, &images, &ball[b], 1, m) > 0) {
-            put_back(&o, image, images);
+        if (take(o, image, &images, &ball[b], 1, m) > 0) {
+            put_back(o, image, images);
             ball[kept++] = ball[b];
         }
     }
-    *count = status == MS_OK ? kept : *count;
+    const size_t gone = *count - kept;
+    *count = kept;
+    return gone;
+}
+
+ms_status drop_idle(ms_ball *ball, size_t *count, const ms_grid *grid, const mirrors *m, ms_error *err)
+{
+    overlap o;
+    size_t all;
+    const ms_status status = count_all(&o, &all, ball, *count, grid, 1, m, err);
+    while (status == MS_OK && drop_once(ball, count, &o, m) > 0) {
+    }
     overlap_close(&o);
     return status;
 }

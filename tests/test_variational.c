@@ -145,7 +145,7 @@ static void losses_are_those_of_brute_force(void **state)
 static void spheres_are_dropped_by_their_loss(void **state)
 {
     (void)state;
-    static const mirrors NONE = {{0}};
+    static const mirrors NONE = {.across = {0}};
     ms_grid grid;
     ms_error err;
     const int n[3] = {13, 11, 9};
