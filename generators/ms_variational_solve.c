@@ -325,8 +325,8 @@ static ms_status solver_begin(solver *s, const ms_run *run, const variational_se
     return status;
 }
 
-/* Adds spheres, drops as many; taken back where it makes the mismatch larger. */
-static ms_status round_trip(solver *s, double part, ms_error *err)
+/* Adds spheres, drops those above the number that is wanted; taken back where it makes the mismatch no smaller. */
+static ms_status round_trip(solver *s, size_t more, ms_error *err)
 {
     int64_t before = 0, after = 0;
     const size_t count = s->count;
@@ -335,7 +335,7 @@ static ms_status round_trip(solver *s, double part, ms_error *err)
         kept ? mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     if (status == MS_OK) {
         memcpy(kept, s->ball, count * sizeof *kept);
-        status = add(s, (size_t)ceil(part * (double)s->wanted), err);
+        status = add(s, more, err);
     }
     if (status == MS_OK) {
         status = fit(s, DROP_STEPS, 0.8, 0.3, err);
@@ -363,22 +363,12 @@ static ms_status round_trip(solver *s, double part, ms_error *err)
 /* Puts idle spheres where the union leaves most, and drops those that are idle there, too. */
 static ms_status repair(solver *s, ms_error *err)
 {
-    ms_status status = drop_idle(s->ball, &s->count, &s->run->target->grid, &s->settings->mirrors, err);
+    const ms_grid *grid = &s->run->target->grid;
+    ms_status status = drop_idle(s->ball, &s->count, grid, &s->settings->mirrors, err);
     for (int round = 0; round < REPAIRS && status == MS_OK && total(s) < s->wanted; round++) {
-        const size_t before = s->count;
-        status = add(s, s->wanted - total(s), err);
-        while (s->count > before && total(s) > s->wanted) {
-            s->count--; /* a set of images too large */
-        }
-        if (status != MS_OK || s->count == before) {
-            break;
-        }
-        status = fit(s, LAST_STEPS, 0.5, 0.05, err);
+        status = round_trip(s, s->wanted - total(s), err);
         if (status == MS_OK) {
-            status = settle(s, err);
-        }
-        if (status == MS_OK) {
-            status = drop_idle(s->ball, &s->count, &s->run->target->grid, &s->settings->mirrors, err);
+            status = drop_idle(s->ball, &s->count, grid, &s->settings->mirrors, err);
         }
     }
     return status;
@@ -407,7 +397,7 @@ static ms_status solve(solver *s, ms_error *err)
         status = settle(s, err);
     }
     for (int round = 0; round < s->settings->rounds && status == MS_OK && s->count > 0; round++) {
-        status = round_trip(s, ADD[round % ADDS], err);
+        status = round_trip(s, (size_t)ceil(ADD[round % ADDS] * (double)s->wanted), err);
     }
     return status == MS_OK ? repair(s, err) : status;
 }
