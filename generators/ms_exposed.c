@@ -62,6 +62,7 @@ typedef struct workspace {
     sweep sweep;
     double (*direction)[3]; /* as of the Fibonacci lattice, and turned */
     double (*turned)[3];
+    float (*normal)[3]; /* the turned ones again */
     move *move;
     double (*velocity)[4]; /* what was made of the last steps, before damping: centre, radius */
     gsl_rng *rng;
@@ -217,9 +218,6 @@ static double beyond_planes(const exposed_fit *fit, const double centre[3], cons
 {
     const ms_grid *grid = &fit->field->target->grid;
     double from[3], to[3], unused;
-    if (!fit->bounds.planes || fit->bounds.planes->n_planes == 0) {
-        return -HUGE_VAL;
-    }
     ms_target_from_voxels(from, &unused, grid, centre, 0);
     ms_target_from_voxels(to, &unused, grid, place, 0);
     const double beyond = planes_beyond(fit->bounds.planes, from, to) / grid->h;
@@ -230,6 +228,7 @@ static move find_move(const exposed_fit *fit, const workspace *work, caps *block
 {
     const ms_ball *ball = &work->sweep.ball[self];
     const size_t blocks = find_caps(block, &work->sweep, self);
+    const int walled = fit->bounds.planes && fit->bounds.planes->n_planes > 0;
     size_t first = 0;
     double a[4][4] = {{0}}, b[4] = {0};
     double weight = 0;
@@ -238,13 +237,13 @@ static move find_move(const exposed_fit *fit, const workspace *work, caps *block
         const double row[4] = {work->turned[p][0], work->turned[p][1], work->turned[p][2], 1};
         const double place[3] = {ball->centre[0] + ball->radius * row[0], ball->centre[1] + ball->radius * row[1],
                                  ball->centre[2] + ball->radius * row[2]};
-        const float normal[3] = {(float)row[0], (float)row[1], (float)row[2]};
-        const double beyond = beyond_planes(fit, ball->centre, place);
-        if (!(beyond > 0) && is_covered(&first, block, blocks, normal)) {
+        const double beyond = walled ? beyond_planes(fit, ball->centre, place) : -HUGE_VAL;
+        if (!(beyond > 0) && is_covered(&first, block, blocks, work->normal[p])) {
             continue;
         }
-        const double phi = fmax(ms_field_at(fit->field, place), beyond);
-        const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) / fmax(NEAR, fabs(phi));
+        const double away = ms_field_at(fit->field, place), phi = away > beyond ? away : beyond;
+        const double size = fabs(phi) > NEAR ? fabs(phi) : NEAR;
+        const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) / size;
         for (int i = 0; i < 4; i++) {
             for (int j = 0; j <= i; j++) {
                 a[i][j] += w * row[i] * row[j];
@@ -374,6 +373,7 @@ static void turn_directions(workspace *work, const exposed_fit *fit)
     for (int p = 0; p < fit->points; p++) {
         for (int c = 0; c < 3; c++) {
             work->turned[p][c] = ms_dot(turn[c], work->direction[p]);
+            work->normal[p][c] = (float)work->turned[p][c];
         }
     }
 }
@@ -384,6 +384,7 @@ static void work_free(workspace *work)
     free(work->sweep.end);
     free(work->direction);
     free(work->turned);
+    free(work->normal);
     free(work->move);
     free(work->velocity);
     if (work->rng) {
@@ -399,11 +400,12 @@ static ms_status work_alloc(workspace *work, const exposed_fit *fit, size_t coun
                                   .end = malloc((images + 1) * sizeof *work->sweep.end)},
                         .direction = malloc(points * sizeof *work->direction),
                         .turned = malloc(points * sizeof *work->turned),
+                        .normal = malloc(points * sizeof *work->normal),
                         .move = malloc((count + 1) * sizeof *work->move),
                         .velocity = calloc(count + 1, sizeof *work->velocity),
                         .rng = gsl_rng_alloc(gsl_rng_mt19937)};
-    if (!work->sweep.ball || !work->sweep.end || !work->direction || !work->turned || !work->move || !work->velocity ||
-        !work->rng) {
+    if (!work->sweep.ball || !work->sweep.end || !work->direction || !work->turned || !work->normal || !work->move ||
+        !work->velocity || !work->rng) {
         work_free(work);
         return ms_fail(err, MS_ERR_NOMEM, "no memory to fit %zu spheres", count);
     }

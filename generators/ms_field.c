@@ -75,39 +75,50 @@ ms_status ms_field_alloc(ms_field *field, const ms_target *target, int step, ms_
     return status;
 }
 
-/* Two threads may compute a node at once: they find the same. */
-static double node_value(const ms_field *field, int i, int j, int k)
+static float compute_node(const ms_field *field, size_t node)
 {
-    float *node = &field->phi[node_index(field, i, j, k)], phi;
+    const ms_grid *grid = &field->target->grid;
+    const size_t nx = (size_t)field->n[0], ny = (size_t)field->n[1], step = (size_t)field->step;
+    const double at[3] = {(double)(node % nx * step), (double)(node / nx % ny * step), (double)(node / nx / ny * step)};
+    double place[3], unused;
+    ms_target_from_voxels(place, &unused, grid, at, 0);
+    return (float)(ms_closest_signed_distance(field->target->closest, place) / grid->h);
+}
+
+/* Two threads may compute a node at once: they find the same. */
+static inline double node_value(const ms_field *field, size_t node)
+{
+    float phi;
 #pragma omp atomic read
-    phi = *node;
-    if (isnan(phi)) {
-        const ms_grid *grid = &field->target->grid;
-        const double at[3] = {(double)i * field->step, (double)j * field->step, (double)k * field->step};
-        double place[3], unused;
-        ms_target_from_voxels(place, &unused, grid, at, 0);
-        phi = (float)(ms_closest_signed_distance(field->target->closest, place) / grid->h);
+    phi = field->phi[node];
+    if (phi != phi) {
+        phi = compute_node(field, node);
 #pragma omp atomic write
-        *node = phi;
+        field->phi[node] = phi;
     }
     return (double)phi;
 }
 
 double ms_field_at(const ms_field *field, const double place[3])
 {
-    int at[3];
+    const size_t nx = (size_t)field->n[0], stride[3] = {1, nx, nx * (size_t)field->n[1]};
+    size_t node = 0;
     double part[3], beyond = 0;
     for (int a = 0; a < 3; a++) {
-        const double x = place[a] / field->step, last = field->n[a] - 1, inside = fmin(fmax(x, 0), last);
-        at[a] = (int)fmin(inside, last - 1);
-        part[a] = inside - at[a];
+        const double x = place[a] / field->step, last = field->n[a] - 1;
+        const double inside = x < 0 ? 0 : x > last ? last : x;
+        const int at = (int)(inside < last - 1 ? inside : last - 1);
+        part[a] = inside - at;
+        node += (size_t)at * stride[a];
         beyond += (x - inside) * (x - inside);
     }
-    double sum = 0;
-    for (int corner = 0; corner < 8; corner++) {
-        const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
-        sum += (x ? part[0] : 1 - part[0]) * (y ? part[1] : 1 - part[1]) * (z ? part[2] : 1 - part[2]) *
-               node_value(field, at[0] + x, at[1] + y, at[2] + z);
+    double along[4];
+    for (int k = 0; k < 4; k++) { /* the edges along x */
+        const size_t from = node + (size_t)(k & 1) * stride[1] + (size_t)(k >> 1) * stride[2];
+        const double low = node_value(field, from), high = node_value(field, from + 1);
+        along[k] = low + part[0] * (high - low);
     }
-    return sum + sqrt(beyond) * field->step;
+    const double front = along[0] + part[1] * (along[1] - along[0]), back = along[2] + part[1] * (along[3] - along[2]);
+    const double phi = front + part[2] * (back - front);
+    return beyond > 0 ? phi + sqrt(beyond) * field->step : phi;
 }
