@@ -19,7 +19,7 @@ typedef struct ms_allocation {
     uint64_t particles, spheres; /* in the whole scene */
     double error;                /* mean over all particles */
     double gain;  /* of the last step: sum of errors over the scene that each further sphere took away; 0 without one */
-    double slack; /* no allocation is better by more: in mean error for a budget, in spheres for an error; 0: the best */
+    double slack; /* no allocation is better by more: in mean error for a budget, in spheres for an error */
 } ms_allocation;
 
 /** Sums over a scene whose shape i has templates of n[i] spheres; gain and slack are 0. */
