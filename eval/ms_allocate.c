@@ -2,9 +2,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* Against rounding, where a bound must not be above the truth. */
-static const double ROUNDED_DOWN = 1 - 1e-12;
+#include "ms_knapsack.h"
+
+/* What rounding may do to a sum. */
+static const double ROUNDING = 1e-12;
 
 /* From a template to a larger one. */
 typedef struct step {
@@ -40,6 +43,82 @@ ms_allocation ms_allocate_sum(const ms_share *share, const size_t *n, size_t cou
     }
     sum.error /= (double)sum.particles;
     return sum;
+}
+
+double ms_allocate_gain(const ms_share *share, const size_t *n, size_t count)
+{
+    double least = HUGE_VAL;
+    for (size_t s = 0; s < count; s++) {
+        const double *error = share[s].error;
+        for (size_t to = 1; to < n[s]; to++) {
+            least = fmin(least, (error[to - 1] - error[n[s] - 1]) / (double)(n[s] - to));
+        }
+    }
+    return isfinite(least) ? least : 0;
+}
+
+/* The sums of errors and the spheres of all templates, as kinds of a knapsack. */
+typedef struct table {
+    ms_kind *kind;
+    double *error, *spheres; /* shape behind shape */
+} table;
+
+static void table_free(table *t)
+{
+    free(t->kind);
+    free(t->error);
+    free(t->spheres);
+}
+
+static ms_status table_make(table *t, const ms_share *share, size_t count, int by_error, ms_error *err)
+{
+    size_t size = 0, at = 0;
+    for (size_t s = 0; s < count; s++) {
+        size += share[s].most;
+    }
+    *t = (table){malloc(count * sizeof *t->kind), malloc(size * sizeof *t->error), malloc(size * sizeof *t->spheres)};
+    if (!t->kind || !t->error || !t->spheres) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu templates", size);
+    }
+    for (size_t s = 0; s < count; s++) {
+        double *error = t->error + at, *spheres = t->spheres + at;
+        t->kind[s] = (ms_kind){share[s].most, by_error ? error : spheres, by_error ? spheres : error};
+        for (size_t n = 0; n < share[s].most; n++) {
+            error[n] = (double)share[s].particles * share[s].error[n];
+            spheres[n] = (double)cost(&share[s], 0, n + 1);
+        }
+        at += share[s].most;
+    }
+    return MS_OK;
+}
+
+/* What the search looks for: the least of one sum within a limit of the other. */
+typedef struct aim {
+    int by_error; /* nonzero: the least sum of errors within a limit of spheres; zero: the other way round */
+    double limit, price, step; /* as ms_knapsack_improve takes them */
+} aim;
+
+/* From a good allocation to the best. */
+static ms_status improve(size_t *n, ms_allocation *sum, const ms_share *share, size_t count, const aim *wanted,
+                         ms_error *err)
+{
+    table t;
+    int proven = 0;
+    const double slack = sum->slack;
+    ms_status status = table_make(&t, share, count, wanted->by_error, err);
+    for (size_t s = 0; s < count; s++) {
+        n[s]--; /* places in the table */
+    }
+    if (status == MS_OK) {
+        status = ms_knapsack_improve(n, &proven, t.kind, count, wanted->limit, wanted->price, wanted->step, err);
+    }
+    for (size_t s = 0; s < count; s++) {
+        n[s]++;
+    }
+    *sum = ms_allocate_sum(share, n, count);
+    sum->slack = proven ? 0 : slack;
+    table_free(&t);
+    return status;
 }
 
 /* One sphere each, and the steepest step of each shape from there; NULL without memory. */
@@ -92,11 +171,12 @@ static void take(size_t *n, step *ahead, const ms_share *share, size_t shape, si
     ahead[shape] = steepest(&share[shape], to, share[shape].most);
 }
 
-/* All that is said of ms_allocate_budget, from one sphere each. */
-static ms_allocation spend(size_t *n, step *ahead, const ms_share *share, size_t count, uint64_t budget)
+/* The steps of ms_allocate_budget, from one sphere each; in `price` the slope of the first that cannot be paid. */
+static ms_allocation spend(size_t *n, double *price, step *ahead, const ms_share *share, size_t count, uint64_t budget)
 {
     ms_allocation sum = ms_allocate_sum(share, n, count);
-    double gain = 0, bound = HUGE_VAL; /* on the mean error, from the first step that cannot be paid */
+    double bound = HUGE_VAL; /* on the mean error, from the first step that cannot be paid */
+    *price = 0;
     for (;;) {
         step next;
         const uint64_t rest = budget - sum.spheres;
@@ -104,15 +184,14 @@ static ms_allocation spend(size_t *n, step *ahead, const ms_share *share, size_t
         const size_t shape = first_payable(&next, ahead, n, share, count, rest);
         if (next.slope < wanted && bound == HUGE_VAL) {
             bound = sum.error - wanted * (double)rest / (double)sum.particles;
+            *price = wanted;
         }
         if (!(next.slope > 0)) {
             break;
         }
-        gain = next.slope;
         take(n, ahead, share, shape, next.to);
         sum = ms_allocate_sum(share, n, count);
     }
-    sum.gain = gain;
     sum.slack = fmax(0, sum.error - bound);
     return sum;
 }
@@ -120,6 +199,7 @@ static ms_allocation spend(size_t *n, step *ahead, const ms_share *share, size_t
 ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count,
                              uint64_t budget, ms_error *err)
 {
+    double price = 0;
     step *ahead = begin(n, share, count, err);
     if (!ahead) {
         return MS_ERR_NOMEM;
@@ -131,72 +211,85 @@ ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share
                          "a budget of %llu spheres is less than one for each of the %llu particles; raise it",
                          (unsigned long long)budget, (unsigned long long)allocated->particles);
     } else {
-        *allocated = spend(n, ahead, share, count, budget);
+        *allocated = spend(n, &price, ahead, share, count, budget);
     }
     free(ahead);
+    if (status == MS_OK && allocated->slack > 0) {
+        const double least = ROUNDING * allocated->error * (double)allocated->particles;
+        status = improve(n, allocated, share, count, &(aim){1, (double)budget, price, least}, err);
+    }
     return status;
 }
 
-/* The least template of a shape that takes at least `excess` off the sum of errors; 0 if there is none. */
-static size_t least_that_takes(const ms_share *share, size_t n, double excess)
+/* A budget as small as can be found by halving for which the steps of ms_allocate_budget reach the error. On entry n and
+ * sum are an allocation that reaches it. */
+static ms_status shrink_budget(size_t *n, ms_allocation *sum, double fewest, const ms_share *share, size_t count,
+                               double error, ms_error *err)
 {
-    for (size_t to = n + 1; to <= share->most; to++) {
-        if ((double)share->particles * (share->error[n - 1] - share->error[to - 1]) >= excess) {
-            return to;
-        }
+    double unused;
+    uint64_t few = (uint64_t)fewest;
+    ms_status status = MS_OK;
+    size_t *fewer = malloc(count * sizeof *fewer);
+    if (!fewer) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu shapes", count);
     }
-    return 0;
+    while (few + 1 < sum->spheres && status == MS_OK) {
+        const uint64_t budget = few + (sum->spheres - few) / 2;
+        step *ahead = begin(fewer, share, count, err);
+        status = ahead ? MS_OK : MS_ERR_NOMEM;
+        const ms_allocation less = ahead ? spend(fewer, &unused, ahead, share, count, budget) : *sum;
+        if (ahead && less.error <= error) {
+            memcpy(n, fewer, count * sizeof *n);
+            *sum = less;
+        } else {
+            few = budget;
+        }
+        free(ahead);
+    }
+    free(fewer);
+    return status;
 }
 
-/* The cheapest single step that takes away the excess; there is one. Returns its gain for each sphere. */
-static double finish(size_t *n, const ms_share *share, size_t count, double excess)
+/* Steps from one sphere each until the error is reached; in `price` the spheres for a unit of error at the last, in
+ * `fewest` how many any allocation needs, by the hulls. */
+static ms_status reach(size_t *n, ms_allocation *sum, double *price, double *fewest, step *ahead,
+                       const ms_share *share, size_t count, double error, ms_error *err)
 {
-    size_t shape = 0, best = 0;
-    for (size_t s = 0; s < count; s++) {
-        const size_t to = least_that_takes(&share[s], n[s], excess);
-        if (to && (!best || cost(&share[s], n[s], to) < cost(&share[shape], n[shape], best))) {
-            shape = s;
-            best = to;
+    *price = *fewest = 0;
+    *sum = ms_allocate_sum(share, n, count);
+    while (sum->error > error) {
+        const size_t shape = first_of(ahead, count);
+        if (!(ahead[shape].slope > 0)) {
+            return ms_fail(err, MS_ERR_LIMIT, "the best templates reach a mean of %.6g, not %.6g; allow more spheres",
+                           sum->error, error);
         }
+        *price = 1 / ahead[shape].slope;
+        *fewest = (double)sum->spheres + (sum->error - error) * (double)sum->particles * *price;
+        take(n, ahead, share, shape, ahead[shape].to);
+        *sum = ms_allocate_sum(share, n, count);
     }
-    const double taken = share[shape].error[n[shape] - 1] - share[shape].error[best - 1];
-    const double gain = taken / (double)(best - n[shape]);
-    n[shape] = best;
-    return gain;
+    return MS_OK;
 }
 
 ms_status ms_allocate_error(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count, double error,
                             ms_error *err)
 {
-    ms_status status = MS_OK;
-    double gain = 0, fewest = 0;
+    double price, fewest;
     step *ahead = begin(n, share, count, err);
     if (!ahead) {
         return MS_ERR_NOMEM;
     }
-    ms_allocation sum = ms_allocate_sum(share, n, count);
-    while (sum.error > error) {
-        const double excess = (sum.error - error) * (double)sum.particles;
-        const size_t shape = first_of(ahead, count);
-        if (!(ahead[shape].slope > 0)) {
-            status = ms_fail(err, MS_ERR_LIMIT, "the best templates reach a mean of %.6g, not %.6g; allow more spheres",
-                             sum.error, error);
-            break;
-        }
-        fewest = (double)sum.spheres + excess / ahead[shape].slope;
-        if (least_that_takes(&share[shape], n[shape], excess)) {
-            gain = finish(n, share, count, excess);
-            sum = ms_allocate_sum(share, n, count);
-            break;
-        }
-        gain = ahead[shape].slope;
-        take(n, ahead, share, shape, ahead[shape].to);
-        sum = ms_allocate_sum(share, n, count);
-    }
+    ms_status status = reach(n, allocated, &price, &fewest, ahead, share, count, error, err);
     free(ahead);
-    *allocated = sum;
-    allocated->gain = gain;
-    allocated->slack = fewest > 0 ? fmax(0, floor((double)sum.spheres - ROUNDED_DOWN * fewest)) : 0;
+    if (status == MS_OK && fewest > 0) {
+        fewest *= 1 - ROUNDING;
+        status = shrink_budget(n, allocated, fewest, share, count, error, err);
+        allocated->slack = fmax(0, floor((double)allocated->spheres - fewest));
+    }
+    if (status == MS_OK && allocated->slack > 0) {
+        const double limit = (1 + ROUNDING) * error * (double)allocated->particles;
+        status = improve(n, allocated, share, count, &(aim){0, limit, price, 0.5}, err);
+    }
     return status;
 }
 

@@ -18,36 +18,43 @@ typedef struct ms_share {
 typedef struct ms_allocation {
     uint64_t particles, spheres; /* in the whole scene */
     double error;                /* mean over all particles */
-    double gain;  /* of the last step: sum of errors over the scene that each further sphere took away; 0 without one */
-    double slack; /* no allocation is better by more: in mean error for a budget, in spheres for an error */
+    double slack; /* no allocation is better by more: in mean error for a budget, in spheres for an error. 0, the best,
+                     unless the search for it was given up as too long */
 } ms_allocation;
 
-/** Sums over a scene whose shape i has templates of n[i] spheres; gain and slack are 0. */
+/** Sums over a scene whose shape i has templates of n[i] spheres; slack is 0. */
 ms_allocation ms_allocate_sum(const ms_share *share, const size_t *n, size_t count);
 
 /**
- * The least mean error for a number of spheres in the whole scene: from one sphere each, always the step
- * to a larger template, of any shape, that takes away most error for each sphere of the scene, among those that
- * the rest of the budget pays. A sphere more on all particles of a shape costs as many spheres as there are particles
- * and lessens the sum of errors by as many times its error: the gain of a step does not depend on their number.
+ * What the least useful spheres of an allocation bring: of all ways to make one template smaller, the least that each
+ * sphere of the scene given back adds to the sum of errors over the scene. 0 with one sphere each.
+ */
+double ms_allocate_gain(const ms_share *share, const size_t *n, size_t count);
+
+/**
+ * The least mean error for a number of spheres in the whole scene.
  *
- * While the steepest step of all can be paid, the steps are those along the lower convex hulls of the curves in the
- * order of their slopes, and the allocation is the best for the spheres that it takes. From the first step
- * on that cannot be paid, the hulls bound what any allocation could reach: that is the slack.
+ * First from one sphere each, always the step to a larger template, of any shape, that takes away most error for each
+ * sphere of the scene, among those that the rest of the budget pays. A sphere more on all particles of a shape costs as
+ * many spheres as there are particles and lessens the sum of errors by as many times its error: the gain of a step does
+ * not depend on their number. While the steepest step of all can be paid, the steps are those along the lower convex
+ * hulls of the curves in the order of their slopes, and the allocation is the best for the spheres that it takes. From
+ * the first step on that cannot be paid the hulls bound what any allocation could reach; where that is not reached, the
+ * best allocation on the curves as they are is searched for (ms_knapsack_improve).
  *
  * @param[out] n         spheres of each template, count values
  * @param[out] allocated what it comes to
  * @return MS_OK; MS_ERR_LIMIT if the budget is below one sphere each; MS_ERR_NOMEM
  *
  * Source: Fox 1966, Discrete optimization via marginal analysis (Management Science 13, 210).
- * Cost: O(shapes) for each step, and one pass over the rest of a curve for each of its steps.
+ * Cost: O(shapes) for each step, and one pass over the rest of a curve for each of its steps; the search.
  */
 ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count,
                              uint64_t budget, ms_error *err);
 
 /**
- * The fewest spheres in the scene for a mean error: the same steps until the next would reach it; the last
- * one is the cheapest of any shape that reaches it.
+ * The fewest spheres in the scene for a mean error: the same steps for budgets between what the hulls need at the least
+ * and what their steps take; then the search.
  *
  * @return MS_OK; MS_ERR_LIMIT if the largest templates do not reach it (the message gives what they reach);
  *         MS_ERR_NOMEM

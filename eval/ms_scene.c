@@ -245,6 +245,7 @@ ms_status ms_scene_settle(ms_scene *scene, const ms_goal *goal, ms_error *err)
         for (size_t s = 0; s < scene->count; s++) {
             scene->sum.spheres += share[s].particles * ms_scene_clump(&scene->shape[s])->n_spheres;
         }
+        scene->least_gain = ms_allocate_gain(share, n, scene->count);
         spread_evenly(scene, share, n);
     }
     free(n);

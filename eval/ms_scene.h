@@ -53,7 +53,8 @@ typedef struct ms_scene_shape {
 typedef struct ms_scene {
     size_t count;
     ms_scene_shape *shape;
-    ms_allocation sum;  /* of the templates chosen; gain and slack of MS_GOAL_MEAN and MS_GOAL_BUDGET */
+    ms_allocation sum;  /* of the templates chosen; slack of MS_GOAL_MEAN and MS_GOAL_BUDGET */
+    double least_gain;  /* ms_allocate_gain */
     size_t even_each;   /* the same number of spheres for each shape, of no more in all */
     ms_allocation even; /* what that comes to */
 } ms_scene;

@@ -46,14 +46,13 @@ static void print_shapes(FILE *stream, const ms_scene *scene)
     }
 }
 
+/* Where the best choice is not known to be found. */
 static void print_slack(FILE *stream, const ms_allocation *sum, ms_goal_kind kind)
 {
-    if (!(sum->slack > 0)) {
-        fprintf(stream, "  %-26s no other choice of templates is better\n", "against the best");
-    } else if (kind == MS_GOAL_MEAN) {
-        fprintf(stream, "  %-26s %.0f spheres more than the fewest at the most\n", "against the best", sum->slack);
-    } else {
-        fprintf(stream, "  %-26s mean D %.2g above the least at the most\n", "against the best", sum->slack);
+    if (kind == MS_GOAL_MEAN && sum->slack > 0) {
+        fprintf(stream, "  %-26s no more than %.0f spheres above the fewest\n", "search given up", sum->slack);
+    } else if (sum->slack > 0) {
+        fprintf(stream, "  %-26s mean D no more than %.2g above the least\n", "search given up", sum->slack);
     }
 }
 
@@ -68,10 +67,9 @@ void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal)
     fprintf(stream, "  %-26s %.5f\n", "mean D", sum->error);
     fprintf(stream, "  %-26s %.5f with %zu for each shape, %llu in all\n", "mean D, spread evenly", scene->even.error,
             scene->even_each, (unsigned long long)scene->even.spheres);
-    if (goal->kind == MS_GOAL_BUDGET || goal->kind == MS_GOAL_MEAN) {
-        fprintf(stream, "  %-26s %.2g off the sum of D over the particles\n", "the last sphere took", sum->gain);
-        print_slack(stream, sum, goal->kind);
-    }
+    fprintf(stream, "  %-26s takes %.2g off the sum of D over the particles\n", "least useful sphere",
+            scene->least_gain);
+    print_slack(stream, sum, goal->kind);
     fprintf(stream, "  %-26s %.4g in %s; it limits the time step\n", "smallest radius",
             ms_clump_smallest_radius(ms_scene_clump(smallest)), smallest->row->path);
 }
@@ -127,7 +125,7 @@ void ms_scene_add_json(json_t *json, const ms_scene *scene, const ms_goal *goal)
     json_object_set_new(json, "particles", json_integer((json_int_t)sum->particles));
     json_object_set_new(json, "spheres", json_integer((json_int_t)sum->spheres));
     json_object_set_new(json, "mean_dice", json_real(sum->error));
-    json_object_set_new(json, "last_gain", together ? json_real(sum->gain) : json_null());
+    json_object_set_new(json, "least_gain", json_real(scene->least_gain));
     json_object_set_new(json, "slack", together ? json_real(sum->slack) : json_null());
     json_object_set_new(json, "even", json_pack("{s:I,s:I,s:f}", "each", (json_int_t)scene->even_each, "spheres",
                                                 (json_int_t)even->spheres, "mean_dice", even->error));

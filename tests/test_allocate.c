@@ -112,11 +112,10 @@ static void a_sum_is_weighted_by_particles(void **state)
     assert_close(sum.error, (3 * 0.25 + 0.125) / 4, 0);
 }
 
-/* Never better than the best, worse by no more than it says, and the best where it says so. */
-static void budgets_are_spent_as_well_as_is_said(void **state)
+static void budgets_are_spent_as_well_as_can_be(void **state)
 {
     (void)state;
-    size_t exact = 0, runs = 0;
+    size_t runs = 0;
     for (uint32_t seed = 1; seed <= SCENES; seed++) {
         scene s;
         make_scene(&s, seed);
@@ -126,15 +125,12 @@ static void budgets_are_spent_as_well_as_is_said(void **state)
             ms_allocation a;
             assert_int_equal(ms_allocate_budget(n, &a, s.share, s.count, budget, NULL), MS_OK);
             expect_consistent(&a, n, &s);
-            assert_true(a.spheres <= budget);
-            const double best = best_error(&s, budget);
-            assert_true(a.error - best > -1e-15 && a.error - best <= a.slack + 1e-15); /* rounding of a mean */
-            exact += a.error - best < 1e-15;
+            assert_true(a.spheres <= budget && a.slack == 0);
+            assert_close(a.error, best_error(&s, budget), 1e-11); /* better by less than 1e-12 of it is not sought */
             runs++;
         }
     }
     assert_true(runs > 2000);
-    assert_true(exact < runs); /* else the slack would not have been tested */
 }
 
 /* A step of one sphere always fits: with convex curves the allocation is the best, and all of the budget is spent. */
@@ -154,10 +150,10 @@ static void convex_curves_of_equal_numbers_have_no_slack(void **state)
     }
 }
 
-static void an_error_takes_as_few_spheres_as_is_said(void **state)
+static void an_error_takes_as_few_spheres_as_can_be(void **state)
 {
     (void)state;
-    size_t runs = 0, exact = 0;
+    size_t runs = 0;
     for (uint32_t seed = 1; seed <= SCENES; seed++) {
         scene s;
         make_scene(&s, seed);
@@ -174,17 +170,42 @@ static void an_error_takes_as_few_spheres_as_is_said(void **state)
             }
             assert_int_equal(status, MS_OK);
             expect_consistent(&a, n, &s);
-            assert_true(a.error <= error + 1e-15);
-            assert_true((double)a.spheres >= fewest && (double)a.spheres - fewest <= a.slack);
-            exact += (double)a.spheres == fewest;
+            assert_true(a.error <= error + 1e-12 && (double)a.spheres == fewest && a.slack == 0);
             runs++;
         }
     }
     assert_true(runs > 1000);
-    assert_true(exact < runs);
 }
 
-static void the_gain_is_that_of_the_last_sphere(void **state)
+/* A thousand shapes of large, different numbers: too many choices to try. What is left open is bounded, and small. */
+static void a_search_that_is_too_long_is_given_up(void **state)
+{
+    (void)state;
+    enum { MANY = 1000, LONG = 50 };
+    static double error[MANY][LONG];
+    static ms_share share[MANY];
+    static size_t n[MANY];
+    uint32_t seed = 5;
+    uint64_t particles = 0;
+    for (size_t i = 0; i < MANY; i++) {
+        const uint32_t scale = 1 + draw(&seed, 60000);
+        share[i] = (ms_share){1 + draw(&seed, 60000), LONG, error[i]};
+        particles += share[i].particles;
+        for (int k = 0; k < LONG; k++) {
+            error[i][k] = scale / 120000.0 / (k + 1);
+        }
+    }
+    ms_allocation a, b;
+    assert_int_equal(ms_allocate_budget(n, &a, share, MANY, 10 * particles + 12345, NULL), MS_OK);
+    assert_true(a.spheres <= 10 * particles + 12345 && (double)a.spheres > 9.99 * (double)particles);
+    assert_true(a.slack < 1e-4 * a.error);
+    /* The other way round the same number of spheres must do, but for the slack of both. */
+    assert_int_equal(ms_allocate_error(n, &b, share, MANY, a.error, NULL), MS_OK);
+    assert_true((double)b.spheres <= (double)a.spheres + b.slack);
+    assert_true(b.slack < 1e-4 * (double)b.spheres);
+}
+
+static void the_gain_is_that_of_the_least_useful_spheres(void **state)
 {
     (void)state;
     const double error[] = {1, 0.5, 0.375, 0.3125}, flat[] = {0.25, 0.25};
@@ -198,7 +219,7 @@ static void the_gain_is_that_of_the_last_sphere(void **state)
         size_t n[2];
         ms_allocation a;
         assert_int_equal(ms_allocate_budget(n, &a, share, 2, expected[e].budget, NULL), MS_OK);
-        assert_close(a.gain, expected[e].gain, 0);
+        assert_close(ms_allocate_gain(share, n, 2), expected[e].gain, 0);
         assert_true(n[0] == expected[e].n && n[1] == 1); /* a sphere that takes nothing away is not spent */
     }
 }
@@ -246,10 +267,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_sum_is_weighted_by_particles),
-        cmocka_unit_test(budgets_are_spent_as_well_as_is_said),
+        cmocka_unit_test(budgets_are_spent_as_well_as_can_be),
         cmocka_unit_test(convex_curves_of_equal_numbers_have_no_slack),
-        cmocka_unit_test(an_error_takes_as_few_spheres_as_is_said),
-        cmocka_unit_test(the_gain_is_that_of_the_last_sphere),
+        cmocka_unit_test(an_error_takes_as_few_spheres_as_can_be),
+        cmocka_unit_test(a_search_that_is_too_long_is_given_up),
+        cmocka_unit_test(the_gain_is_that_of_the_least_useful_spheres),
         cmocka_unit_test(a_budget_below_one_sphere_each_is_refused),
         cmocka_unit_test(the_knee_of_a_hyperbola),
         cmocka_unit_test(knees_of_odd_curves),
