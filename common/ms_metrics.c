@@ -15,6 +15,7 @@ ms_score ms_score_of(const ms_tally *sum, size_t target_voxels)
         .coverage = inside / target,
         .overshoot = outside / target,
         .off_volume = (inside + outside) / target,
+        .inertia = (double)NAN,
     };
 }
 
@@ -77,6 +78,19 @@ static int within_grid(const ms_grid *grid, const double lo[3], const double hi[
     return 1;
 }
 
+/* With the inertia, where the union covers a voxel. */
+static ms_score full_score(const ms_tally *sum, const ms_grid *grid, const ms_target *target)
+{
+    ms_body body;
+    ms_inertia_error error;
+    ms_score score = ms_score_of(sum, target->voxels);
+    ms_tally_body(&body, sum, grid);
+    if (body.volume > 0 && ms_inertia_compare(&error, &body, &target->body, NULL) == MS_OK) {
+        score.inertia = error.weighted;
+    }
+    return score;
+}
+
 static ms_status count_union(ms_metrics *metrics, ms_score *curve, const ms_grid *grid, const ms_target *target,
                              const ms_clump *clump, ms_error *err)
 {
@@ -97,10 +111,10 @@ static ms_status count_union(ms_metrics *metrics, ms_score *curve, const ms_grid
     for (size_t s = 0; status == MS_OK && s < clump->n_spheres; s++) {
         ms_tally_add(&sum, &raster.tally[s]);
         if (curve) {
-            curve[s] = ms_score_of(&sum, target->voxels);
+            curve[s] = full_score(&sum, grid, target);
         }
     }
-    metrics->score = ms_score_of(&sum, target->voxels);
+    metrics->score = full_score(&sum, grid, target);
     ms_tally_body(&metrics->body, &sum, grid);
     ms_raster_free(&raster);
     free(balls);

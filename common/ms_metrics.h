@@ -14,9 +14,10 @@ typedef struct ms_score {
     double coverage;   /* sum SU / sum S             Yuan's V_cl/V_p */
     double overshoot;  /* sum U(1-S) / sum S */
     double off_volume; /* sum U / sum S              Westbrink eq. 2 */
+    double inertia;    /* weighted mean error of the principal moments, Yuan 4; NAN unless ms_metrics_compute set it */
 } ms_score;
 
-/** From the sums over the union and the number of voxels of the target. */
+/** From the sums over the union and the number of voxels of the target; all but the inertia. */
 ms_score ms_score_of(const ms_tally *sum, size_t target_voxels);
 
 /** How the inertia of one body differs from that of another, both of unit density. */

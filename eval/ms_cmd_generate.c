@@ -1,30 +1,27 @@
 /* mskit generate SHAPE */
-#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "ms_commands.h"
 #include "ms_curve.h"
-#include "ms_generator.h"
 #include "ms_input.h"
 #include "ms_mass.h"
 #include "ms_outputs.h"
+#include "ms_progress.h"
+#include "ms_recipe.h"
 #include "ms_record.h"
 #include "ms_report.h"
 #include "ms_text.h"
 
-enum { MAX_SETTINGS = 256, DEFAULT_SPHERES = 50 };
+enum { DEFAULT_SPHERES = 50 };
 
 static const ms_flag FLAGS[] = {
-    {"generator", 'g', "NAME", "the method, mss, setcover, fcm or variational (mss); mskit generators lists them"},
+    MS_RECIPE_FLAGS("mss"),
     {"spheres", 'n', "N", "at most N spheres (50, if no --until is given)"},
     {"until", 0, "MEASURE=VALUE",
      "end when eta, dice, coverage or inertia is as good, or spheres would be smaller than radius; may be repeated"},
-    {"set", 0, "OPTION=VALUE", "an option of the method (mskit help NAME); --OPTION VALUE does the same"},
-    {"seed", 0, "S", "seed of methods that draw random numbers (1)"},
     MS_OUTPUT_FLAGS,
     {"correct", 0, NULL, "give the spheres masses that sum to the true mass and inertia; takes --density"},
     MS_MASS_FLAGS,
@@ -36,22 +33,11 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
-/* An option of the generator as it was written. */
-typedef struct wish {
-    const char *name; /* NULL: `text` is OPTION=VALUE */
-    const char *text;
-} wish;
-
 typedef struct arguments {
     const char *shape;
     ms_input_flags input;
-    const char *generator_name;
-    wish wish[MAX_SETTINGS];
-    int n_wishes;
-    const ms_generator *generator;
-    ms_settings settings;
+    ms_recipe recipe;
     ms_stop stop;
-    double seed;
     ms_outputs outputs;
     ms_mass_flags mass;
     int correct;
@@ -59,26 +45,12 @@ typedef struct arguments {
     int json;
 } arguments;
 
-/* Cuts "name=value" in two; `name` has room for 64 characters. */
-static ms_status split_assignment(char name[64], const char **value, const char *text, ms_error *err)
-{
-    const char *equals = strchr(text, '=');
-    const size_t length = equals ? (size_t)(equals - text) : strlen(text);
-    if (length == 0 || length >= 64) {
-        return ms_fail(err, MS_ERR_ARG, "'%s' is not of the form name=value", text);
-    }
-    memcpy(name, text, length);
-    name[length] = 0;
-    *value = equals ? equals + 1 : NULL;
-    return MS_OK;
-}
-
 static ms_status take_until(arguments *a, const char *text, ms_error *err)
 {
     char name[64];
     const char *value = NULL;
     double number;
-    ms_status status = split_assignment(name, &value, text, err);
+    ms_status status = ms_flag_assignment(name, &value, text, err);
     if (status != MS_OK) {
         return status;
     }
@@ -89,16 +61,6 @@ static ms_status take_until(arguments *a, const char *text, ms_error *err)
         return ms_fail(err, MS_ERR_ARG, "--until '%s' is not of the form MEASURE=VALUE, as %s=0.05", text, name);
     }
     return status == MS_OK ? ms_stop_set(&a->stop, name, number, err) : status;
-}
-
-/* Which options there are is known when all flags are read: the generator may come last. */
-static ms_status take_wish(arguments *a, const char *name, const char *text, ms_error *err)
-{
-    if (a->n_wishes == MAX_SETTINGS) {
-        return ms_fail(err, MS_ERR_LIMIT, "more than %d options of the generator", MAX_SETTINGS);
-    }
-    a->wish[a->n_wishes++] = (wish){name, text};
-    return MS_OK;
 }
 
 static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
@@ -116,17 +78,10 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
     if (taken) {
         return status;
     }
-    if (strcmp(name, "generator") == 0) {
-        a->generator_name = value;
-        return MS_OK;
-    }
     if (strcmp(name, "spheres") == 0) {
         status = ms_flag_whole(&number, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
         a->stop.spheres = status == MS_OK ? (size_t)number : 0;
         return status;
-    }
-    if (strcmp(name, "seed") == 0) {
-        return ms_flag_whole(&a->seed, name, value, 0, 9007199254740992.0, err);
     }
     if (strcmp(name, "target-grid") == 0) {
         a->target_grid = value;
@@ -143,25 +98,7 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
     if (strcmp(name, "until") == 0) {
         return take_until(a, value, err);
     }
-    return take_wish(a, strcmp(name, "set") == 0 ? NULL : name, value, err);
-}
-
-/* Finds the generator and gives it its options. */
-static ms_status settle_generator(arguments *a, ms_error *err)
-{
-    a->generator = ms_generator_find(a->generator_name, err);
-    ms_status status = a->generator ? ms_settings_init(&a->settings, a->generator->options, err) : MS_ERR_ARG;
-    for (int w = 0; w < a->n_wishes && status == MS_OK; w++) {
-        char name[64];
-        const char *value = a->wish[w].text;
-        if (!a->wish[w].name) {
-            status = split_assignment(name, &value, a->wish[w].text, err);
-        }
-        if (status == MS_OK) {
-            status = ms_settings_set(&a->settings, a->wish[w].name ? a->wish[w].name : name, value, err);
-        }
-    }
-    return status;
+    return ms_recipe_flag(&taken, &a->recipe, name, value, err);
 }
 
 /* Number of files that go to standard output. */
@@ -175,7 +112,7 @@ static int outputs_to_stdout(const arguments *a)
 static ms_status settle_outputs(arguments *a, ms_error *err)
 {
     char behind[64];
-    snprintf(behind, sizeof behind, "-%s", a->generator->name);
+    snprintf(behind, sizeof behind, "-%s", a->recipe.generator->name);
     const ms_need known = a->correct ? MS_NEED_MASSES : MS_NEED_SPHERES;
     ms_status status = ms_outputs_settle(&a->outputs, a->shape, behind, known, 1, err);
     return status == MS_OK && a->json + outputs_to_stdout(a) > 1
@@ -203,49 +140,24 @@ static ms_status try_outputs(const arguments *a, ms_error *err)
     return status == MS_OK ? ms_outputs_try(&a->outputs, a->shape, err) : status;
 }
 
-/* A line on the terminal, kept up to date. */
-typedef struct progress_line {
-    const char *name;
-    double shown; /* when */
-} progress_line;
-
-static void show_progress(void *context, size_t spheres, double dice)
-{
-    progress_line *line = context;
-    const double now = omp_get_wtime();
-    if (now - line->shown > 0.1) {
-        line->shown = now;
-        if (isnan(dice)) {
-            fprintf(stderr, "\r%s: %zu spheres to begin with ", line->name, spheres);
-        } else {
-            fprintf(stderr, "\r\033[K%s: %zu spheres, D %.4f ", line->name, spheres, dice);
-        }
-    }
-}
-
 /* What the generators are given; a line is shown on a terminal only. */
-static ms_run make_run(const arguments *a, const ms_input *input, progress_line *line)
+static ms_run make_run(const arguments *a, const ms_input *input, ms_progress_line *line)
 {
-    return (ms_run){.target = &input->target, .stop = a->stop, .settings = &a->settings, .seed = (uint64_t)a->seed,
-                    .progress = isatty(STDERR_FILENO) ? show_progress : NULL, .progress_context = line};
-}
-
-static void clear_progress(const progress_line *line)
-{
-    if (line->shown > 0) {
-        fputs("\r\033[K", stderr);
-    }
+    ms_run run = {.target = &input->target, .stop = a->stop, .settings = &a->recipe.settings,
+                  .seed = (uint64_t)a->recipe.seed};
+    ms_progress_show(&run, line);
+    return run;
 }
 
 static ms_status generate(ms_result *r, const arguments *a, const ms_input *input, ms_error *err)
 {
-    const char *name = a->generator->name;
-    progress_line line = {.name = name};
+    const char *name = a->recipe.generator->name;
+    ms_progress_line line = {.name = name};
     const ms_run run = make_run(a, input, &line);
     const double start = omp_get_wtime();
-    ms_status status = ms_generator_run(&r->clump, &r->reason, a->generator, &run, err);
+    ms_status status = ms_generator_run(&r->clump, &r->reason, a->recipe.generator, &run, err);
     const double generated = omp_get_wtime();
-    clear_progress(&line);
+    ms_progress_clear(&line);
     if (status == MS_OK && r->reason == MS_STOP_EXHAUSTED) {
         fprintf(stderr,
                 "%s: found no place for a further sphere after %zu; more cells may help, or its options (mskit help "
@@ -268,12 +180,13 @@ static ms_status generate(ms_result *r, const arguments *a, const ms_input *inpu
 static ms_status write_curve(const arguments *a, const ms_input *input, const ms_clump *clump, ms_error *err)
 {
     ms_output output;
-    progress_line line = {.name = "curve"};
+    ms_progress_line line = {.name = "curve"};
     const ms_run run = make_run(a, input, &line);
     ms_score *curve = malloc((clump->n_spheres + 1) * sizeof *curve);
-    ms_status status = curve ? ms_curve_compute(curve, clump, a->generator, &run, ms_input_max_voxels(&a->input), err)
+    const size_t max_voxels = ms_input_max_voxels(&a->input);
+    ms_status status = curve ? ms_curve_compute(curve, clump, a->recipe.generator, &run, max_voxels, err)
                              : ms_fail(err, MS_ERR_NOMEM, "no memory for the scores of %zu clumps", clump->n_spheres);
-    clear_progress(&line);
+    ms_progress_clear(&line);
     if (status == MS_OK && (status = ms_output_open(&output, a->curve, err)) == MS_OK) {
         ms_report_curve(output.stream, curve, clump->n_spheres);
         status = ms_output_close(&output, MS_OK, err);
@@ -318,7 +231,9 @@ static ms_status write_outputs(const arguments *a, const ms_input *input, const 
 
 static ms_status report(const arguments *a, const ms_input *input, const ms_result *r, ms_error *err)
 {
-    json_t *json = ms_record_json(a->generator, &a->settings, &a->stop, (uint64_t)a->seed, input, r);
+    const ms_recipe *recipe = &a->recipe;
+    json_t *json =
+        ms_record_json(recipe->generator, &recipe->settings, &a->stop, (uint64_t)recipe->seed, input, r);
     char *record = json ? json_dumps(json, JSON_COMPACT) : NULL;
     ms_status status;
     if (!record) {
@@ -327,7 +242,7 @@ static ms_status report(const arguments *a, const ms_input *input, const ms_resu
     }
     if (!a->json) {
         FILE *words = writes_to_stdout(a) ? stderr : stdout;
-        fprintf(words, "%s with %s, stopped by %s, %.3g s\n", input->path, a->generator->name,
+        fprintf(words, "%s with %s, stopped by %s, %.3g s\n", input->path, recipe->generator->name,
                 ms_stop_name(r->reason), r->generate_seconds);
         ms_report_metrics(words, &r->metrics, &input->target);
         if (r->mass.corrected) {
@@ -374,7 +289,7 @@ static ms_status settle(arguments *a, ms_error *err)
     if (ms_stop_is_none(&a->stop)) {
         a->stop.spheres = DEFAULT_SPHERES;
     }
-    ms_status status = settle_generator(a, err);
+    ms_status status = ms_recipe_settle(&a->recipe, err);
     if (status == MS_OK) {
         status = settle_masses(a, err);
     }
@@ -383,7 +298,7 @@ static ms_status settle(arguments *a, ms_error *err)
 
 static int run(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {.generator_name = "mss", .stop = ms_stop_none(), .seed = 1};
+    arguments a = {.recipe = {.name = "mss", .seed = 1}, .stop = ms_stop_none()};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);
@@ -397,7 +312,7 @@ static int run(const ms_command *command, int argc, char **argv)
     a.shape = argv[first];
     code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_wrong_usage(command, err.text);
     ms_outputs_free(&a.outputs);
-    ms_settings_free(&a.settings);
+    ms_recipe_free(&a.recipe);
     return code;
 }
 

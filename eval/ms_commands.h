@@ -10,6 +10,7 @@ extern const ms_command ms_command_generate;
 extern const ms_command ms_command_generators;
 extern const ms_command ms_command_help;
 extern const ms_command ms_command_info;
+extern const ms_command ms_command_scene;
 extern const ms_command ms_command_score;
 extern const ms_command ms_command_shape;
 

@@ -5,7 +5,7 @@
 
 #include "ms_report.h"
 
-static json_t *settings_json(const ms_settings *settings)
+json_t *ms_record_settings_json(const ms_settings *settings)
 {
     json_t *json = json_object(), *planes = json_array();
     for (size_t o = 0; settings->options[o].name; o++) {
@@ -55,7 +55,7 @@ json_t *ms_record_json(const ms_generator *generator, const ms_settings *setting
                                 input->target.voxelize_seconds, "distance", input->target.distance_seconds, "generate",
                                 r->generate_seconds, "score", r->score_seconds, "cpu", cpu);
     json_t *json = json_pack("{s:s,s:o,s:I,s:o,s:s,s:o,s:o,s:o,s:i,s:I}", "generator", generator->name, "options",
-                     settings_json(settings), "seed", (json_int_t)seed, "until", stop_json(stop),
+                     ms_record_settings_json(settings), "seed", (json_int_t)seed, "until", stop_json(stop),
                      "stopped_by", ms_stop_name(r->reason), "input", ms_report_input_json(input), "scores",
                      ms_report_metrics_json(&r->metrics), "seconds", seconds, "threads", omp_get_max_threads(),
                      "peak_memory_kb", (json_int_t)usage.ru_maxrss);

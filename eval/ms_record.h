@@ -18,6 +18,9 @@ typedef struct ms_result {
     double generate_seconds, score_seconds;
 } ms_result;
 
+/** The options of a generator by name; the caller owns it. */
+json_t *ms_record_settings_json(const ms_settings *settings);
+
 /** Generator, options, seed, stop rule, input, scores, times, memory; the caller owns it; NULL without memory. */
 json_t *ms_record_json(const ms_generator *generator, const ms_settings *settings, const ms_stop *stop, uint64_t seed,
                        const ms_input *input, const ms_result *result);

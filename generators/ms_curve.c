@@ -1,5 +1,8 @@
 #include "ms_curve.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 static int takes_clump(const ms_generator *generator)
 {
     int found = 0;
@@ -9,9 +12,31 @@ static int takes_clump(const ms_generator *generator)
     return found;
 }
 
-/* Where a generator gives fewer spheres than asked for, their score stands for both numbers. */
-static ms_status run_each(ms_score *curve, const ms_clump *clump, const ms_generator *generator, const ms_run *run,
-                          size_t max_voxels, ms_error *err)
+static ms_status copy_spheres(ms_clump *copy, const ms_clump *clump, size_t count, ms_error *err)
+{
+    memset(copy, 0, sizeof *copy);
+    copy->sphere = malloc((count + 1) * sizeof *copy->sphere);
+    if (!copy->sphere) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
+    }
+    memcpy(copy->sphere, clump->sphere, count * sizeof *copy->sphere);
+    copy->n_spheres = copy->capacity = count;
+    return MS_OK;
+}
+
+static void free_clumps(ms_clump *each, size_t count)
+{
+    for (size_t n = 0; n < count; n++) {
+        ms_clump_free(&each[n]);
+    }
+}
+
+/*
+ * A run for each number of spheres, from the largest down. Where a generator gives fewer spheres than asked for, their
+ * score stands for both numbers. Without `each` a clump is freed when the next has started from it.
+ */
+static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_generator *generator,
+                          const ms_run *run, size_t max_voxels, ms_error *err)
 {
     ms_settings settings = *run->settings;
     ms_run one = *run;
@@ -21,11 +46,15 @@ static ms_status run_each(ms_score *curve, const ms_clump *clump, const ms_gener
     ms_stop_reason reason;
     one.settings = &settings;
     one.stop = ms_stop_none();
+    one.stop.radius = run->stop.radius;
     ms_status status = ms_metrics_compute(&metrics, NULL, run->target, clump, max_voxels, err);
     for (size_t n = clump->n_spheres; n >= 1 && status == MS_OK; n--) {
         ms_clump next;
         curve[n - 1] = metrics.score;
-        if (n == 1) {
+        if (each) {
+            status = copy_spheres(&each[n - 1], larger, larger->n_spheres, err);
+        }
+        if (n == 1 || status != MS_OK) {
             break;
         }
         one.stop.spheres = n - 1;
@@ -44,10 +73,33 @@ static ms_status run_each(ms_score *curve, const ms_clump *clump, const ms_gener
     return status;
 }
 
+static ms_status take_prefixes(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_run *run,
+                               size_t max_voxels, ms_error *err)
+{
+    ms_metrics metrics;
+    ms_status status = ms_metrics_compute(&metrics, curve, run->target, clump, max_voxels, err);
+    for (size_t n = 1; each && n <= clump->n_spheres && status == MS_OK; n++) {
+        status = copy_spheres(&each[n - 1], clump, n, err);
+    }
+    return status;
+}
+
+ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_generator *generator,
+                          const ms_run *run, size_t max_voxels, ms_error *err)
+{
+    if (each) {
+        memset(each, 0, clump->n_spheres * sizeof *each);
+    }
+    const ms_status status = generator->nested ? take_prefixes(curve, each, clump, run, max_voxels, err)
+                                               : run_each(curve, each, clump, generator, run, max_voxels, err);
+    if (each && status != MS_OK) {
+        free_clumps(each, clump->n_spheres);
+    }
+    return status;
+}
+
 ms_status ms_curve_compute(ms_score *curve, const ms_clump *clump, const ms_generator *generator, const ms_run *run,
                            size_t max_voxels, ms_error *err)
 {
-    ms_metrics metrics;
-    return generator->nested ? ms_metrics_compute(&metrics, curve, run->target, clump, max_voxels, err)
-                             : run_each(curve, clump, generator, run, max_voxels, err);
+    return ms_curve_clumps(curve, NULL, clump, generator, run, max_voxels, err);
 }

@@ -16,7 +16,7 @@ MS_C_BEGIN
  *
  * @param[out] curve      clump->n_spheres values
  * @param      clump      what the same run gave
- * @param      run        its stop rule is not heeded
+ * @param      run        of its stop rule the least radius is heeded
  * @param      max_voxels as for ms_metrics_compute
  * @return MS_OK; as ms_generator_run and ms_metrics_compute
  *
@@ -24,6 +24,17 @@ MS_C_BEGIN
  */
 ms_status ms_curve_compute(ms_score *curve, const ms_clump *clump, const ms_generator *generator, const ms_run *run,
                            size_t max_voxels, ms_error *err);
+
+/**
+ * The same, and the clumps themselves.
+ *
+ * @param[out] each clumps of 1, 2, ... spheres, clump->n_spheres of them, or NULL; of fewer spheres where the
+ *                  generator gave fewer than it was asked for. The caller frees each; empty on failure
+ *
+ * Memory: 32 n^2 bytes at the most for n spheres.
+ */
+ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_generator *generator,
+                          const ms_run *run, size_t max_voxels, ms_error *err);
 
 MS_C_END
 

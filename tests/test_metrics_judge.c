@@ -114,7 +114,10 @@ static void the_curve_is_made_of_the_scores_of_the_prefixes(void **state)
         const ms_sphere *s = &clump.sphere[k];
         add_sphere(&prefix, s->centre[0], s->centre[1], s->centre[2], s->radius);
         const ms_metrics m = measure(&target, &prefix, NULL);
-        assert_memory_equal(&m.score, &curve[k], sizeof m.score);
+        assert_memory_equal(&m.score, &curve[k], offsetof(ms_score, inertia));
+        assert_true(m.score.inertia == m.inertia.weighted);
+        /* The grid of fewer spheres may begin elsewhere, which turns the last bits of sums over its indices. */
+        assert_true(fabs(m.score.inertia - curve[k].inertia) < 1e-12);
         assert_true(k == 0 || curve[k].coverage >= curve[k - 1].coverage);
     }
     ms_clump_free(&clump);

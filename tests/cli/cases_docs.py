@@ -67,7 +67,9 @@ class Documents(Case):
                        "d.json", "-o", "d.yade")
             records = [json.loads(self.read("c.json")), json.loads(self.read("d.json")),
                        json.loads(self.read("d.frame.json")), self.mskit("info", shape, "--json").json,
-                       self.mskit("score", "c.csv", "--target", shape, *grid, "--json").json]
+                       self.mskit("score", "c.csv", "--target", shape, *grid, "--json").json,
+                       self.mskit("scene", shape, *grid, "-g", "mss", "--tolerance", "dice=0.5", "--json").json]
+            records += records[-1]["shapes"]
             for record in records:
                 record.pop("options", None)  # those of a method are on its own page
                 for key in keys(record):

@@ -1,0 +1,343 @@
+/* mskit scene MANIFEST|SHAPE */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_commands.h"
+#include "ms_file.h"
+#include "ms_outputs.h"
+#include "ms_record.h"
+#include "ms_report.h"
+#include "ms_scene.h"
+
+enum { DEFAULT_MAX_SPHERES = 100 };
+
+/* So that every number of spheres in a scene is a double. */
+static const double MAX_BUDGET = 1e15;
+
+static const ms_flag FLAGS[] = {
+    {"budget", 0, "SPHERES", "spheres in the whole scene: the least mean D that they pay for"},
+    {"tolerance", 0, "MEASURE=VALUE",
+     "dice, eta, coverage or inertia of each shape; the column tolerance of the manifest goes before it"},
+    {"mean-tolerance", 0, "dice=VALUE", "mean D over all particles: the fewest spheres in the whole scene"},
+    {"knee", 0, "PART", "each shape's number of spheres from which a further one takes away less than this part of D"},
+    {"max-spheres", 0, "N", "spheres of the largest template (100)"},
+    {"min-radius", 0, "R", "no sphere smaller than this, for the sake of the time step"},
+    MS_RECIPE_FLAGS("variational"),
+    {"output", 'o', "DIR", "write the templates into this folder, each by the name of its shape"},
+    {"format", 0, "F", "format of the templates: csv, json or vtk (csv)"},
+    {"json", 0, NULL, "as JSON"},
+    MS_INPUT_FLAGS,
+    {0},
+};
+
+typedef struct arguments {
+    const char *source; /* manifest or shape */
+    ms_goal goal;
+    double max_spheres, min_radius;
+    ms_recipe recipe;
+    ms_input_flags input;
+    const char *folder;
+    const ms_format *format;
+    int json;
+} arguments;
+
+static ms_status set_goal(ms_goal *goal, ms_goal_kind kind, double value, ms_error *err)
+{
+    if (goal->kind != MS_GOAL_NONE) {
+        return ms_fail(err, MS_ERR_ARG,
+                       "--budget, --tolerance, --mean-tolerance and --knee exclude one another; give one, once");
+    }
+    goal->kind = kind;
+    goal->value = value;
+    return MS_OK;
+}
+
+static ms_status take_tolerance(ms_goal *goal, const char *flag, const char *text, ms_error *err)
+{
+    char name[64];
+    const char *value = NULL;
+    double number;
+    const int mean = strcmp(flag, "mean-tolerance") == 0;
+    ms_status status = ms_flag_assignment(name, &value, text, err);
+    const ms_scene_measure *measure = status == MS_OK ? ms_scene_measure_find(name, err) : NULL;
+    if (!measure) {
+        return MS_ERR_ARG;
+    }
+    if (mean && strcmp(name, "dice") != 0) {
+        return ms_fail(err, MS_ERR_ARG, "--mean-tolerance takes dice=VALUE alone, not %s", name);
+    }
+    status = ms_flag_number(&number, flag, value ? value : "", 0, 1, err);
+    if (status == MS_OK) {
+        status = set_goal(goal, mean ? MS_GOAL_MEAN : MS_GOAL_TOLERANCE, number, err);
+        goal->measure = measure;
+    }
+    return status;
+}
+
+static ms_status take_goal(int *taken, ms_goal *goal, const char *name, const char *value, ms_error *err)
+{
+    double number;
+    ms_status status;
+    *taken = 1;
+    if (strcmp(name, "budget") == 0) {
+        status = ms_flag_whole(&number, name, value, 1, MAX_BUDGET, err);
+        return status == MS_OK ? set_goal(goal, MS_GOAL_BUDGET, number, err) : status;
+    }
+    if (strcmp(name, "knee") == 0) {
+        status = ms_flag_number(&number, name, value, 1e-9, 1, err);
+        return status == MS_OK ? set_goal(goal, MS_GOAL_KNEE, number, err) : status;
+    }
+    if (strcmp(name, "tolerance") == 0 || strcmp(name, "mean-tolerance") == 0) {
+        return take_tolerance(goal, name, value, err);
+    }
+    *taken = 0;
+    return MS_OK;
+}
+
+static ms_status take_format(arguments *a, const char *name, ms_error *err)
+{
+    a->format = ms_format_find(name, err);
+    if (a->format && a->format->need != MS_NEED_SPHERES) {
+        return ms_fail(err, MS_ERR_ARG, "a %s template needs the mass of the particle: use mskit correct on each",
+                       name);
+    }
+    return a->format ? MS_OK : MS_ERR_ARG;
+}
+
+static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+{
+    arguments *a = context;
+    int taken;
+    ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
+    if (!taken) {
+        status = take_goal(&taken, &a->goal, name, value, err);
+    }
+    if (taken) {
+        return status;
+    }
+    if (strcmp(name, "max-spheres") == 0) {
+        return ms_flag_whole(&a->max_spheres, name, value, 1, MS_SCENE_MAX_SPHERES, err);
+    }
+    if (strcmp(name, "min-radius") == 0) {
+        return ms_flag_number(&a->min_radius, name, value, 1e-300, 1e300, err);
+    }
+    if (strcmp(name, "output") == 0) {
+        a->folder = value;
+        return value[0] ? MS_OK : ms_fail(err, MS_ERR_ARG, "--output '' names no folder");
+    }
+    if (strcmp(name, "format") == 0) {
+        return take_format(a, value, err);
+    }
+    if (strcmp(name, "json") == 0) {
+        a->json = 1;
+        return MS_OK;
+    }
+    return ms_recipe_flag(&taken, &a->recipe, name, value, err);
+}
+
+/* What flags and manifest say together. */
+static ms_status settle_goal(ms_goal *goal, const ms_manifest *manifest, const char *source, ms_error *err)
+{
+    size_t tolerances = 0;
+    double particles = 0;
+    for (size_t r = 0; r < manifest->count; r++) {
+        tolerances += !isnan(manifest->row[r].tolerance);
+        particles += (double)manifest->row[r].particles;
+    }
+    if (goal->kind == MS_GOAL_NONE && tolerances == manifest->count) {
+        *goal = (ms_goal){MS_GOAL_TOLERANCE, (double)NAN, ms_scene_measure_find("dice", err)};
+    }
+    if (goal->kind == MS_GOAL_NONE) {
+        return ms_fail(err, MS_ERR_ARG,
+                       "no goal; give --budget, --tolerance, --mean-tolerance or --knee, or a tolerance for each shape "
+                       "of %s",
+                       source);
+    }
+    if (goal->kind != MS_GOAL_TOLERANCE && tolerances > 0) {
+        return ms_fail(err, MS_ERR_ARG, "the tolerances in %s go with --tolerance or alone; drop that column",
+                       source);
+    }
+    if (goal->kind == MS_GOAL_BUDGET && goal->value < particles) {
+        return ms_fail(err, MS_ERR_LIMIT,
+                       "%s: a budget of %.0f spheres is less than one for each of %.0f particles; raise it", source,
+                       goal->value, particles);
+    }
+    return MS_OK;
+}
+
+/* FOLDER/NAME.ENDING, where NAME is that of the shape without folder and ending. The caller frees it; NULL without
+ * memory. */
+static char *template_path(const arguments *a, const char *shape)
+{
+    const char *slash = strrchr(shape, '/'), *base = slash ? slash + 1 : shape, *dot = strrchr(base, '.');
+    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
+    const size_t room = strlen(a->folder) + (size_t)length + strlen(a->format->ending) + 3;
+    char *path = malloc(room);
+    if (path) {
+        snprintf(path, room, "%s/%.*s.%s", a->folder, length, base, a->format->ending);
+    }
+    return path;
+}
+
+/* Names the file of each template and tries it. Without a folder there are none. */
+static ms_status plan_outputs(ms_outputs *outputs, const arguments *a, const ms_manifest *manifest, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t r = 0; a->folder && r < manifest->count && status == MS_OK; r++) {
+        const char *shape = manifest->row[r].path;
+        char *path = template_path(a, shape);
+        if (!path) {
+            return ms_fail(err, MS_ERR_NOMEM, "no memory for the names of %zu templates", manifest->count);
+        }
+        outputs[r] = (ms_outputs){.folder = a->folder, .file = {{path, path, a->format}}, .n_files = 1};
+        for (size_t before = 0; before < r && status == MS_OK; before++) {
+            if (strcmp(outputs[before].file[0].path, path) == 0) {
+                status = ms_fail(err, MS_ERR_ARG,
+                                 "the templates of %s and %s would both be %s; rename one of the shapes",
+                                 manifest->row[before].path, shape, path);
+            }
+        }
+        if (status == MS_OK) {
+            status = ms_outputs_try(&outputs[r], shape, err);
+        }
+        if (status == MS_OK) {
+            status = ms_outputs_try_file(a->source, path, err);
+        }
+    }
+    return status;
+}
+
+/* How a template came about, for its JSON file. */
+static char *record_of(const arguments *a, const ms_scene_shape *shape)
+{
+    json_t *json = ms_scene_record_json(&a->recipe, (size_t)a->max_spheres, a->min_radius);
+    json_object_set_new(json, "scores", ms_scene_scores_json(shape));
+    json_object_set(json, "input", shape->input);
+    char *record = json ? json_dumps(json, JSON_COMPACT) : NULL;
+    json_decref(json);
+    return record;
+}
+
+static ms_status write_templates(const ms_outputs *outputs, const arguments *a, const ms_scene *scene, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t s = 0; a->folder && s < scene->count && status == MS_OK; s++) {
+        char *record = record_of(a, &scene->shape[s]);
+        const ms_content content = {.clump = ms_scene_clump(&scene->shape[s]), .record = record};
+        status = record ? ms_outputs_write(&outputs[s], &content, a->json ? stderr : stdout, err)
+                        : ms_fail(err, MS_ERR_NOMEM, "no memory for the record of a template");
+        free(record);
+    }
+    return status;
+}
+
+static ms_status report(const arguments *a, const ms_scene *scene, ms_error *err)
+{
+    if (!a->json) {
+        printf("%s with %s: ", a->source, a->recipe.generator->name);
+        ms_scene_print(stdout, scene, &a->goal);
+        return MS_OK;
+    }
+    json_t *json = ms_scene_record_json(&a->recipe, (size_t)a->max_spheres, a->min_radius);
+    ms_scene_add_json(json, scene, &a->goal);
+    return ms_report_print(stdout, json, err);
+}
+
+static ms_status work(arguments *a, const ms_manifest *manifest, ms_outputs *outputs, ms_error *err)
+{
+    ms_scene scene;
+    const ms_scene_run run = {&a->recipe, &a->input, (size_t)a->max_spheres, a->min_radius};
+    ms_status status = plan_outputs(outputs, a, manifest, err);
+    if (status == MS_OK) {
+        status = ms_scene_make(&scene, manifest, &run, &a->goal, err);
+    }
+    if (status != MS_OK) {
+        return status;
+    }
+    status = ms_scene_settle(&scene, &a->goal, err);
+    if (status == MS_OK) {
+        status = report(a, &scene, err);
+    }
+    if (status == MS_OK) {
+        status = write_templates(outputs, a, &scene, err);
+    }
+    ms_scene_free(&scene);
+    return status;
+}
+
+/* A manifest is known by its ending; any other file is a shape of which there is one. */
+static ms_status read_manifest(ms_manifest *manifest, const char *source, ms_error *err)
+{
+    char ending[16];
+    ms_file_ending(ending, source);
+    return strcmp(ending, "csv") == 0 ? ms_manifest_read(manifest, source, err)
+                                      : ms_manifest_of_shape(manifest, source, err);
+}
+
+static int settle_and_work(const ms_command *command, arguments *a, const ms_manifest *manifest)
+{
+    ms_error err;
+    ms_status status = settle_goal(&a->goal, manifest, a->source, &err);
+    if (status == MS_ERR_ARG) {
+        return ms_wrong_usage(command, err.text);
+    }
+    ms_outputs *outputs = calloc(manifest->count, sizeof *outputs);
+    if (!outputs) {
+        status = ms_fail(&err, MS_ERR_NOMEM, "no memory for %zu templates", manifest->count);
+    }
+    if (status == MS_OK) {
+        status = work(a, manifest, outputs, &err);
+    }
+    for (size_t r = 0; outputs && r < manifest->count; r++) {
+        ms_outputs_free(&outputs[r]);
+    }
+    free(outputs);
+    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+}
+
+static int read_and_work(const ms_command *command, arguments *a)
+{
+    ms_manifest manifest;
+    ms_error err;
+    if (read_manifest(&manifest, a->source, &err) != MS_OK) {
+        return ms_fail_command(command, &err);
+    }
+    const int code = settle_and_work(command, a, &manifest);
+    ms_manifest_free(&manifest);
+    return code;
+}
+
+static int run(const ms_command *command, int argc, char **argv)
+{
+    arguments a = {.max_spheres = DEFAULT_MAX_SPHERES, .min_radius = -1, .recipe = {.name = "variational", .seed = 1}};
+    int first;
+    ms_error err;
+    ms_input_defaults(&a.input);
+    int code = ms_flags_parse(&first, command, 1, argc, argv, take_flag, &a);
+    if (code != MS_FLAGS_GO_ON) {
+        return code;
+    }
+    if (argc - first != 1) {
+        return ms_wrong_usage(command, "takes one manifest (.csv: shape,count) or one shape");
+    }
+    if (a.format && !a.folder) {
+        return ms_wrong_usage(command, "--format is that of the templates; give -o DIR beside it");
+    }
+    a.source = argv[first];
+    a.format = a.format ? a.format : ms_format_find("csv", &err);
+    code = ms_recipe_settle(&a.recipe, &err) == MS_OK ? read_and_work(command, &a)
+                                                      : ms_wrong_usage(command, err.text);
+    ms_recipe_free(&a.recipe);
+    return code;
+}
+
+const ms_command ms_command_scene = {
+    .name = "scene",
+    .summary = "how many spheres each shape of a scene needs, and its templates",
+    .usage = "MANIFEST|SHAPE --budget N|--tolerance MEASURE=V|--mean-tolerance dice=V|--knee PART [-o DIR]",
+    .example = "mskit scene grain.stl --knee 0.1 --max-spheres 20 --cells 50 -o templates",
+    .flags = FLAGS,
+    .run = run,
+};

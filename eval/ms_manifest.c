@@ -1,0 +1,192 @@
+#include "ms_manifest.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "ms_text.h"
+
+enum { SHAPE, COUNT, TOLERANCE, COLUMNS };
+
+/* Takes the blanks off both ends. */
+static ms_word trim(const char *start, const char *stop)
+{
+    while (start < stop && (*start == ' ' || *start == '\t')) {
+        start++;
+    }
+    while (stop > start && (stop[-1] == ' ' || stop[-1] == '\t')) {
+        stop--;
+    }
+    return (ms_word){start, (size_t)(stop - start)};
+}
+
+/* Cuts a line at its commas. Returns how many fields there are, of which the first COLUMNS are kept. */
+static int split(ms_word field[COLUMNS], const ms_word *line)
+{
+    const char *at = line->start, *end = line->start + line->length;
+    for (int fields = 0;; fields++) {
+        const char *comma = memchr(at, ',', (size_t)(end - at));
+        if (fields < COLUMNS) {
+            field[fields] = trim(at, comma ? comma : end);
+        }
+        if (!comma) {
+            return fields + 1;
+        }
+        at = comma + 1;
+    }
+}
+
+/* Returns the number of columns. */
+static ms_status read_header(int *columns, ms_text *text, ms_error *err)
+{
+    static const char *const NAMES[COLUMNS] = {"shape", "count", "tolerance"};
+    ms_word field[COLUMNS] = {{0}};
+    if (!ms_text_seek(text)) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: the manifest is empty; its first line is shape,count", text->name);
+    }
+    const ms_word line = ms_text_rest(text);
+    *columns = split(field, &line);
+    int known = *columns >= 2 && *columns <= COLUMNS;
+    for (int c = 0; c < *columns && known; c++) {
+        known = ms_word_is(&field[c], NAMES[c]);
+    }
+    return known ? MS_OK
+                 : ms_text_fail(err, text, "the header is '%s', not shape,count or shape,count,tolerance",
+                                ms_word_quote(&line).text);
+}
+
+/* The path of a shape, from where the program runs. The caller frees it; NULL without memory. */
+static char *join(const char *manifest, const ms_word *shape)
+{
+    const char *slash = strrchr(manifest, '/');
+    const size_t folder = slash && shape->start[0] != '/' ? (size_t)(slash - manifest) + 1 : 0;
+    char *path = malloc(folder + shape->length + 1);
+    if (path) {
+        memcpy(path, manifest, folder);
+        memcpy(path + folder, shape->start, shape->length);
+        path[folder + shape->length] = 0;
+    }
+    return path;
+}
+
+static ms_status check_shape(const ms_manifest *manifest, const char *path, const ms_text *text, ms_error *err)
+{
+    for (size_t r = 0; r < manifest->count; r++) {
+        if (strcmp(manifest->row[r].path, path) == 0) {
+            return ms_text_fail(err, text, "%.180s stands twice; add up the counts", path);
+        }
+    }
+    return access(path, R_OK) == 0 ? MS_OK
+                                   : ms_text_fail(err, text, "%.180s cannot be read: %s", path, strerror(errno));
+}
+
+static ms_status read_count(uint64_t *particles, const ms_word *word, const ms_text *text, ms_error *err)
+{
+    int64_t count;
+    if (!ms_word_integer(&count, word) || count < 1 || count > MS_MANIFEST_MAX_PARTICLES) {
+        return ms_text_fail(err, text, "the count '%s' is not a whole number from 1 to %d", ms_word_quote(word).text,
+                            MS_MANIFEST_MAX_PARTICLES);
+    }
+    *particles = (uint64_t)count;
+    return MS_OK;
+}
+
+static ms_status read_tolerance(double *tolerance, const ms_word *word, const ms_text *text, ms_error *err)
+{
+    *tolerance = (double)NAN;
+    if (word->length > 0 && (!ms_word_double(tolerance, word) || !(*tolerance >= 0 && *tolerance <= 1))) {
+        return ms_text_fail(err, text, "the tolerance '%s' is not a number from 0 to 1", ms_word_quote(word).text);
+    }
+    return MS_OK;
+}
+
+/* Adds a row; on failure what it holds is freed with the manifest. */
+static ms_status read_row(ms_manifest *manifest, int columns, ms_text *text, ms_error *err)
+{
+    ms_word field[COLUMNS] = {{0}};
+    const ms_word line = ms_text_rest(text);
+    const int fields = split(field, &line);
+    if (memchr(line.start, '"', line.length)) {
+        return ms_text_fail(err, text, "a quotation mark; names with commas or quotation marks are not taken");
+    }
+    if (fields != columns || field[SHAPE].length == 0) {
+        return ms_text_fail(err, text, "'%s' is not a shape and %d more columns, as the header says",
+                            ms_word_quote(&line).text, columns - 1);
+    }
+    if (manifest->count == MS_MANIFEST_MAX_SHAPES) {
+        return ms_text_fail(err, text, "more than %d shapes", MS_MANIFEST_MAX_SHAPES);
+    }
+    ms_manifest_row row = {.path = join(text->name, &field[SHAPE]), .tolerance = (double)NAN};
+    if (!row.path) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu shapes", manifest->count + 1);
+    }
+    ms_status status = check_shape(manifest, row.path, text, err);
+    manifest->row[manifest->count++] = row;
+    if (status == MS_OK) {
+        status = read_count(&manifest->row[manifest->count - 1].particles, &field[COUNT], text, err);
+    }
+    if (status == MS_OK) {
+        status = read_tolerance(&manifest->row[manifest->count - 1].tolerance, &field[TOLERANCE], text, err);
+    }
+    return status;
+}
+
+static ms_status parse(ms_manifest *manifest, const ms_bytes *bytes, const char *path, ms_error *err)
+{
+    ms_text text;
+    int columns = 0;
+    if (memchr(bytes->data, 0, bytes->size)) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: this is not a text file shape,count", path);
+    }
+    ms_text_start(&text, bytes, path);
+    text.comment = '#';
+    ms_status status = read_header(&columns, &text, err);
+    while (status == MS_OK && ms_text_seek(&text)) {
+        status = read_row(manifest, columns, &text, err);
+    }
+    if (status == MS_OK && manifest->count == 0) {
+        status = ms_fail(err, MS_ERR_FORMAT, "%s: no shape stands below the header", path);
+    }
+    return status;
+}
+
+ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *err)
+{
+    ms_bytes bytes;
+    *manifest = (ms_manifest){.row = calloc(MS_MANIFEST_MAX_SHAPES, sizeof *manifest->row)};
+    ms_status status = manifest->row ? ms_file_read(&bytes, path, err)
+                                     : ms_fail(err, MS_ERR_NOMEM, "no memory for the manifest");
+    if (status == MS_OK) {
+        status = parse(manifest, &bytes, path, err);
+        ms_bytes_free(&bytes);
+    }
+    if (status != MS_OK) {
+        ms_manifest_free(manifest);
+    }
+    return status;
+}
+
+ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, ms_error *err)
+{
+    *manifest = (ms_manifest){.row = calloc(1, sizeof *manifest->row), .count = 1};
+    char *path = strdup(shape);
+    if (!manifest->row || !path) {
+        free(path);
+        free(manifest->row);
+        *manifest = (ms_manifest){0};
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the shape %s", shape);
+    }
+    manifest->row[0] = (ms_manifest_row){path, 1, (double)NAN};
+    return MS_OK;
+}
+
+void ms_manifest_free(ms_manifest *manifest)
+{
+    for (size_t r = 0; r < manifest->count; r++) {
+        free(manifest->row[r].path);
+    }
+    free(manifest->row);
+    *manifest = (ms_manifest){0};
+}

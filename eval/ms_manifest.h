@@ -1,0 +1,41 @@
+/** What a scene is made of: a CSV file of shapes and how many there are of each. */
+#ifndef MS_MANIFEST_H
+#define MS_MANIFEST_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "ms_error.h"
+
+enum { MS_MANIFEST_MAX_SHAPES = 1000, MS_MANIFEST_MAX_PARTICLES = 1000000000 };
+
+/** One kind of particle. */
+typedef struct ms_manifest_row {
+    char *path; /* of the shape, as it can be opened */
+    uint64_t particles;
+    double tolerance; /* NAN: none is given */
+} ms_manifest_row;
+
+/** A zeroed struct is empty. */
+typedef struct ms_manifest {
+    ms_manifest_row *row;
+    size_t count;
+} ms_manifest;
+
+/**
+ * Reads a manifest: the header `shape,count` or `shape,count,tolerance`, then a line for each shape. Paths are relative
+ * to the folder of the manifest. Empty lines and lines that begin with '#' are skipped.
+ *
+ * @param[out] manifest the caller frees it; empty on failure
+ * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line: another header, a shape that cannot be read or stands twice,
+ *         a count that is no whole number from 1 to MS_MANIFEST_MAX_PARTICLES, a tolerance that is none from 0 to 1, no
+ *         shape or too many; MS_ERR_NOMEM
+ */
+ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *err);
+
+/** One particle of one shape. @return MS_OK; MS_ERR_NOMEM */
+ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, ms_error *err);
+
+void ms_manifest_free(ms_manifest *manifest);
+
+#endif

@@ -1,0 +1,80 @@
+#include "ms_recipe.h"
+
+#include <string.h>
+
+ms_status ms_flag_assignment(char name[64], const char **value, const char *text, ms_error *err)
+{
+    const char *equals = strchr(text, '=');
+    const size_t length = equals ? (size_t)(equals - text) : strlen(text);
+    if (length == 0 || length >= 64) {
+        return ms_fail(err, MS_ERR_ARG, "'%s' is not of the form name=value", text);
+    }
+    memcpy(name, text, length);
+    name[length] = 0;
+    *value = equals ? equals + 1 : NULL;
+    return MS_OK;
+}
+
+static int is_option(const char *name)
+{
+    for (const ms_generator *const *g = ms_generators; *g; g++) {
+        if (ms_option_find((*g)->options, name)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Which options there are is known when all flags are read: the generator may come last. */
+static ms_status take_wish(ms_recipe *recipe, const char *name, const char *text, ms_error *err)
+{
+    if (recipe->n_wishes == MS_RECIPE_MAX_OPTIONS) {
+        return ms_fail(err, MS_ERR_LIMIT, "more than %d options of the generator", MS_RECIPE_MAX_OPTIONS);
+    }
+    recipe->wish[recipe->n_wishes++] = (ms_wish){name, text};
+    return MS_OK;
+}
+
+ms_status ms_recipe_flag(int *taken, ms_recipe *recipe, const char *name, const char *value, ms_error *err)
+{
+    *taken = 1;
+    if (strcmp(name, "generator") == 0) {
+        recipe->name = value;
+        return MS_OK;
+    }
+    if (strcmp(name, "seed") == 0) {
+        return ms_flag_whole(&recipe->seed, name, value, 0, 9007199254740992.0, err);
+    }
+    if (strcmp(name, "set") == 0) {
+        return take_wish(recipe, NULL, value, err);
+    }
+    if (is_option(name)) {
+        return take_wish(recipe, name, value, err);
+    }
+    *taken = 0;
+    return MS_OK;
+}
+
+ms_status ms_recipe_settle(ms_recipe *recipe, ms_error *err)
+{
+    recipe->generator = ms_generator_find(recipe->name, err);
+    ms_status status =
+        recipe->generator ? ms_settings_init(&recipe->settings, recipe->generator->options, err) : MS_ERR_ARG;
+    for (int w = 0; w < recipe->n_wishes && status == MS_OK; w++) {
+        const ms_wish *wish = &recipe->wish[w];
+        char name[64];
+        const char *value = wish->text;
+        if (!wish->name) {
+            status = ms_flag_assignment(name, &value, wish->text, err);
+        }
+        if (status == MS_OK) {
+            status = ms_settings_set(&recipe->settings, wish->name ? wish->name : name, value, err);
+        }
+    }
+    return status;
+}
+
+void ms_recipe_free(ms_recipe *recipe)
+{
+    ms_settings_free(&recipe->settings);
+}

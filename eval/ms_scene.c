@@ -1,0 +1,270 @@
+#include "ms_scene.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_curve.h"
+#include "ms_progress.h"
+#include "ms_report.h"
+
+static const ms_scene_measure MEASURES[] = {
+    {"dice", offsetof(ms_score, dice), 0},       {"eta", offsetof(ms_score, eta), 0},
+    {"coverage", offsetof(ms_score, coverage), 1}, {"inertia", offsetof(ms_score, inertia), 0},
+    {0},
+};
+
+const ms_scene_measure *ms_scene_measure_find(const char *name, ms_error *err)
+{
+    for (const ms_scene_measure *m = MEASURES; m->name; m++) {
+        if (strcmp(m->name, name) == 0) {
+            return m;
+        }
+    }
+    ms_fail(err, MS_ERR_ARG, "there is no measure '%s'; choose from dice, eta, coverage, inertia", name);
+    return NULL;
+}
+
+const ms_clump *ms_scene_clump(const ms_scene_shape *shape)
+{
+    return &shape->clump[shape->chosen - 1];
+}
+
+const ms_score *ms_scene_score(const ms_scene_shape *shape)
+{
+    return &shape->score[shape->chosen - 1];
+}
+
+double ms_scene_gain(const ms_scene_shape *shape)
+{
+    return shape->chosen > 1 ? shape->dice[shape->chosen - 2] - shape->dice[shape->chosen - 1] : (double)NAN;
+}
+
+const ms_scene_shape *ms_scene_smallest(const ms_scene *scene)
+{
+    const ms_scene_shape *smallest = &scene->shape[0];
+    for (size_t s = 1; s < scene->count; s++) {
+        if (ms_clump_smallest_radius(ms_scene_clump(&scene->shape[s])) <
+            ms_clump_smallest_radius(ms_scene_clump(smallest))) {
+            smallest = &scene->shape[s];
+        }
+    }
+    return smallest;
+}
+
+static double measured(const ms_score *score, const ms_scene_measure *measure)
+{
+    double value;
+    memcpy(&value, (const char *)score + measure->offset, sizeof value);
+    return value;
+}
+
+/* The least number of spheres that reaches a tolerance. */
+static ms_status choose_by_tolerance(ms_scene_shape *shape, const ms_goal *goal, ms_error *err)
+{
+    const double value = isnan(shape->row->tolerance) ? goal->value : shape->row->tolerance;
+    double best = (double)NAN;
+    for (size_t n = 1; n <= shape->most; n++) {
+        const double have = measured(&shape->score[n - 1], goal->measure);
+        if (goal->measure->rises ? have >= value : have <= value) {
+            shape->chosen = n;
+            return MS_OK;
+        }
+        best = goal->measure->rises ? fmax(best, have) : fmin(best, have);
+    }
+    return ms_fail(err, MS_ERR_LIMIT,
+                   "%s: no template of up to %zu spheres has %s %.6g, the best has %.6g; raise --max-spheres or ease "
+                   "the tolerance",
+                   shape->row->path, shape->most, goal->measure->name, value, best);
+}
+
+static ms_share share_of(const ms_scene_shape *shape)
+{
+    return (ms_share){shape->row->particles, shape->most, shape->dice};
+}
+
+static ms_status choose_by_knee(ms_scene_shape *shape, const ms_goal *goal, ms_error *err)
+{
+    const ms_share share = share_of(shape);
+    shape->chosen = ms_allocate_knee(&share, goal->value);
+    return shape->chosen > 0
+               ? MS_OK
+               : ms_fail(err, MS_ERR_LIMIT,
+                         "%s: up to the last of %zu spheres each takes away %.6g of D or more; raise --max-spheres or "
+                         "the part",
+                         shape->row->path, shape->most, goal->value);
+}
+
+/* What the goal says of a shape alone. */
+static ms_status choose_alone(ms_scene_shape *shape, const ms_goal *goal, ms_error *err)
+{
+    if (goal->kind == MS_GOAL_TOLERANCE) {
+        return choose_by_tolerance(shape, goal, err);
+    }
+    return goal->kind == MS_GOAL_KNEE ? choose_by_knee(shape, goal, err) : MS_OK;
+}
+
+/* Where a method gave fewer spheres than asked for, the better of both clumps stands at their number. */
+static void settle_numbers(ms_scene_shape *shape)
+{
+    for (size_t n = shape->most; n >= 1; n--) {
+        const size_t have = shape->clump[n - 1].n_spheres;
+        if (have < n && shape->score[n - 1].dice < shape->score[have - 1].dice) {
+            const ms_clump clump = shape->clump[n - 1];
+            const ms_score score = shape->score[n - 1];
+            shape->clump[n - 1] = shape->clump[have - 1];
+            shape->score[n - 1] = shape->score[have - 1];
+            shape->clump[have - 1] = clump;
+            shape->score[have - 1] = score;
+        }
+    }
+    for (size_t n = 0; n < shape->most; n++) {
+        shape->dice[n] = shape->score[n].dice;
+    }
+}
+
+static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const ms_run *run,
+                            const ms_generator *generator, size_t max_voxels, ms_error *err)
+{
+    const size_t count = clump->n_spheres;
+    shape->clump = calloc(count, sizeof *shape->clump);
+    shape->score = calloc(count, sizeof *shape->score);
+    shape->dice = calloc(count, sizeof *shape->dice);
+    if (!shape->clump || !shape->score || !shape->dice) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu templates", count);
+    }
+    shape->most = count;
+    const ms_status status =
+        ms_curve_clumps(shape->score, shape->clump, clump, generator, run, max_voxels, err);
+    if (status == MS_OK) {
+        settle_numbers(shape);
+    }
+    return status;
+}
+
+static ms_status make_templates(ms_scene_shape *shape, const ms_input *input, const ms_scene_run *how, ms_error *err)
+{
+    const ms_recipe *recipe = how->recipe;
+    ms_progress_line line = {.name = shape->row->path};
+    ms_stop_reason reason;
+    ms_clump clump;
+    ms_error cause;
+    ms_run run = {.target = &input->target, .stop = ms_stop_none(), .settings = &recipe->settings,
+                  .seed = (uint64_t)recipe->seed};
+    run.stop.spheres = how->max_spheres;
+    run.stop.radius = how->min_radius;
+    ms_progress_show(&run, &line);
+    shape->input = ms_report_input_json(input);
+    ms_status status = ms_generator_run(&clump, &reason, recipe->generator, &run, &cause);
+    if (status == MS_OK) {
+        status = make_curve(shape, &clump, &run, recipe->generator, ms_input_max_voxels(how->input), &cause);
+        ms_clump_free(&clump);
+    }
+    ms_progress_clear(&line);
+    return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
+}
+
+static ms_status make_shape(ms_scene_shape *shape, const ms_manifest_row *row, const ms_scene_run *run,
+                            const ms_goal *goal, ms_error *err)
+{
+    ms_input input;
+    shape->row = row;
+    ms_status status = ms_input_read(&input, row->path, run->input, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    status = ms_input_target(&input, run->input, err);
+    if (status == MS_OK) {
+        status = make_templates(shape, &input, run, err);
+    }
+    ms_input_free(&input);
+    return status == MS_OK ? choose_alone(shape, goal, err) : status;
+}
+
+ms_status ms_scene_make(ms_scene *scene, const ms_manifest *manifest, const ms_scene_run *run, const ms_goal *goal,
+                        ms_error *err)
+{
+    *scene = (ms_scene){.count = manifest->count, .shape = calloc(manifest->count, sizeof *scene->shape)};
+    if (!scene->shape) {
+        *scene = (ms_scene){0};
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu shapes", manifest->count);
+    }
+    ms_status status = MS_OK;
+    for (size_t s = 0; s < scene->count && status == MS_OK; s++) {
+        status = make_shape(&scene->shape[s], &manifest->row[s], run, goal, err);
+    }
+    if (status != MS_OK) {
+        ms_scene_free(scene);
+    }
+    return status;
+}
+
+/* The same number for each shape, or its last where it has fewer, of no more spheres than the templates chosen. */
+static void spread_evenly(ms_scene *scene, const ms_share *share, size_t *n)
+{
+    scene->even_each = (size_t)(scene->sum.spheres / scene->sum.particles);
+    for (size_t s = 0; s < scene->count; s++) {
+        n[s] = scene->even_each < share[s].most ? scene->even_each : share[s].most;
+    }
+    scene->even = ms_allocate_sum(share, n, scene->count);
+}
+
+static ms_status choose_together(ms_scene *scene, const ms_share *share, size_t *n, const ms_goal *goal, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t s = 0; s < scene->count; s++) {
+        n[s] = scene->shape[s].chosen;
+    }
+    if (goal->kind == MS_GOAL_BUDGET) {
+        status = ms_allocate_budget(n, &scene->sum, share, scene->count, (uint64_t)goal->value, err);
+    } else if (goal->kind == MS_GOAL_MEAN) {
+        status = ms_allocate_error(n, &scene->sum, share, scene->count, goal->value, err);
+    } else {
+        scene->sum = ms_allocate_sum(share, n, scene->count);
+    }
+    for (size_t s = 0; s < scene->count; s++) {
+        scene->shape[s].chosen = n[s];
+    }
+    return status;
+}
+
+ms_status ms_scene_settle(ms_scene *scene, const ms_goal *goal, ms_error *err)
+{
+    size_t *n = malloc(scene->count * sizeof *n);
+    ms_share *share = malloc(scene->count * sizeof *share);
+    ms_status status = n && share ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu shapes", scene->count);
+    for (size_t s = 0; s < scene->count && status == MS_OK; s++) {
+        share[s] = share_of(&scene->shape[s]);
+    }
+    if (status == MS_OK) {
+        status = choose_together(scene, share, n, goal, err);
+    }
+    if (status == MS_OK) {
+        scene->sum.spheres = 0; /* a clump may have fewer than were asked for */
+        for (size_t s = 0; s < scene->count; s++) {
+            scene->sum.spheres += share[s].particles * ms_scene_clump(&scene->shape[s])->n_spheres;
+        }
+        scene->least_gain = ms_allocate_gain(share, n, scene->count);
+        spread_evenly(scene, share, n);
+    }
+    free(n);
+    free(share);
+    return status;
+}
+
+void ms_scene_free(ms_scene *scene)
+{
+    for (size_t s = 0; s < scene->count; s++) {
+        ms_scene_shape *shape = &scene->shape[s];
+        for (size_t n = 0; shape->clump && n < shape->most; n++) {
+            ms_clump_free(&shape->clump[n]);
+        }
+        free(shape->clump);
+        free(shape->score);
+        free(shape->dice);
+        json_decref(shape->input);
+    }
+    free(scene->shape);
+    *scene = (ms_scene){0};
+}

@@ -1,0 +1,108 @@
+/** A scene: how good the templates of each shape are, and how many spheres each gets. */
+#ifndef MS_SCENE_H
+#define MS_SCENE_H
+
+#include <jansson.h>
+#include <stdio.h>
+
+#include "ms_allocate.h"
+#include "ms_input.h"
+#include "ms_manifest.h"
+#include "ms_metrics.h"
+#include "ms_recipe.h"
+
+enum { MS_SCENE_MAX_SPHERES = 1000 };
+
+/** A measure that a template can be asked for. A table of them ends with a NULL name. */
+typedef struct ms_scene_measure {
+    const char *name;
+    size_t offset; /* in ms_score */
+    int rises;     /* with better templates */
+} ms_scene_measure;
+
+/** The measure of that name, or NULL with a message that lists them. */
+const ms_scene_measure *ms_scene_measure_find(const char *name, ms_error *err);
+
+typedef enum ms_goal_kind {
+    MS_GOAL_NONE,
+    MS_GOAL_TOLERANCE, /* a measure for each shape */
+    MS_GOAL_MEAN,      /* mean D over the particles */
+    MS_GOAL_BUDGET,    /* spheres in the scene */
+    MS_GOAL_KNEE       /* of each shape: a part of D that a further sphere has to take away */
+} ms_goal_kind;
+
+/** What the templates have to reach, or may cost. */
+typedef struct ms_goal {
+    ms_goal_kind kind;
+    double value;                    /* NAN: the tolerance of each row */
+    const ms_scene_measure *measure; /* of MS_GOAL_TOLERANCE */
+} ms_goal;
+
+/** The templates of a shape. */
+typedef struct ms_scene_shape {
+    const ms_manifest_row *row; /* borrowed */
+    size_t most;     /* spheres of the largest template */
+    ms_clump *clump; /* templates of 1 .. most spheres */
+    ms_score *score;
+    double *dice;    /* D alone */
+    json_t *input;   /* as ms_report_input_json */
+    size_t chosen;   /* number of spheres, after ms_scene_settle */
+} ms_scene_shape;
+
+/** A zeroed struct is empty. */
+typedef struct ms_scene {
+    size_t count;
+    ms_scene_shape *shape;
+    ms_allocation sum;  /* of the templates chosen; slack of MS_GOAL_MEAN and MS_GOAL_BUDGET */
+    double least_gain;  /* ms_allocate_gain */
+    size_t even_each;   /* the same number of spheres for each shape, of no more in all */
+    ms_allocation even; /* what that comes to */
+} ms_scene;
+
+/** How the templates are made. */
+typedef struct ms_scene_run {
+    const ms_recipe *recipe;
+    const ms_input_flags *input;
+    size_t max_spheres;
+    double min_radius; /* below 0: none */
+} ms_scene_run;
+
+/**
+ * Makes the templates of all shapes, one shape after another (ms_curve_clumps). What the goal can say of a shape alone
+ * is settled as soon as its templates are known.
+ *
+ * @param[out] scene    the caller frees it; empty on failure
+ * @param      manifest borrowed until then
+ * @return MS_OK; MS_ERR_LIMIT if a shape does not reach the goal; as ms_input_read, ms_input_target, ms_generator_run
+ *         and ms_curve_clumps
+ */
+ms_status ms_scene_make(ms_scene *scene, const ms_manifest *manifest, const ms_scene_run *run, const ms_goal *goal,
+                        ms_error *err);
+
+/** Chooses a template of each shape. @return MS_OK; MS_ERR_LIMIT; MS_ERR_NOMEM; as ms_allocate_budget and _error */
+ms_status ms_scene_settle(ms_scene *scene, const ms_goal *goal, ms_error *err);
+
+const ms_clump *ms_scene_clump(const ms_scene_shape *shape);
+const ms_score *ms_scene_score(const ms_scene_shape *shape);
+
+/** By how much the last sphere of the template lessened D; NAN for one of a single sphere. */
+double ms_scene_gain(const ms_scene_shape *shape);
+
+/** The shape with the smallest sphere. */
+const ms_scene_shape *ms_scene_smallest(const ms_scene *scene);
+
+/** The goal, a line for each shape, and what they come to. */
+void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal);
+
+/** How the templates are made; the caller owns it. */
+json_t *ms_scene_record_json(const ms_recipe *recipe, size_t max_spheres, double min_radius);
+
+/** Scores of the template of a shape; the caller owns it. */
+json_t *ms_scene_scores_json(const ms_scene_shape *shape);
+
+/** Adds what ms_scene_print says, and the curves, to an object. */
+void ms_scene_add_json(json_t *json, const ms_scene *scene, const ms_goal *goal);
+
+void ms_scene_free(ms_scene *scene);
+
+#endif

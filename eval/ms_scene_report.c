@@ -1,0 +1,136 @@
+#include <math.h>
+#include <string.h>
+
+#include "ms_record.h"
+#include "ms_report.h"
+#include "ms_scene.h"
+
+static void print_goal(FILE *stream, const ms_goal *goal)
+{
+    if (goal->kind == MS_GOAL_BUDGET) {
+        fprintf(stream, "a budget of %.0f spheres\n", goal->value);
+    } else if (goal->kind == MS_GOAL_MEAN) {
+        fprintf(stream, "a mean D of %g\n", goal->value);
+    } else if (goal->kind == MS_GOAL_KNEE) {
+        fprintf(stream, "the knee where a sphere takes away less than %g of D\n", goal->value);
+    } else if (isnan(goal->value)) {
+        fprintf(stream, "D as tolerated of each shape\n");
+    } else {
+        fprintf(stream, "%s of %g of each shape\n", goal->measure->name, goal->value);
+    }
+}
+
+/* A line for each shape. */
+static void print_shapes(FILE *stream, const ms_scene *scene)
+{
+    int width = 5;
+    for (size_t s = 0; s < scene->count; s++) {
+        const int length = (int)strlen(scene->shape[s].row->path);
+        width = length > width ? length : width;
+    }
+    fprintf(stream, "  %-*s %11s %8s %8s %9s %8s %11s %9s\n", width, "shape", "particles", "spheres", "D", "coverage",
+            "inertia", "last sphere", "least r");
+    for (size_t s = 0; s < scene->count; s++) {
+        const ms_scene_shape *shape = &scene->shape[s];
+        const ms_score *score = ms_scene_score(shape);
+        const double gain = ms_scene_gain(shape);
+        fprintf(stream, "  %-*s %11llu %8zu %8.5f %9.5f %7.2f%% ", width, shape->row->path,
+                (unsigned long long)shape->row->particles, ms_scene_clump(shape)->n_spheres, score->dice,
+                score->coverage, 100 * score->inertia);
+        if (isnan(gain)) {
+            fprintf(stream, "%11s", "-");
+        } else {
+            fprintf(stream, "%+11.5f", -gain);
+        }
+        fprintf(stream, " %9.4g\n", ms_clump_smallest_radius(ms_scene_clump(shape)));
+    }
+}
+
+/* Where the best choice is not known to be found. */
+static void print_slack(FILE *stream, const ms_allocation *sum, ms_goal_kind kind)
+{
+    if (kind == MS_GOAL_MEAN && sum->slack > 0) {
+        fprintf(stream, "  %-26s no more than %.0f spheres above the fewest\n", "search given up", sum->slack);
+    } else if (sum->slack > 0) {
+        fprintf(stream, "  %-26s mean D no more than %.2g above the least\n", "search given up", sum->slack);
+    }
+}
+
+void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal)
+{
+    const ms_allocation *sum = &scene->sum;
+    const ms_scene_shape *smallest = ms_scene_smallest(scene);
+    print_goal(stream, goal);
+    print_shapes(stream, scene);
+    fprintf(stream, "  %-26s %llu for %llu particles\n", "spheres in the scene", (unsigned long long)sum->spheres,
+            (unsigned long long)sum->particles);
+    fprintf(stream, "  %-26s %.5f\n", "mean D", sum->error);
+    fprintf(stream, "  %-26s %.5f with %zu for each shape, %llu in all\n", "mean D, spread evenly", scene->even.error,
+            scene->even_each, (unsigned long long)scene->even.spheres);
+    fprintf(stream, "  %-26s takes %.2g off the sum of D over the particles\n", "least useful sphere",
+            scene->least_gain);
+    print_slack(stream, sum, goal->kind);
+    fprintf(stream, "  %-26s %.4g in %s; it limits the time step\n", "smallest radius",
+            ms_clump_smallest_radius(ms_scene_clump(smallest)), smallest->row->path);
+}
+
+json_t *ms_scene_record_json(const ms_recipe *recipe, size_t max_spheres, double min_radius)
+{
+    return json_pack("{s:s,s:o,s:I,s:I,s:o}", "generator", recipe->generator->name, "options",
+                     ms_record_settings_json(&recipe->settings), "seed", (json_int_t)recipe->seed, "max_spheres",
+                     (json_int_t)max_spheres, "min_radius", min_radius >= 0 ? json_real(min_radius) : json_null());
+}
+
+json_t *ms_scene_scores_json(const ms_scene_shape *shape)
+{
+    const ms_score *score = ms_scene_score(shape);
+    return json_pack("{s:I,s:f,s:f,s:f,s:f,s:f,s:o}", "spheres", (json_int_t)ms_scene_clump(shape)->n_spheres, "eta",
+                     score->eta, "dice", score->dice, "coverage", score->coverage, "overshoot", score->overshoot,
+                     "off_volume", score->off_volume, "inertia", ms_report_number(score->inertia));
+}
+
+static json_t *goal_json(const ms_goal *goal)
+{
+    static const char *const NAMES[] = {[MS_GOAL_BUDGET] = "budget", [MS_GOAL_MEAN] = "mean_dice",
+                                        [MS_GOAL_KNEE] = "knee", [MS_GOAL_TOLERANCE] = "tolerance"};
+    json_t *json = json_pack("{s:o}", NAMES[goal->kind], ms_report_number(goal->value));
+    if (json && goal->kind == MS_GOAL_TOLERANCE) {
+        json_object_set_new(json, "measure", json_string(goal->measure->name));
+    }
+    return json;
+}
+
+static json_t *shape_json(const ms_scene_shape *shape)
+{
+    json_t *curve = json_array();
+    for (size_t n = 0; n < shape->most; n++) {
+        json_array_append_new(curve, json_real(shape->dice[n]));
+    }
+    return json_pack("{s:I,s:o,s:o,s:f,s:o,s:O,s:o}", "particles", (json_int_t)shape->row->particles, "tolerance",
+                     ms_report_number(shape->row->tolerance), "gain", ms_report_number(ms_scene_gain(shape)),
+                     "smallest_radius", ms_clump_smallest_radius(ms_scene_clump(shape)), "scores",
+                     ms_scene_scores_json(shape), "input", shape->input, "curve", curve);
+}
+
+void ms_scene_add_json(json_t *json, const ms_scene *scene, const ms_goal *goal)
+{
+    const ms_allocation *sum = &scene->sum, *even = &scene->even;
+    const ms_scene_shape *smallest = ms_scene_smallest(scene);
+    const int together = goal->kind == MS_GOAL_BUDGET || goal->kind == MS_GOAL_MEAN;
+    json_t *shapes = json_array();
+    for (size_t s = 0; s < scene->count; s++) {
+        json_array_append_new(shapes, shape_json(&scene->shape[s]));
+    }
+    json_object_set_new(json, "goal", goal_json(goal));
+    json_object_set_new(json, "particles", json_integer((json_int_t)sum->particles));
+    json_object_set_new(json, "spheres", json_integer((json_int_t)sum->spheres));
+    json_object_set_new(json, "mean_dice", json_real(sum->error));
+    json_object_set_new(json, "least_gain", json_real(scene->least_gain));
+    json_object_set_new(json, "slack", together ? json_real(sum->slack) : json_null());
+    json_object_set_new(json, "even", json_pack("{s:I,s:I,s:f}", "each", (json_int_t)scene->even_each, "spheres",
+                                                (json_int_t)even->spheres, "mean_dice", even->error));
+    json_object_set_new(json, "smallest", json_pack("{s:f,s:o}", "radius",
+                                                    ms_clump_smallest_radius(ms_scene_clump(smallest)), "shape",
+                                                    ms_report_text(smallest->row->path)));
+    json_object_set_new(json, "shapes", shapes);
+}
