@@ -92,6 +92,19 @@ static void put_label(FILE *stream, const char *text)
     putc('"', stream);
 }
 
+/* Nonzero if a point is drawn higher than it is. */
+static int is_lifted(const ms_chart *chart)
+{
+    int found = 0;
+    for (size_t s = 0; s < chart->n_series; s++) {
+        for (size_t p = 0; p < chart->series[s].count; p++) {
+            const ms_chart_point *point = &chart->series[s].point[p];
+            found |= has_place(chart, point) && point->y < chart->y_least;
+        }
+    }
+    return found;
+}
+
 /* One block per series, two blank lines between. */
 static void put_data(FILE *stream, const ms_chart *chart)
 {
@@ -126,7 +139,8 @@ static int has_labels(const ms_chart_series *series)
 /* Colours that stay apart for the colour blind (Okabe and Ito 2008); dashes and points do it without. */
 static void put_series(FILE *stream, const ms_chart_series *series, int index, int look, const char *name)
 {
-    static const char *const COLOUR[] = {"#000000", "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
+    static const char *const COLOUR[] = {"#000000", "#d55e00", "#0072b2", "#009e73",
+                                         "#cc79a7", "#e69f00", "#56b4e9"};
     static const int POINT[] = {7, 4, 8, 10, 12, 5, 9, 6, 1, 2, 3};
     const char *colour = COLOUR[(size_t)look % (sizeof COLOUR / sizeof *COLOUR)];
     const int type = POINT[(size_t)look % (sizeof POINT / sizeof *POINT)];
@@ -141,15 +155,18 @@ static void put_series(FILE *stream, const ms_chart_series *series, int index, i
     fputs(" title ", stream);
     put_text(stream, series->name);
     if (has_labels(series)) {
-        fprintf(stream, ", \\\n  '%s.dat' index %d using 1:2:3 with labels offset 0,0.8 font small tc rgb '%s' notitle",
-                name, index, colour);
+        fprintf(stream,
+                ", \\\n  '%s.dat' index %d using 1:2:3 with labels offset 0,0.8 font small tc rgb '%s' notitle", name,
+                index, colour);
     }
 }
 
-static void put_axis(FILE *stream, char axis, const char *label, const range *r, int is_log)
+static void put_axis(FILE *stream, char axis, const char *label, double least, const range *r, int is_log)
 {
+    char whole[256];
+    snprintf(whole, sizeof whole, "%s (%g: that or less)", label, least);
     fprintf(stream, "set %clabel ", axis);
-    put_text(stream, label);
+    put_text(stream, least > 0 ? whole : label);
     fprintf(stream, " noenhanced\nset %crange [%.9g:%.9g]\n", axis, r->lo, r->hi);
     if (is_log) {
         fprintf(stream, "set logscale %c\nset format %c '%%g'\n", axis, axis);
@@ -171,9 +188,11 @@ static void put_script(FILE *stream, const ms_chart *chart, const char *name, co
             "set encoding utf8\nset title ",
             name, name, name, name);
     put_text(stream, chart->title);
-    fputs(" noenhanced\nset grid lc rgb '#cccccc' lw 1 dt 1\nset key outside below height 1 noenhanced\n", stream);
-    put_axis(stream, 'x', chart->x_label, x, chart->x_log);
-    put_axis(stream, 'y', chart->y_label, y, chart->y_log);
+    fputs(" noenhanced\nset grid lc rgb '#cccccc' lw 1 dt 1\n"
+          "set key outside below height 1 maxcols 3 noenhanced\n",
+          stream);
+    put_axis(stream, 'x', chart->x_label, 0, x, chart->x_log);
+    put_axis(stream, 'y', chart->y_label, is_lifted(chart) ? chart->y_least : 0, y, chart->y_log);
     fprintf(stream,
             "small = ',11'\nset terminal svg size 800,600 dynamic font 'DejaVu Sans,13' background rgb 'white'\n"
             "set output '%s.svg'\nplot \\\n",
@@ -186,7 +205,9 @@ static void put_script(FILE *stream, const ms_chart *chart, const char *name, co
         look += chart->series[s].style != MS_CHART_FRONT;
     }
     fprintf(stream,
-            "\nsmall = ',15'\nif (strstrt(GPVAL_TERMINALS, 'pngcairo') > 0) { set terminal pngcairo size 1200,900 font 'DejaVu Sans,19' }\n"
+            "\nsmall = ',15'\n"
+            "if (strstrt(GPVAL_TERMINALS, 'pngcairo') > 0) { set terminal pngcairo size 1200,900 font "
+            "'DejaVu Sans,19' }\n"
             "if (strstrt(GPVAL_TERMINALS, 'pngcairo') == 0) { set terminal png size 1200,900 }\n"
             "set output '%s.png'\nreplot\n",
             name);

@@ -29,14 +29,14 @@ typedef struct ms_chart_series {
 typedef struct ms_chart {
     const char *title, *x_label, *y_label;
     int x_log, y_log;
-    double y_least; /* a smaller y is drawn here, as the label of the axis should say: for zeros on a log axis */
+    double y_least; /* a smaller y is drawn here, and the axis says so: for zeros on a log axis; 0: none */
     size_t n_series;
     const ms_chart_series *series; /* borrowed */
 } ms_chart;
 
 /**
- * Writes STEM.dat and STEM.gp, from which gnuplot makes STEM.svg and STEM.png. A point that has no place (not finite, not
- * above 0 on a log axis) is left out, a series without points stands in neither file.
+ * Writes STEM.dat and STEM.gp, from which gnuplot makes STEM.svg and STEM.png. A point that has no place (not finite,
+ * not above 0 on a log axis) is left out, a series without points stands in neither file.
  *
  * @param stem path without ending; its folder exists
  * @return MS_OK; MS_ERR_ARG if no point is left; MS_ERR_IO; MS_ERR_NOMEM

@@ -4,6 +4,7 @@
 
 #include "ms_flags.h"
 
+extern const ms_command ms_command_compare;
 extern const ms_command ms_command_convert;
 extern const ms_command ms_command_correct;
 extern const ms_command ms_command_generate;

@@ -91,6 +91,7 @@ static void what_the_files_hold(void **state)
     assert_non_null(strstr(text, "set xrange [0.8:12.5]"));
     assert_non_null(strstr(text, "set yrange [0.1:0.3125]"));
     assert_non_null(strstr(text, "title 'o''ne?'"));
+    assert_non_null(strstr(text, "set ylabel 'y (0.125: that or less)'"));
     assert_null(strstr(text, "nothing"));
 }
 
