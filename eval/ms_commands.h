@@ -4,6 +4,7 @@
 
 #include "ms_flags.h"
 
+extern const ms_command ms_command_compare;
 extern const ms_command ms_command_convert;
 extern const ms_command ms_command_correct;
 extern const ms_command ms_command_generate;
@@ -13,5 +14,6 @@ extern const ms_command ms_command_info;
 extern const ms_command ms_command_scene;
 extern const ms_command ms_command_score;
 extern const ms_command ms_command_shape;
+extern const ms_command ms_command_stability;
 
 #endif

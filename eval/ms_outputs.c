@@ -168,7 +168,7 @@ ms_status ms_outputs_try_file(const char *source, const char *path, ms_error *er
     return status;
 }
 
-static ms_status make_folder(const char *path, ms_error *err)
+ms_status ms_outputs_make_folder(const char *path, ms_error *err)
 {
     struct stat info;
     return mkdir(path, 0777) == 0 || (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
@@ -178,7 +178,7 @@ static ms_status make_folder(const char *path, ms_error *err)
 
 ms_status ms_outputs_try(const ms_outputs *outputs, const char *source, ms_error *err)
 {
-    ms_status status = outputs->folder ? make_folder(outputs->folder, err) : MS_OK;
+    ms_status status = outputs->folder ? ms_outputs_make_folder(outputs->folder, err) : MS_OK;
     for (size_t f = 0; f < outputs->n_files && status == MS_OK; f++) {
         if (!ms_format_is_folder(outputs->file[f].format)) {
             status = ms_outputs_try_file(source, outputs->file[f].path, err);

@@ -53,7 +53,10 @@ int ms_outputs_to_stdout(const ms_outputs *outputs);
 /** Can this file be made, and is it not the source itself? @return MS_OK; MS_ERR_ARG; MS_ERR_IO */
 ms_status ms_outputs_try_file(const char *source, const char *path, ms_error *err);
 
-/** The same of all files; makes the folder of --all-formats. */
+/** Makes a folder, if it is not there; the one above it exists. @return MS_OK; MS_ERR_IO */
+ms_status ms_outputs_make_folder(const char *path, ms_error *err);
+
+/** ms_outputs_try_file of all files; makes the folder of --all-formats. */
 ms_status ms_outputs_try(const ms_outputs *outputs, const char *source, ms_error *err);
 
 /** Writes all files and says so on `words`. @return as ms_write_clump */

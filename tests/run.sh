@@ -3,7 +3,7 @@
 # to `meson setup`.
 set -eu
 cd "$(dirname "$0")/.."
-sh docs/install-packages.sh libcmocka-dev
+sh docs/install-packages.sh libcmocka-dev gnuplot-nox
 build="${BUILD_DIR:-build-test}"
 if [ -d "$build" ]; then
     [ $# -eq 0 ] || meson configure "$build" "$@"

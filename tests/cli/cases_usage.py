@@ -4,7 +4,8 @@ import shlex
 
 from support import Case, box_obj
 
-COMMANDS = ("generate", "score", "correct", "convert", "info", "shape", "scene", "generators", "help")
+COMMANDS = ("generate", "score", "correct", "convert", "info", "shape", "compare", "stability", "scene", "generators",
+            "help")
 
 
 class Help(Case):

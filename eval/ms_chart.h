@@ -1,0 +1,62 @@
+/** Charts, drawn by gnuplot as a program of its own. */
+#ifndef MS_CHART_H
+#define MS_CHART_H
+
+#include <stddef.h>
+
+#include "ms_error.h"
+
+enum { MS_CHART_LABEL = 24 };
+
+typedef struct ms_chart_point {
+    double x, y;
+    char label[MS_CHART_LABEL]; /* stands beside the point; "" for none */
+} ms_chart_point;
+
+typedef enum ms_chart_style {
+    MS_CHART_CURVE,  /* points joined by a line; line and point types differ from series to series */
+    MS_CHART_POINTS, /* points alone */
+    MS_CHART_FRONT   /* a broad grey staircase behind the rest: y falls at each x, and holds from there on */
+} ms_chart_style;
+
+typedef struct ms_chart_series {
+    const char *name; /* in the legend */
+    ms_chart_style style;
+    size_t count;
+    const ms_chart_point *point; /* borrowed */
+} ms_chart_series;
+
+typedef struct ms_chart {
+    const char *title, *x_label, *y_label;
+    int x_log, y_log;
+    double y_least; /* a smaller y is drawn here, and the axis says so: for zeros on a log axis; 0: none */
+    size_t n_series;
+    const ms_chart_series *series; /* borrowed */
+} ms_chart;
+
+/**
+ * Writes STEM.dat and STEM.gp, from which gnuplot makes STEM.svg and STEM.png. A point that has no place (not finite,
+ * not above 0 on a log axis) is left out, a series without points stands in neither file.
+ *
+ * @param stem path without ending; its folder exists
+ * @return MS_OK; MS_ERR_ARG if no point is left; MS_ERR_IO; MS_ERR_NOMEM
+ */
+ms_status ms_chart_write(const ms_chart *chart, const char *stem, ms_error *err);
+
+/**
+ * Runs gnuplot on STEM.gp, in its folder.
+ * @return MS_OK; MS_ERR_IO if gnuplot is not installed, with the name of its package, or fails; the script remains
+ */
+ms_status ms_chart_draw(const char *stem, ms_error *err);
+
+/**
+ * The Pareto front: points to which no other is as good in both x and y and better in one; less is better. Of
+ * equal points all are on it, points that are not finite never.
+ *
+ * @param[out] front by ascending x; room for `count` points
+ * @return how many
+ * Cost: O(count log count).
+ */
+size_t ms_chart_pareto(ms_chart_point *front, const ms_chart_point *point, size_t count);
+
+#endif

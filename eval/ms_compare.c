@@ -1,0 +1,60 @@
+#include "ms_compare.h"
+
+#include <math.h>
+
+#include "ms_text.h"
+
+#define COLUMN_NAME(code, name) name,
+static const char *const NAMES[] = {MS_COLUMN_LIST(COLUMN_NAME)};
+#undef COLUMN_NAME
+
+ms_compare_row ms_compare_empty(void)
+{
+    ms_compare_row row;
+    for (int c = 0; c < MS_COLUMNS; c++) {
+        row.text[c] = NULL;
+        row.number[c] = NAN;
+    }
+    return row;
+}
+
+/* The first fields of a row, a comma behind each but the last of all. */
+static char *make_text(const ms_compare_row *row, int columns)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    if (!stream) {
+        return NULL;
+    }
+    for (int c = 0; c < columns; c++) {
+        if (row->text[c]) {
+            ms_csv_put(stream, row->text[c]);
+        } else if (isfinite(row->number[c])) {
+            fputs(ms_number_text(row->number[c]).text, stream);
+        }
+        if (c < MS_COLUMNS - 1) {
+            putc(',', stream);
+        }
+    }
+    return fclose(stream) == 0 ? text : NULL;
+}
+
+char *ms_compare_header(void)
+{
+    ms_compare_row names;
+    for (int c = 0; c < MS_COLUMNS; c++) {
+        names.text[c] = NAMES[c];
+    }
+    return make_text(&names, MS_COLUMNS);
+}
+
+char *ms_compare_line(const ms_compare_row *row)
+{
+    return make_text(row, MS_COLUMNS);
+}
+
+char *ms_compare_key(const ms_compare_row *row)
+{
+    return make_text(row, MS_COLUMN_SPHERES);
+}

@@ -1,0 +1,293 @@
+#include "ms_compare_charts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_chart.h"
+#include "ms_compare.h"
+#include "ms_text.h"
+
+/* One row, cut into its fields. */
+typedef struct record {
+    char *line;
+    char *field[MS_COLUMNS];
+} record;
+
+/* All that the charts are made of. */
+typedef struct records {
+    size_t count;
+    record *record;
+    const char *folder;
+} records;
+
+static double number(const record *r, ms_column column)
+{
+    double value;
+    const ms_word word = {r->field[column], strlen(r->field[column])};
+    return word.length > 0 && ms_word_double(&value, &word) ? value : (double)NAN;
+}
+
+static int same_field(const record *a, const record *b, ms_column column)
+{
+    return strcmp(a->field[column], b->field[column]) == 0;
+}
+
+static int same_shape(const record *a, const record *b)
+{
+    return same_field(a, b, MS_COLUMN_SHAPE) && same_field(a, b, MS_COLUMN_LABEL);
+}
+
+static int same_method(const record *a, const record *b)
+{
+    return same_field(a, b, MS_COLUMN_GENERATOR) && same_field(a, b, MS_COLUMN_OPTIONS);
+}
+
+static void free_records(records *all)
+{
+    for (size_t r = 0; r < all->count; r++) {
+        free(all->record[r].line);
+    }
+    free(all->record);
+}
+
+static ms_status cut_rows(records *all, const ms_csv *csv, ms_error *err)
+{
+    all->record = calloc(csv->n_rows + 1, sizeof *all->record);
+    for (size_t r = 0; all->record && r < csv->n_rows; r++) {
+        record *one = &all->record[all->count++];
+        one->line = strdup(csv->row[r]);
+        if (!one->line) {
+            break;
+        }
+        ms_csv_split(one->field, MS_COLUMNS, one->line); /* as many as there are columns: ms_csv_open has seen to it */
+    }
+    return all->record && (all->count == 0 || all->record[all->count - 1].line)
+               ? MS_OK
+               : ms_fail(err, MS_ERR_NOMEM, "no memory for the charts of %zu rows", csv->n_rows);
+}
+
+/* One kind of chart. */
+typedef struct kind {
+    const char *name, *what, *x_label, *y_label;
+    ms_column x, y;
+    ms_column fixed; /* rows with the largest value in this column alone */
+    int front;       /* with the Pareto front, and labels */
+} kind;
+
+static const kind KINDS[] = {
+    {"dice", "mismatch by number of spheres", "number of spheres", "mismatch D", MS_COLUMN_SPHERES, MS_COLUMN_DICE,
+     MS_COLUMN_CELLS, 0},
+    {"time", "speed and accuracy, labelled by number of spheres", "time, s", "mismatch D", MS_COLUMN_GENERATE,
+     MS_COLUMN_DICE, MS_COLUMN_CELLS, 1},
+    {"inertia", "inertia of the union", "number of spheres", "error of the moments", MS_COLUMN_SPHERES,
+     MS_COLUMN_INERTIA, MS_COLUMN_CELLS, 0},
+    {"corrected", "inertia with corrected masses", "number of spheres", "error of the moments", MS_COLUMN_SPHERES,
+     MS_COLUMN_CORRECTED, MS_COLUMN_CELLS, 0},
+    {"resolution", "mismatch by resolution", "cells along the shortest side", "mismatch D", MS_COLUMN_CELLS,
+     MS_COLUMN_DICE, MS_COLUMN_ASKED, 0},
+};
+
+/* Greatest value of a column among the rows of a shape; NAN without any. */
+static double greatest(const records *all, const record *shape, ms_column column)
+{
+    double value = NAN;
+    for (size_t r = 0; r < all->count; r++) {
+        if (same_shape(&all->record[r], shape)) {
+            value = fmax(value, number(&all->record[r], column));
+        }
+    }
+    return value;
+}
+
+static int several(const records *all, const record *shape, ms_column column)
+{
+    int found = 0;
+    for (size_t r = 0; r < all->count; r++) {
+        found |= same_shape(&all->record[r], shape) && !same_field(&all->record[r], shape, column);
+    }
+    return found;
+}
+
+/* Nonzero for the first row of a shape, or, with `method`, of a method within its shape. */
+static int is_first(const records *all, size_t at, int method)
+{
+    for (size_t r = 0; r < at; r++) {
+        if (same_shape(&all->record[r], &all->record[at]) &&
+            (!method || same_method(&all->record[r], &all->record[at]))) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* The points of a method; a clump of another tool has no number that it was asked for. */
+static size_t collect(ms_chart_point *point, const records *all, const record *first, const kind *k)
+{
+    const double fixed = greatest(all, first, k->fixed);
+    size_t count = 0;
+    for (size_t r = 0; r < all->count; r++) {
+        const record *one = &all->record[r];
+        const double value = number(one, k->fixed);
+        if (same_shape(one, first) && same_method(one, first) && (value == fixed || isnan(value))) {
+            point[count] = (ms_chart_point){.x = number(one, k->x), .y = number(one, k->y)};
+            if (k->front) {
+                snprintf(point[count].label, MS_CHART_LABEL, "%s", one->field[MS_COLUMN_SPHERES]);
+            }
+            count++;
+        }
+    }
+    return count;
+}
+
+/* What a chart is made of; one point each for the front and for the method is the most a row can give. */
+typedef struct draft {
+    ms_chart_series *series;
+    ms_chart_point *point;
+    size_t n_series, n_points;
+    char **name;
+} draft;
+
+static void free_draft(draft *d)
+{
+    for (size_t s = 0; d->name && s < d->n_series; s++) {
+        free(d->name[s]);
+    }
+    free(d->name);
+    free(d->series);
+    free(d->point);
+}
+
+static char *name_method(const record *r)
+{
+    const char *options = r->field[MS_COLUMN_OPTIONS];
+    const int is_clump = r->field[MS_COLUMN_ASKED][0] == '\0'; /* its options are its file */
+    const size_t room = strlen(r->field[MS_COLUMN_GENERATOR]) + strlen(options) + 2;
+    char *name = malloc(room);
+    if (name) {
+        snprintf(name, room, "%s%s%s", r->field[MS_COLUMN_GENERATOR], options[0] && !is_clump ? ":" : "",
+                 is_clump ? "" : options);
+    }
+    return name;
+}
+
+/* The front comes first, so that it is drawn behind the others. */
+static ms_status fill_draft(draft *d, const records *all, const record *shape, const kind *k, ms_error *err)
+{
+    d->series = calloc(all->count + 1, sizeof *d->series);
+    d->name = calloc(all->count + 1, sizeof *d->name);
+    d->point = calloc(2 * all->count + 1, sizeof *d->point);
+    if (!d->series || !d->name || !d->point) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for a chart of %zu rows", all->count);
+    }
+    d->n_series = k->front ? 1 : 0;
+    for (size_t r = 0; r < all->count; r++) {
+        if (same_shape(&all->record[r], shape) && is_first(all, r, 1)) {
+            ms_chart_point *point = d->point + d->n_points;
+            const size_t count = collect(point, all, &all->record[r], k);
+            char *name = d->name[d->n_series] = name_method(&all->record[r]);
+            if (!name) {
+                return ms_fail(err, MS_ERR_NOMEM, "no memory for a chart of %zu rows", all->count);
+            }
+            d->series[d->n_series++] = (ms_chart_series){name, MS_CHART_CURVE, count, point};
+            d->n_points += count;
+        }
+    }
+    if (k->front) {
+        ms_chart_point *front = d->point + d->n_points;
+        const size_t count = ms_chart_pareto(front, d->point, d->n_points);
+        for (size_t p = 0; p < count; p++) {
+            front[p].label[0] = '\0';
+        }
+        d->series[0] = (ms_chart_series){"Pareto front", MS_CHART_FRONT, count, front};
+    }
+    return MS_OK;
+}
+
+/* Name of the shape's file without folder and ending, and the label. */
+static void name_shape(char *out, size_t size, const record *shape)
+{
+    const char *path = shape->field[MS_COLUMN_SHAPE], *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
+    const char *dot = strrchr(base, '.'), *label = shape->field[MS_COLUMN_LABEL];
+    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
+    snprintf(out, size, "%.*s%s%s", length, base, label[0] ? "-" : "", label);
+}
+
+static ms_status draw(const records *all, const record *shape, const kind *k, ms_error *err)
+{
+    char name[256], title[512], at[64];
+    draft d = {0};
+    const double fixed = greatest(all, shape, k->fixed);
+    const size_t room = strlen(all->folder) + sizeof name + 32;
+    char *stem = malloc(room);
+    name_shape(name, sizeof name, shape);
+    snprintf(at, sizeof at, k->fixed == MS_COLUMN_CELLS ? " (%g cells)" : " (%g spheres)", fixed);
+    snprintf(title, sizeof title, "%s: %s%s", name, k->what, isnan(fixed) ? "" : at);
+    ms_status status = stem ? fill_draft(&d, all, shape, k, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for a chart");
+    if (status == MS_OK) {
+        const ms_chart chart = {.title = title, .x_label = k->x_label, .y_label = k->y_label, .x_log = 1, .y_log = 1,
+                                .y_least = 1e-6, .n_series = d.n_series, .series = d.series};
+        snprintf(stem, room, "%s/%s-%s", all->folder, name, k->name);
+        status = ms_chart_write(&chart, stem, err);
+        if (status == MS_ERR_ARG) { /* every run failed: the rows say why */
+            fprintf(stderr, "%s\n", err->text);
+            status = MS_OK;
+        } else if (status == MS_OK) {
+            status = ms_chart_draw(stem, err);
+            printf(status == MS_OK ? "drew %s.svg, .png\n" : "", stem);
+        }
+    }
+    free_draft(&d);
+    free(stem);
+    return status;
+}
+
+static ms_status check_names(const records *all, ms_error *err)
+{
+    char one[256], other[256];
+    for (size_t r = 0; r < all->count; r++) {
+        name_shape(one, sizeof one, &all->record[r]);
+        for (size_t q = 0; is_first(all, r, 0) && q < r; q++) {
+            name_shape(other, sizeof other, &all->record[q]);
+            if (strcmp(one, other) == 0) {
+                return ms_fail(err, MS_ERR_ARG, "two shapes are called %s, and so would be their charts; rename one",
+                               one);
+            }
+        }
+    }
+    return MS_OK;
+}
+
+/* Without gnuplot all scripts are written nevertheless; the first failure is reported. */
+static ms_status draw_all(const records *all, ms_error *err)
+{
+    ms_status status = check_names(all, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    for (size_t r = 0; r < all->count; r++) {
+        for (size_t k = 0; is_first(all, r, 0) && k < sizeof KINDS / sizeof *KINDS; k++) {
+            ms_error why;
+            if (KINDS[k].x == MS_COLUMN_CELLS && !several(all, &all->record[r], MS_COLUMN_CELLS)) {
+                continue;
+            }
+            const ms_status drawn = draw(all, &all->record[r], &KINDS[k], &why);
+            if (status == MS_OK && drawn != MS_OK) {
+                status = drawn;
+                *err = why;
+            }
+        }
+    }
+    return status;
+}
+
+ms_status ms_compare_charts(const ms_csv *csv, const char *folder, ms_error *err)
+{
+    records all = {.folder = folder};
+    ms_status status = cut_rows(&all, csv, err);
+    if (status == MS_OK) {
+        status = draw_all(&all, err);
+    }
+    free_records(&all);
+    return status;
+}

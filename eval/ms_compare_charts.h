@@ -1,0 +1,21 @@
+/** Charts of the results of `mskit compare`. */
+#ifndef MS_COMPARE_CHARTS_H
+#define MS_COMPARE_CHARTS_H
+
+#include "ms_csv.h"
+
+/**
+ * Draws for each shape, as FOLDER/SHAPE-KIND.svg and .png with data and script beside them, by the rows of the finest
+ * resolution:
+ * - dice: D by number of spheres;
+ * - time: D by time, with the Pareto front, points labelled by their number of spheres;
+ * - inertia, corrected: error of the moments by number of spheres, of the union and with masses by ms_density_solve;
+ * - resolution: D by cells at the largest number of spheres, if there are several resolutions.
+ *
+ * @param csv    rows of ms_compare_header
+ * @param folder exists
+ * @return MS_OK; MS_ERR_ARG if two shapes would write the same files; as ms_chart_write, ms_chart_draw
+ */
+ms_status ms_compare_charts(const ms_csv *csv, const char *folder, ms_error *err);
+
+#endif

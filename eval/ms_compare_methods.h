@@ -1,0 +1,45 @@
+/** The methods that a research command is given: generators with options, and clumps of other tools. */
+#ifndef MS_COMPARE_METHODS_H
+#define MS_COMPARE_METHODS_H
+
+#include "ms_generator.h"
+
+enum { MS_METHODS_MAX = 64 };
+
+/** One of them. */
+typedef struct ms_method {
+    char *name;                    /* of the generator, or as the user calls the clump */
+    char *options;                 /* as the user wrote them, or the file of the clump; "" for none */
+    const ms_generator *generator; /* NULL: a clump */
+    ms_settings settings;
+    ms_clump clump;
+} ms_method;
+
+/** A zeroed struct has none. */
+typedef struct ms_methods {
+    ms_method method[MS_METHODS_MAX];
+    size_t count;
+} ms_methods;
+
+/**
+ * Adds a generator from "NAME" or "NAME:OPTION=VALUE,...". A comma that no option of the generator follows belongs to
+ * the value, as in plane=0,0,1,0.
+ * @return MS_OK; MS_ERR_ARG; MS_ERR_LIMIT; MS_ERR_NOMEM; as ms_settings_set
+ */
+ms_status ms_methods_add(ms_methods *methods, const char *text, ms_error *err);
+
+/** Adds a clump from "NAME=FILE", which is read at once. @return MS_OK; MS_ERR_ARG; as ms_read_clump */
+ms_status ms_methods_add_clump(ms_methods *methods, const char *text, ms_error *err);
+
+/** Adds every generator, by default options. */
+ms_status ms_methods_add_all(ms_methods *methods, ms_error *err);
+
+/** Does each stand there once? Adds every generator if there are only clumps. @return MS_OK; MS_ERR_ARG */
+ms_status ms_methods_check(ms_methods *methods, ms_error *err);
+
+/** Number of clumps among them. */
+size_t ms_methods_clumps(const ms_methods *methods);
+
+void ms_methods_free(ms_methods *methods);
+
+#endif

@@ -1,0 +1,45 @@
+/** A CSV file that grows row by row, so that a run that is killed can be taken up again. */
+#ifndef MS_CSV_H
+#define MS_CSV_H
+
+#include <stddef.h>
+#include <stdio.h>
+#include <sys/types.h>
+
+#include "ms_error.h"
+
+/** An open file. Rows are text without the end of the line. */
+typedef struct ms_csv {
+    const char *path; /* borrowed */
+    int fd;
+    off_t size;
+    size_t n_rows;
+    char **row; /* those that were there and those added; without the header */
+} ms_csv;
+
+/**
+ * Makes the file with its header, or takes up one that is there: what stands behind its last whole line is cut off.
+ *
+ * @param[out] csv    closed by ms_csv_close in any case
+ * @param      path   a regular file; borrowed
+ * @param      header first line; columns separated by commas, none quoted
+ * @param      resume nonzero: the file may exist already
+ * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT if the file has another header, or rows of other lengths; MS_ERR_NOMEM
+ */
+ms_status ms_csv_open(ms_csv *csv, const char *path, const char *header, int resume, ms_error *err);
+
+/** Adds a row; it is on the disk then. On failure the rows before it stand. @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM */
+ms_status ms_csv_add(ms_csv *csv, const char *row, ms_error *err);
+
+void ms_csv_close(ms_csv *csv);
+
+/** Writes a field, in quotes where it has to be; control characters, ends of lines among them, become '?'. */
+void ms_csv_put(FILE *stream, const char *text);
+
+/**
+ * Cuts a row into its fields, in place, and takes the quotes off.
+ * @return how many there are, even if that is more than `most`; 0 if a quote is not closed
+ */
+size_t ms_csv_split(char **field, size_t most, char *row);
+
+#endif

@@ -1,0 +1,204 @@
+#include "ms_trial.h"
+
+#include <fcntl.h>
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "ms_density.h"
+#include "ms_metrics.h"
+
+/* Lets Linux count the largest memory anew; elsewhere it is that of the program so far. */
+static void forget_peak(void)
+{
+    const int fd = open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
+    if (fd >= 0) {
+        if (write(fd, "5", 1) != 1) {
+            close(fd);
+            return;
+        }
+        close(fd);
+    }
+}
+
+static double peak_memory(void)
+{
+    char line[256];
+    double peak = NAN;
+    struct rusage usage;
+    FILE *stream = fopen("/proc/self/status", "r");
+    while (stream && isnan(peak) && fgets(line, sizeof line, stream)) {
+        if (strncmp(line, "VmHWM:", 6) == 0) {
+            peak = strtod(line + 6, NULL);
+        }
+    }
+    if (stream) {
+        fclose(stream);
+    }
+    getrusage(RUSAGE_SELF, &usage);
+    return isnan(peak) ? (double)usage.ru_maxrss : peak;
+}
+
+/* Notes when each number of spheres was there, and shows on a terminal how far the run is. */
+typedef struct watch {
+    const ms_trial_run *run;
+    double start, shown;
+    size_t next;
+    double *seconds;
+    int terminal;
+} watch;
+
+static void look(void *context, size_t spheres, double dice)
+{
+    watch *w = context;
+    const double now = omp_get_wtime();
+    while (w->next < w->run->n_asked && spheres >= w->run->asked[w->next]) {
+        w->seconds[w->next++] = now - w->start;
+    }
+    if (w->terminal && now - w->shown > 0.1) {
+        w->shown = now;
+        fprintf(stderr, "\r\033[K%s: %zu spheres", w->run->title, spheres);
+        if (!isnan(dice)) {
+            fprintf(stderr, ", D %.4f", dice);
+        }
+        fputc(' ', stderr);
+    }
+}
+
+/* One run; a clump from before is replaced. */
+static ms_status run_once(ms_trial *trial, double *seconds, const ms_trial_run *run, const ms_target *target,
+                          ms_error *err)
+{
+    watch w = {.run = run, .start = omp_get_wtime(), .seconds = seconds, .terminal = isatty(STDERR_FILENO)};
+    ms_run one = {.target = target, .stop = ms_stop_none(), .settings = run->settings, .seed = run->seed,
+                  .progress = look, .progress_context = &w};
+    one.stop.spheres = run->asked[run->n_asked - 1];
+    ms_clump_free(&trial->clump);
+    const ms_status status = ms_generator_run(&trial->clump, &trial->reason, run->generator, &one, err);
+    const double whole = omp_get_wtime() - w.start;
+    if (w.shown > 0) {
+        fputs("\r\033[K", stderr);
+    }
+    for (size_t k = 0; k < run->n_asked; k++) {
+        if (k >= w.next || run->asked[k] >= trial->clump.n_spheres) {
+            seconds[k] = whole;
+        }
+    }
+    return status;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Median of n values, which are sorted. */
+static double median(double *value, size_t n)
+{
+    qsort(value, n, sizeof *value, ascending);
+    return (value[(n - 1) / 2] + value[n / 2]) / 2;
+}
+
+ms_status ms_trial_make(ms_trial *trial, const ms_trial_run *run, const ms_target *target, ms_error *err)
+{
+    const size_t n = run->n_asked, repeats = (size_t)run->repeats;
+    memset(trial, 0, sizeof *trial);
+    double *seconds = malloc(repeats * n * sizeof *seconds), *one = malloc(repeats * sizeof *one);
+    trial->seconds = malloc(n * sizeof *trial->seconds);
+    ms_status status = seconds && one && trial->seconds
+                           ? MS_OK
+                           : ms_fail(err, MS_ERR_NOMEM, "no memory for the times of %zu runs", repeats);
+    forget_peak();
+    for (size_t r = 0; r < repeats && status == MS_OK; r++) {
+        status = run_once(trial, seconds + r * n, run, target, err);
+    }
+    trial->memory = peak_memory();
+    for (size_t k = 0; k < n && status == MS_OK; k++) {
+        for (size_t r = 0; r < repeats; r++) {
+            one[r] = seconds[r * n + k];
+        }
+        trial->seconds[k] = median(one, repeats);
+    }
+    free(seconds);
+    free(one);
+    if (status != MS_OK) {
+        ms_trial_free(trial);
+    }
+    return status;
+}
+
+void ms_trial_free(ms_trial *trial)
+{
+    ms_clump_free(&trial->clump);
+    free(trial->seconds);
+    trial->seconds = NULL;
+}
+
+static void put_metrics(ms_compare_row *row, const ms_metrics *m)
+{
+    row->number[MS_COLUMN_SPHERES] = (double)m->spheres;
+    row->number[MS_COLUMN_ETA] = m->score.eta;
+    row->number[MS_COLUMN_DICE] = m->score.dice;
+    row->number[MS_COLUMN_COVERAGE] = m->score.coverage;
+    row->number[MS_COLUMN_OVERSHOOT] = m->score.overshoot;
+    row->number[MS_COLUMN_OFF_VOLUME] = m->score.off_volume;
+    row->number[MS_COLUMN_PROTRUSION] = m->protrusion_max;
+    row->number[MS_COLUMN_PROTRUSION_RMS] = m->protrusion_rms;
+    row->number[MS_COLUMN_GAP] = m->gap_max;
+    row->number[MS_COLUMN_GAP_RMS] = m->gap_rms;
+    row->number[MS_COLUMN_RADIUS] = m->smallest_radius_ratio;
+    row->number[MS_COLUMN_PIECES] = (double)m->pieces;
+    row->number[MS_COLUMN_INERTIA] = m->inertia.weighted;
+}
+
+/* The masses do not depend on density and unit, so 1 will do. */
+static ms_status put_masses(ms_compare_row *row, ms_clump *clump, const ms_target *target, ms_error *err)
+{
+    static const ms_density_options DEFAULTS;
+    ms_particle particle;
+    ms_principal principal;
+    ms_density_report report;
+    double difference = 0, sum = 0;
+    ms_status status = ms_particle_from_body(&particle, &target->body, 1, 1, err);
+    if (status == MS_OK) {
+        status = ms_inertia_principal(&principal, &target->body, err);
+    }
+    if (status == MS_OK) {
+        status = ms_density_solve(clump, &report, &particle, &DEFAULTS, err);
+    }
+    if (status != MS_OK) {
+        return status;
+    }
+    for (int k = 0; k < 3; k++) {
+        difference += fabs(report.error_moment[k]) * principal.moment[k];
+        sum += principal.moment[k];
+    }
+    row->number[MS_COLUMN_CORRECTED] = difference / sum;
+    row->number[MS_COLUMN_EPSILON] = report.epsilon;
+    row->number[MS_COLUMN_PRODUCTS] = report.products;
+    return MS_OK;
+}
+
+ms_status ms_trial_judge(ms_compare_row *row, const ms_clump *clump, size_t n, const ms_target *target,
+                         size_t max_voxels, ms_error *err)
+{
+    ms_clump prefix = {.n_spheres = n, .capacity = n, .sphere = clump->sphere}; /* its masses are its own */
+    ms_metrics metrics;
+    const double start = omp_get_wtime();
+    ms_status status = ms_metrics_compute(&metrics, NULL, target, &prefix, max_voxels, err);
+    const double scored = omp_get_wtime();
+    if (status != MS_OK) {
+        return status;
+    }
+    put_metrics(row, &metrics);
+    row->number[MS_COLUMN_SCORE] = scored - start;
+    status = put_masses(row, &prefix, target, err);
+    row->number[MS_COLUMN_CORRECT] = omp_get_wtime() - scored;
+    free(prefix.mass);
+    return status;
+}

@@ -1,0 +1,316 @@
+"""mskit compare: rows that agree with score, runs that are killed and taken up again, what the charts hold."""
+import csv
+import io
+import math
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from support import MSKIT, Case, box_obj, fnv1a, npy
+
+TIMES = ("seconds_read", "seconds_voxelize", "seconds_distance", "seconds_generate", "seconds_score",
+         "seconds_correct", "peak_memory_kb")
+RUN = ("-g", "mss", "-g", "setcover", "-g", "variational", "-n", "3,6", "--cells", "12",
+       "-j", "1")
+
+
+def parse(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def without_times(rows):
+    return [{key: value for key, value in row.items() if key not in TIMES} for row in rows]
+
+
+class Compare(Case):
+    def setUp(self):
+        super().setUp()
+        self.write("box.obj", box_obj((0, 0, 0), (3, 2, 1)))
+
+    def rows(self, name="compare.csv"):
+        return parse(self.read(name).decode())
+
+    def compare(self, *args, **more):
+        self.mskit("compare", *args, **more)
+        return self.rows()
+
+
+class Rows(Compare):
+    def test_order_and_what_was_asked(self):
+        self.write("cube.obj", box_obj((0, 0, 0), (1, 1, 1)))
+        rows = self.compare("box.obj", "cube.obj", "-g", "mss", "-g", "mss:boost=2,plane=0,0,1,0.4,confine", "-n",
+                            "40,20,40", "--cells", "14,10", "-j", "1", "--repeat", "2", "--seed", "7")
+        wanted = [(shape, cells, options, n) for shape in ("box.obj", "cube.obj") for cells in ("10", "14")
+                  for options in ("", "boost=2,plane=0,0,1,0.4,confine") for n in ("20", "40")]
+        self.assertEqual([(r["shape"], r["cells"], r["options"], r["n_asked"]) for r in rows], wanted)
+        for row in rows:
+            self.assertEqual((row["generator"], row["seed"], row["repeats"], row["threads"]), ("mss", "7", "2", "1"))
+            self.assertEqual(row["checksum"], fnv1a(self.read(row["shape"])))
+            self.assertGreater(float(row["peak_memory_kb"]), 1000)
+            for column in TIMES:
+                self.assertGreaterEqual(float(row[column]), 0)
+        self.assertNotEqual(rows[1]["dice"], rows[3]["dice"], "the options count")
+
+    def check_scores(self, row, scores):
+        for column in ("eta", "dice", "coverage", "overshoot", "off_volume", "protrusion_max", "protrusion_rms",
+                       "gap_max", "gap_rms", "smallest_radius_ratio", "pieces"):
+            self.assertEqual(float(row[column]), scores[column], column)
+        self.assertEqual(float(row["inertia_union"]), scores["inertia_error"]["weighted_mean"])
+
+    def test_rows_agree_with_generate_score_and_correct(self):
+        grid = ("--cells", "12")
+        for row in self.compare("box.obj", *RUN):
+            n = row["n_asked"]
+            self.mskit("generate", "box.obj", "-g", row["generator"], "-n", n, *grid, "-o", "one.csv")
+            self.check_scores(row, self.mskit("score", "one.csv", "--target", "box.obj", *grid, "--json")
+                              .json["scores"])
+            self.assertEqual(row["n"], str(len(self.spheres("one.csv"))))
+            result = self.mskit("correct", "one.csv", "--target", "box.obj", "--density", "1", "--json", code=None)
+            if result.code:
+                self.assertEqual(row["epsilon"], "")
+                self.assertIn("centre of mass", row["cause"])
+                continue
+            masses = result.json["masses"]
+            self.assert_close(float(row["epsilon"]), masses["epsilon"], 1e-9)
+            moments = (5, 10, 13)  # of a box 3 x 2 x 1, over mass / 12
+            weighted = sum(abs(e) * m for e, m in zip(masses["error_moments"], moments)) / sum(moments)
+            self.assertLess(abs(float(row["inertia_corrected"]) - weighted), 1e-9)
+
+    def test_too_many_asked_for(self):
+        rows = self.compare("box.obj", "-g", "mss", "-n", "2,5000", "--cells", "12")
+        self.assertEqual([r["stopped_by"] for r in rows], ["spheres", "exhausted"])
+        self.assertLess(int(rows[1]["n"]), 5000)
+
+    def test_clump_of_another_tool(self):
+        """Two balls within a box of 6: their volume is known, and their D up to voxels."""
+        self.write("two.csv", "1,1,0.5,0.5\n2,1,0.5,0.5\n")
+        row = self.compare("box.obj", "--clump", "mine=two.csv", "-g", "mss", "-n", "3", "--cells", "60")[0]
+        self.assertEqual((row["generator"], row["options"], row["n_asked"], row["n"], row["seconds_generate"]),
+                         ("mine", "two.csv", "", "2", ""))
+        volume = 2 * math.pi / 6
+        self.assert_close(float(row["coverage"]), volume / 6, 0.01)
+        self.assert_close(float(row["dice"]), 1 - 2 * volume / (6 + volume), 0.01)
+        self.mskit("score", "two.csv", "--target", "box.obj", "--cells", "60")
+
+    def test_volume(self):
+        self.write("scan.npy", npy([3] * 500 + [4] * 500, (10, 10, 10)))
+        rows = self.compare("scan.npy", "-g", "mss", "-n", "2", "--label", "4", "--cells", "20,40")
+        self.assertEqual([(r["label"], r["cells"], r["voxel_size"], r["protrusion_max"]) for r in rows],
+                         [("4", "", "1", "")])
+
+    def test_all_methods_by_default(self):
+        rows = self.compare("box.obj", "-n", "6", "--cells", "12")
+        names = [g["name"] for g in self.mskit("generators", "--json").json]
+        self.assertEqual([r["generator"] for r in rows], names)
+
+    def test_failures_are_rows(self):
+        self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))
+        self.write("odd, name.obj", "v 0 0 0\nf 1 2\n")
+        result = self.mskit("compare", "open.obj", "odd, name.obj", "box.obj", "-g", "mss", "-g",
+                            "mss:plane=0,0,1,-100", "-n", "1", "--cells", "8")
+        rows = self.rows()
+        self.assertEqual(len(rows), 6)
+        for row, cause in zip(rows, ("the mesh is open", "the mesh is open", "line 2", "line 2")):
+            self.assertIn(cause, row["cause"])
+            self.assertEqual((row["n"], row["dice"]), ("", ""))
+        self.assertGreater(float(rows[4]["coverage"]), 0.1)
+        self.assertIn("cause", result.out)
+        self.mskit("compare", "open.obj", "odd, name.obj", "box.obj", "-g", "mss", "-g", "mss:plane=0,0,1,-100", "-n",
+                   "1", "--cells", "8", "--resume")
+        self.assertEqual(self.rows(), rows, "there is nothing left to do")
+
+
+class Resume(Compare):
+    def test_killed_and_taken_up(self):
+        args = ("compare", "box.obj", "-g", "fcm", "-g", "mss", "-g", "setcover", "-n", "3,6,9", "--cells", "20", "-j",
+                "1", "--repeat", "2")
+        self.mskit(*args, "-o", "whole.csv")
+        whole = self.rows("whole.csv")
+        for rows_there in (1, 4):
+            process = subprocess.Popen([MSKIT, *args, "-o", "killed.csv"], cwd=self.dir, stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+            deadline = time.monotonic() + 30
+            while time.monotonic() < deadline and process.poll() is None:
+                if os.path.exists(self.path("killed.csv")) and self.read("killed.csv").count(b"\n") > rows_there:
+                    break
+                time.sleep(0.001)
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+            self.assertEqual(process.returncode, -signal.SIGKILL, "it should have been at work still")
+            there = self.read("killed.csv")
+            self.mskit(*args, "-o", "killed.csv", "--resume")
+            self.assertTrue(self.read("killed.csv").startswith(there[:there.rindex(b"\n") + 1]), "times and all")
+            self.assertEqual(without_times(self.rows("killed.csv")), without_times(whole))
+            os.remove(self.path("killed.csv"))
+
+    def test_cut_anywhere(self):
+        """Within the header, a row, a quoted field: the rows in the end are those of the whole run."""
+        args = ("compare", "box.obj", "-g", "mss:boost=2,confine", "-n", "1,2,3", "--cells", "8", "-j", "1")
+        self.mskit(*args)
+        text = self.read("compare.csv")
+        whole = without_times(self.rows())
+        ends = [m.end() for m in re.finditer(b"\n", text)]
+        for size in (0, 5, ends[0] - 1, ends[0], ends[0] + 1, ends[1] + 60, ends[2] - 1, ends[2], len(text)):
+            self.write("compare.csv", text[:size])
+            self.mskit(*args, "--resume")
+            self.assertEqual(without_times(self.rows()), whole, f"cut after {size} bytes")
+        self.assertIn('"boost=2,confine"', self.read("compare.csv").decode())
+
+    def test_another_comparison_is_refused(self):
+        args = ("compare", "box.obj", "-g", "mss", "-n", "1,2", "--cells", "8")
+        self.mskit(*args)
+        text = self.read("compare.csv")
+        self.assert_refused(*args, code=1, says=("compare.csv", "exists", "--resume"))
+        for other in (("-n", "3"), ("--cells", "6"), ("--seed", "2"), ("-g", "fcm")):
+            self.mskit("compare", "box.obj", *(("-g", "mss") if other[0] != "-g" else ()), "-n", "1", *other,
+                       "--cells", "8", "--resume", code=1)
+        self.write("box.obj", box_obj((0, 0, 0), (3, 2, 2)))
+        result = self.mskit(*args, "--resume", code=1)
+        self.assert_says(result, "line 2", "another comparison")
+        self.write("box.obj", box_obj((0, 0, 0), (3, 2, 1)))
+        self.assert_says(self.mskit("compare", "box.obj", "-g", "mss", "-n", "1", "--cells", "8", "--resume", code=1),
+                         "1 rows of another comparison")
+        self.assertEqual(self.read("compare.csv"), text, "what was there is as it was")
+        self.write("other.csv", "x,y,z,r\n")
+        self.assert_refused(*args, "-o", "other.csv", "--resume", code=1, says=("something else",))
+        self.write("short.csv", text.split(b"\n")[0] + b"\nbox.obj,1\n")
+        self.assert_refused(*args, "-o", "short.csv", "--resume", code=1, says=("line 2",))
+
+    def test_full_disk(self):
+        """A limit of the file size stands for it: the rows that fit are whole, and the run can go on."""
+        def small():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1500, 1500))
+        args = ("compare", "box.obj", "-g", "mss", "-n", "1,2,3,4,5,6", "--cells", "8", "-j", "1")
+        result = self.mskit(*args, code=1, preexec_fn=small)
+        self.assert_says(result, "compare.csv", "could not be written", "intact")
+        there = self.read("compare.csv")
+        self.assertTrue(there.endswith(b"\n"))
+        rows = self.rows()
+        self.assertGreaterEqual(len(rows), 1)
+        self.assertTrue(all(row["version"] for row in rows))
+        self.mskit(*args, "--resume")
+        self.assertTrue(self.read("compare.csv").startswith(there))
+        self.assertEqual(len(self.rows()), 6)
+
+
+class Refusals(Compare):
+    def test_wrong_usage(self):
+        for args, says in (
+                ((), "shapes"),
+                (("box.obj", "-g", "none"), "no generator 'none'"),
+                (("box.obj", "-g", "mss:none=1"), "no option 'none'"),
+                (("box.obj", "-g", "mss:boost=x"), "boost=x"),
+                (("box.obj", "-g", "mss", "-g", "mss"), "twice"),
+                (("box.obj", "-n", "3,"), "--spheres"),
+                (("box.obj", "-n", "0"), "--spheres"),
+                (("box.obj", "--cells", "1.5"), "--cells"),
+                (("box.obj", "--repeat", "0"), "--repeat"),
+                (("box.obj", "--clump", "box.obj"), "NAME=FILE"),
+                (("box.obj", "--clump", "a=missing.csv"), "missing.csv"),
+                (("box.obj", "box.obj", "--clump", "a=two.csv"), "one shape")):
+            with self.subTest(args=args):
+                self.write("two.csv", "1,1,0.5,0.5\n")
+                self.assert_refused("compare", *args, code=2, says=(says,))
+
+    def test_files(self):
+        run = ("-g", "mss", "-n", "1", "--cells", "8")
+        self.assert_refused("compare", "box.obj", "missing.stl", *run, code=1, says=("missing.stl",))
+        self.assert_refused("compare", "box.obj", *run, "-o", "no/such.csv", code=1, says=("no/such.csv",))
+        self.assert_refused("compare", "box.obj", *run, "-o", "", code=1, says=("cannot be written",))
+        self.assert_refused("compare", "box.obj", *run, "--charts", "no/such", code=1, says=("no/such",))
+        self.assert_refused("compare", "box.obj", *run, "-o", "/dev/full", "--resume", code=1, says=("device",))
+        if os.getuid() != 0:
+            os.mkdir(self.path("locked"), 0o500)
+            self.assert_refused("compare", "box.obj", *run, "-o", "locked/a.csv", code=1, says=("locked/a.csv",))
+
+
+class Charts(Compare):
+    """Read as XML, and by what the data and scripts hold."""
+
+    def svg(self, name):
+        root = ElementTree.fromstring(self.read(name))
+        titles = [e.text for e in root.iter("{http://www.w3.org/2000/svg}title")]
+        texts = ["".join(e.itertext()).strip() for e in root.iter("{http://www.w3.org/2000/svg}text")]
+        return [t for t in titles if not t.startswith(("Gnuplot", "gnuplot_plot"))], texts
+
+    def blocks(self, name):
+        """Points of each series: x, y, label."""
+        found = []
+        for block in self.read(name).decode().split("\n\n\n")[:-1]:
+            lines = [line.split(" ") for line in block.strip("\n").split("\n") if not line.startswith("#")]
+            found.append([(float(x), float(y), label.strip('"')) for x, y, label in lines])
+        return found
+
+    def check_axes(self, name, points):
+        """Both axes are finite and hold every point."""
+        script = self.read(name).decode()
+        for axis in (0, 1):
+            lo, hi = (float(v) for v in re.search(rf"set {'xy'[axis]}range \[(.*):(.*)\]", script).groups())
+            self.assertTrue(math.isfinite(lo) and math.isfinite(hi) and 0 < lo < hi, name)
+            for point in points:
+                self.assertTrue(lo < point[axis] < hi, name)
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed (package gnuplot-nox)")
+    def test_what_they_hold(self):
+        methods = ["mss", "mss:boost=2,confine", "setcover", "o'dd"]
+        self.write("two.csv", "1,1,0.5,0.5\n2,1,0.5,0.5\n")
+        rows = self.compare("box.obj", "-g", methods[0], "-g", methods[1], "-g", methods[2], "--clump", "o'dd=two.csv",
+                            "-n", "3,6,9", "--cells", "10,14", "--charts", "charts")
+        rows = [r for r in rows if r["cells"] == "14"]
+        for kind, column in (("dice", "dice"), ("inertia", "inertia_union"), ("corrected", "inertia_corrected")):
+            titles, texts = self.svg(f"charts/box-{kind}.svg")
+            blocks = self.blocks(f"charts/box-{kind}.dat")
+            points = [(float(r["n"]), float(r[column])) for r in rows if r[column]]
+            self.assertEqual(len(titles), len(blocks))
+            self.assertEqual(sum(len(b) for b in blocks), len(points))
+            for (x, y, _), (n, value) in zip((p for b in blocks for p in b), points):
+                self.assertEqual(x, n)
+                self.assert_close(y, max(value, 1e-6), 1e-8)
+            if kind != "corrected":
+                self.assertEqual(titles, methods)
+            self.assertIn("number of spheres", texts)
+            self.assertTrue(set(titles) <= set(texts), "the legend names them")
+            self.check_axes(f"charts/box-{kind}.gp", [p for b in blocks for p in b])
+        self.check_time(methods, rows)
+        self.assertEqual(len(self.svg("charts/box-resolution.svg")[0]), 4)
+        for png in ("dice", "time", "inertia", "corrected", "resolution"):
+            self.assertEqual(self.read(f"charts/box-{png}.png")[:8], b"\x89PNG\r\n\x1a\n")
+
+    def check_time(self, methods, rows):
+        """Every point has its number of spheres; the front is the one found here by brute force."""
+        titles, texts = self.svg("charts/box-time.svg")
+        front, *blocks = self.blocks("charts/box-time.dat")
+        points = [p for b in blocks for p in b]
+        self.assertEqual(titles, ["Pareto front"] + methods[:3], "a clump from a file took no time that is known")
+        self.assertEqual([p[2] for p in points], [r["n"] for r in rows if r["seconds_generate"]])
+        for label in (p[2] for p in points):
+            self.assertIn(label, texts)
+        best = sorted(p[:2] for p in points if not any(q[0] <= p[0] and q[1] <= p[1] and q[:2] != p[:2]
+                                                       for q in points))
+        self.assertEqual([p[:2] for p in front], best)
+        self.check_axes("charts/box-time.gp", points)
+
+    def test_without_gnuplot(self):
+        """A clear error; results and scripts are there."""
+        result = self.mskit("compare", "box.obj", "-g", "mss", "-n", "3", "--cells", "8", "--charts", "charts", code=1,
+                            env={**os.environ, "PATH": self.dir})
+        self.assert_says(result, "gnuplot-nox", "box-dice.gp")
+        self.assertEqual(len(self.rows()), 1)
+        names = sorted(os.listdir(self.path("charts")))
+        self.assertEqual(names, sorted(f"box-{k}.{e}" for k in ("dice", "time", "inertia", "corrected")
+                                       for e in ("dat", "gp") if (k != "corrected" or self.rows()[0]["epsilon"])))
+
+    def test_same_names(self):
+        os.mkdir(self.path("other"))
+        self.write("other/box.obj", box_obj((0, 0, 0), (1, 1, 1)))
+        result = self.mskit("compare", "box.obj", "other/box.obj", "-g", "mss", "-n", "1", "--cells", "8", "--charts",
+                            "charts", code=1)
+        self.assert_says(result, "two shapes are called box")
+        self.assertEqual(len(self.rows()), 2)
