@@ -221,8 +221,8 @@ ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share
     return status;
 }
 
-/* A budget as small as can be found by halving for which the steps of ms_allocate_budget reach the error. On entry n and
- * sum are an allocation that reaches it. */
+/* By halving, a budget as small as can be for which the steps of ms_allocate_budget reach the error. On entry n and sum
+ * are an allocation that reaches it. */
 static ms_status shrink_budget(size_t *n, ms_allocation *sum, double fewest, const ms_share *share, size_t count,
                                double error, ms_error *err)
 {

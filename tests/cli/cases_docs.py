@@ -28,10 +28,13 @@ def keys(value):
 
 class Documents(Case):
     def test_commands_of_the_guide(self):
-        """In order, in one folder, which holds an open mesh and a scan with two labels."""
+        """In order, in one folder, which holds an open mesh, a scan with two labels and the guide's manifest."""
         self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))
         self.write("scan.npy", npy([1] * 50 + [2] * 950, (10, 10, 10)))
-        commands = re.findall(r"(?m)^ {4,}mskit (.+)$", document("guide.md"))
+        guide = document("guide.md")
+        manifest = re.search(r"(?m)^    shape,count\n(    .+\n)+", guide).group(0)
+        self.write("scene.csv", manifest.replace("    ", ""))
+        commands = re.findall(r"(?m)^ {4,}mskit (.+)$", guide)
         self.assertGreater(len(commands), 20)
         for command in commands:
             if "--charts" in command and not shutil.which("gnuplot"):
