@@ -204,13 +204,9 @@ static ms_status fill_draft(draft *d, const records *all, const record *shape, c
     return MS_OK;
 }
 
-/* Name of the shape's file without folder and ending, and the label. */
 static void name_shape(char *out, size_t size, const record *shape)
 {
-    const char *path = shape->field[MS_COLUMN_SHAPE], *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
-    const char *dot = strrchr(base, '.'), *label = shape->field[MS_COLUMN_LABEL];
-    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
-    snprintf(out, size, "%.*s%s%s", length, base, label[0] ? "-" : "", label);
+    ms_compare_name(out, size, shape->field[MS_COLUMN_SHAPE], shape->field[MS_COLUMN_LABEL]);
 }
 
 static ms_status draw(const records *all, const record *shape, const kind *k, ms_error *err)
