@@ -14,7 +14,7 @@ ms_compare_row ms_compare_empty(void)
     ms_compare_row row;
     for (int c = 0; c < MS_COLUMNS; c++) {
         row.text[c] = NULL;
-        row.number[c] = NAN;
+        row.number[c] = (double)NAN;
     }
     return row;
 }

@@ -91,7 +91,7 @@ static const kind KINDS[] = {
 /* Greatest value of a column among the rows of a shape; NAN without any. */
 static double greatest(const records *all, const record *shape, ms_column column)
 {
-    double value = NAN;
+    double value = (double)NAN;
     for (size_t r = 0; r < all->count; r++) {
         if (same_shape(&all->record[r], shape)) {
             value = fmax(value, number(&all->record[r], column));
@@ -228,9 +228,8 @@ static ms_status draw(const records *all, const record *shape, const kind *k, ms
         if (status == MS_ERR_ARG) { /* every run failed: the rows say why */
             fprintf(stderr, "%s\n", err->text);
             status = MS_OK;
-        } else if (status == MS_OK) {
-            status = ms_chart_draw(stem, err);
-            printf(status == MS_OK ? "drew %s.svg, .png\n" : "", stem);
+        } else if (status == MS_OK && (status = ms_chart_draw(stem, err)) == MS_OK) {
+            printf("drew %s.svg, .png\n", stem);
         }
     }
     free_draft(&d);

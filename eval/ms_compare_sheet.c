@@ -169,7 +169,9 @@ ms_status ms_sheet_draw(const ms_sheet *sheet, const ms_target *target, ms_error
     }
     if (status == MS_OK) {
         status = ms_chart_draw(stem, err);
-        printf(status == MS_OK ? "drew %s.png\n" : "", stem);
+    }
+    if (status == MS_OK) {
+        printf("drew %s.png\n", stem);
     }
     ms_picture_free(&picture);
     free(tiles);

@@ -31,7 +31,7 @@ static void forget_peak(void)
 static double peak_memory(void)
 {
     char line[256];
-    double peak = NAN;
+    double peak = (double)NAN;
     struct rusage usage;
     FILE *stream = fopen("/proc/self/status", "r");
     while (stream && isnan(peak) && fgets(line, sizeof line, stream)) {
