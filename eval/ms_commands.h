@@ -13,5 +13,6 @@ extern const ms_command ms_command_help;
 extern const ms_command ms_command_info;
 extern const ms_command ms_command_score;
 extern const ms_command ms_command_shape;
+extern const ms_command ms_command_stability;
 
 #endif

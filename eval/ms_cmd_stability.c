@@ -1,0 +1,321 @@
+/* mskit stability [SHAPE...] */
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "ms_commands.h"
+#include "ms_hard_shapes.h"
+#include "ms_outputs.h"
+#include "ms_report.h"
+#include "ms_spread.h"
+#include "ms_stability.h"
+
+enum { MAX_METHODS = 32, DEFAULT_SPHERES = 20, DEFAULT_RUNS = 5, MOST_RUNS = 1000 };
+
+static const ms_flag FLAGS[] = {
+    {"generator", 'g', "NAME[:OPTION=VALUE,...]", "a method, with options; may be repeated (all methods)"},
+    {"spheres", 'n', "N", "spheres asked for in every run (20)"},
+    {"until-dice", 0, "V", "also seek the number of spheres with which the method meets D = V, up to 10 N"},
+    {"perturb", 0, "KIND",
+     "axes, rotation, shift, resolution, noise, refine, decimate, seed, order or threads; may be repeated (all)"},
+    {"runs", 0, "R", "runs of each perturbation (5)"},
+    {"seed", 0, "S", "seed of the methods and of the perturbations (1)"},
+    {"output", 'o', "FILE", "a row for each run as CSV, written as they come; - for standard output (stability.csv)"},
+    {"json", 0, NULL, "the summary as JSON on standard output"},
+    MS_INPUT_FLAGS,
+    {0},
+};
+
+typedef struct arguments {
+    ms_input_flags input;
+    ms_method method[MAX_METHODS];
+    size_t n_methods;
+    int wanted[MS_CHANGES];
+    double spheres, runs, seed, until_dice;
+    const char *output;
+    int json;
+    char **shape; /* none: the built-in ones */
+    int n_shapes;
+} arguments;
+
+/* What has been done so far. */
+typedef struct progress {
+    FILE *rows;
+    ms_stability_run *run;
+    size_t n_runs, planned;
+} progress;
+
+static ms_status add_method(arguments *a, const char *text, ms_error *err)
+{
+    if (a->n_methods == MAX_METHODS) {
+        return ms_fail(err, MS_ERR_LIMIT, "more than %d methods", MAX_METHODS);
+    }
+    ms_method *method = &a->method[a->n_methods];
+    ms_status status = ms_method_parse(method, text, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    a->n_methods++;
+    return method->settings.n_planes || method->settings.clump.n_spheres
+               ? ms_fail(err, MS_ERR_ARG, "%s: planes and spheres to start from do not turn with the shape", text)
+               : MS_OK;
+}
+
+static ms_status take_change(arguments *a, const char *name, ms_error *err)
+{
+    ms_change change = MS_CHANGE_NONE;
+    ms_status status = ms_change_find(&change, name, err);
+    a->wanted[change] = 1;
+    return status;
+}
+
+static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+{
+    arguments *a = context;
+    int taken;
+    ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
+    if (taken) {
+        return status;
+    }
+    if (strcmp(name, "generator") == 0) {
+        return add_method(a, value, err);
+    }
+    if (strcmp(name, "spheres") == 0) {
+        return ms_flag_whole(&a->spheres, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
+    }
+    if (strcmp(name, "until-dice") == 0) {
+        return ms_flag_number(&a->until_dice, name, value, 0, 1, err);
+    }
+    if (strcmp(name, "perturb") == 0) {
+        return take_change(a, value, err);
+    }
+    if (strcmp(name, "runs") == 0) {
+        return ms_flag_whole(&a->runs, name, value, 1, MOST_RUNS, err);
+    }
+    if (strcmp(name, "seed") == 0) {
+        return ms_flag_whole(&a->seed, name, value, 0, 9007199254740992.0, err);
+    }
+    if (strcmp(name, "output") == 0) {
+        a->output = value;
+    } else {
+        a->json = 1;
+    }
+    return MS_OK;
+}
+
+/* What follows from all flags together. */
+static ms_status settle(arguments *a, ms_error *err)
+{
+    ms_status status = MS_OK;
+    int any = 0;
+    for (int c = 0; c < MS_CHANGES; c++) {
+        any |= a->wanted[c];
+    }
+    for (int c = 0; c < MS_CHANGES; c++) {
+        a->wanted[c] |= !any || c == MS_CHANGE_NONE;
+    }
+    if (a->n_methods == 0) {
+        for (const ms_generator *const *g = ms_generators; *g && status == MS_OK; g++) {
+            status = add_method(a, (*g)->name, err);
+        }
+    }
+    if (status == MS_OK && a->json && strcmp(a->output, "-") == 0) {
+        status = ms_fail(err, MS_ERR_ARG, "--json and -o - both write to standard output; choose one of them");
+    }
+    return status;
+}
+
+static const ms_hard_shape *find_built_in(const char *name)
+{
+    for (const ms_hard_shape *shape = ms_hard_shapes; shape->name; shape++) {
+        if (strcmp(shape->name, name) == 0) {
+            return shape;
+        }
+    }
+    return NULL;
+}
+
+/* A shape that is a word on the command line; its target is not made yet. */
+static ms_status read_shape(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err)
+{
+    ms_status status = ms_input_read(input, path, flags, err);
+    if (status == MS_OK && input->volume.label) {
+        ms_input_free(input);
+        return ms_fail(err, MS_ERR_ARG, "%s is a volume; perturbations are of meshes", path);
+    }
+    return status;
+}
+
+static ms_status make_input(ms_input *input, const char *name, const ms_input_flags *flags, ms_error *err)
+{
+    const ms_hard_shape *built_in = find_built_in(name);
+    if (built_in) {
+        return ms_hard_shape_make(input, built_in, flags, err);
+    }
+    ms_status status = read_shape(input, name, flags, err);
+    if (status == MS_OK) {
+        status = ms_input_target(input, flags, err);
+        if (status != MS_OK) {
+            ms_input_free(input);
+        }
+    }
+    return status;
+}
+
+/* Before the work: are all files there? */
+static ms_status try_shapes(const arguments *a, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (int s = 0; s < a->n_shapes && status == MS_OK; s++) {
+        ms_input input;
+        if (!find_built_in(a->shape[s])) {
+            status = read_shape(&input, a->shape[s], &a->input, err);
+            if (status == MS_OK) {
+                ms_input_free(&input);
+            }
+        }
+    }
+    return status;
+}
+
+static void show(const progress *p, const ms_stability *s, ms_change change)
+{
+    if (isatty(STDERR_FILENO)) {
+        fprintf(stderr, "\r\033[K%zu of %zu: %s, %s, %s ", p->n_runs + 1, p->planned, s->input->path, s->method->text,
+                ms_change_name(change));
+    }
+}
+
+static ms_status add_run(progress *p, const ms_stability *s, ms_change change, int number, ms_error *err)
+{
+    ms_stability_run *run = &p->run[p->n_runs];
+    show(p, s, change);
+    ms_stability_try(run, s, change, number);
+    p->n_runs++;
+    ms_stability_row(p->rows, run);
+    return fflush(p->rows) == 0 ? MS_OK : ms_fail(err, MS_ERR_IO, "a row could not be written; is the disk full?");
+}
+
+static ms_status try_shape(progress *p, const arguments *a, const char *name, ms_error *err)
+{
+    ms_input input;
+    ms_status status = make_input(&input, name, &a->input, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    input.path = name; /* outlives the input */
+    for (size_t m = 0; m < a->n_methods && status == MS_OK; m++) {
+        const ms_stability s = {.input = &input, .method = &a->method[m], .spheres = (size_t)a->spheres,
+                                .until_dice = a->until_dice, .seed = (uint64_t)a->seed, .runs = (int)a->runs,
+                                .threads = omp_get_max_threads(), .flags = &a->input};
+        for (int c = 0; c < MS_CHANGES && status == MS_OK; c++) {
+            const int runs = a->wanted[c] ? ms_change_runs((ms_change)c, s.runs) : 0;
+            for (int number = 1; number <= runs && status == MS_OK; number++) {
+                status = add_run(p, &s, (ms_change)c, number, err);
+            }
+        }
+    }
+    ms_input_free(&input);
+    return status;
+}
+
+static ms_status try_all(progress *p, const arguments *a, ms_error *err)
+{
+    ms_status status = MS_OK;
+    ms_stability_header(p->rows);
+    for (int s = 0; s < a->n_shapes && status == MS_OK; s++) {
+        status = try_shape(p, a, a->shape[s], err);
+    }
+    for (const ms_hard_shape *shape = ms_hard_shapes; !a->n_shapes && shape->name && status == MS_OK; shape++) {
+        status = try_shape(p, a, shape->name, err);
+    }
+    if (isatty(STDERR_FILENO)) {
+        fputs("\r\033[K", stderr);
+    }
+    return status;
+}
+
+static ms_status report(const arguments *a, const progress *p, ms_error *err)
+{
+    ms_spread_group *groups;
+    size_t count;
+    ms_status status = ms_spread_group_runs(&groups, &count, p->run, p->n_runs, err);
+    if (status == MS_OK && a->json) {
+        status = ms_report_print(stdout, ms_spread_json(groups, count), err);
+    } else if (status == MS_OK) {
+        FILE *words = p->rows == stdout ? stderr : stdout;
+        ms_spread_print(words, groups, count, a->until_dice >= 0);
+    }
+    free(groups);
+    return status;
+}
+
+static size_t count_runs(const arguments *a)
+{
+    size_t each = 0, shapes = (size_t)a->n_shapes;
+    for (int c = 0; c < MS_CHANGES; c++) {
+        each += a->wanted[c] ? (size_t)ms_change_runs((ms_change)c, (int)a->runs) : 0;
+    }
+    for (const ms_hard_shape *shape = ms_hard_shapes; !a->n_shapes && shape->name; shape++) {
+        shapes++;
+    }
+    return each * shapes * a->n_methods;
+}
+
+static int work(const ms_command *command, const arguments *a)
+{
+    ms_error err;
+    progress p = {.planned = count_runs(a)};
+    ms_status status = try_shapes(a, &err);
+    if (status == MS_OK && strcmp(a->output, "-") != 0) {
+        status = ms_outputs_try_file("", a->output, &err);
+    }
+    if (status != MS_OK) {
+        return ms_fail_command(command, &err);
+    }
+    p.run = malloc(p.planned * sizeof *p.run);
+    p.rows = strcmp(a->output, "-") == 0 ? stdout : fopen(a->output, "w");
+    if (!p.run || !p.rows) {
+        status = ms_fail(&err, MS_ERR_IO, "%s: cannot be opened, or no memory for %zu runs", a->output, p.planned);
+    } else {
+        status = try_all(&p, a, &err);
+    }
+    if (status == MS_OK) {
+        status = report(a, &p, &err);
+    }
+    if (p.rows && p.rows != stdout && fclose(p.rows) != 0 && status == MS_OK) {
+        status = ms_fail(&err, MS_ERR_IO, "%s: could not be written; is the disk full?", a->output);
+    }
+    free(p.run);
+    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+}
+
+static int run(const ms_command *command, int argc, char **argv)
+{
+    arguments a = {.spheres = DEFAULT_SPHERES, .runs = DEFAULT_RUNS, .seed = 1, .until_dice = -1,
+                   .output = "stability.csv"};
+    int first;
+    ms_error err;
+    ms_input_defaults(&a.input);
+    int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
+    if (code == MS_FLAGS_GO_ON) {
+        a.shape = argv + first;
+        a.n_shapes = argc - first;
+        code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_wrong_usage(command, err.text);
+    }
+    for (size_t m = 0; m < a.n_methods; m++) {
+        ms_method_free(&a.method[m]);
+    }
+    return code;
+}
+
+const ms_command ms_command_stability = {
+    .name = "stability",
+    .summary = "how much results depend on what should not matter",
+    .usage = "[SHAPE...] [-g NAME[:OPTION=VALUE,...]]... [-n N] [--perturb KIND]...",
+    .example = "mskit stability cube speck -g mss -g fcm -n 5 --runs 2 --perturb rotation --perturb noise -o s.csv",
+    .flags = FLAGS,
+    .run = run,
+};

@@ -1,0 +1,64 @@
+#include "ms_hard_shapes.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "ms_file.h"
+#include "ms_inertia.h"
+#include "ms_perturb.h"
+#include "ms_shape.h"
+
+const ms_hard_shape ms_hard_shapes[] = {
+    {.name = "plate", .kind = "plate", .value = {5, 5, 0.1, 50}, .deq = 100},
+    {.name = "needle", .kind = "needle", .value = {20, 0.5, 16}, .deq = 40},
+    {.name = "cube", .kind = "cube", .value = {1, 16}, .deq = 40},
+    {.name = "tetrahedron", .kind = "tetrahedron", .value = {1, 16}, .deq = 40},
+    {.name = "shell", .kind = "hollow", .value = {1, 0.8, 16}, .deq = 60},
+    {.name = "torus", .kind = "torus", .value = {3, 1, 16}, .deq = 40},
+    {.name = "dumbbell", .kind = "dumbbell", .value = {1, 3, 0.2, 16}, .deq = 40},
+    {.name = "cone", .kind = "cone", .value = {1, 2, 16}, .deq = 40},
+    {.name = "rough", .kind = "grain", .value = {1, 1.3, 1.2, 0.3, 32, 1.5, 1, 24}, .deq = 40},
+    {.name = "speck", .kind = "grain", .value = {1, 1.3, 1.2, 0.1, 16, 3, 1, 16}, .deq = 6, .only = 1},
+    {.name = "open", .kind = "grain", .value = {1, 1.3, 1.2, 0.1, 16, 3, 1, 16}, .deq = 40, .holes = 0.02},
+    {0}};
+
+/* The flags with a voxel size in the place of a diameter. */
+static ms_status settle_voxels(ms_input_flags *flags, const ms_hard_shape *shape, const ms_mesh *mesh, ms_error *err)
+{
+    ms_body body;
+    ms_status status = ms_inertia_mesh(&body, mesh, err);
+    const double asked = flags->deq > 0 ? flags->deq : shape->deq;
+    if (status != MS_OK || (!shape->only && (flags->cells > 0 || flags->voxel_size > 0))) {
+        return status;
+    }
+    flags->voxel_size = cbrt(6 * body.volume / acos(-1.0)) / (shape->only ? shape->deq : asked);
+    flags->cells = flags->deq = 0;
+    return MS_OK;
+}
+
+ms_status ms_hard_shape_make(ms_input *input, const ms_hard_shape *shape, const ms_input_flags *flags, ms_error *err)
+{
+    ms_input_flags own = *flags;
+    memset(input, 0, sizeof *input);
+    input->path = shape->name;
+    ms_status status = ms_shape_make(&input->mesh, ms_shape_find(shape->kind, err), shape->value, err);
+    if (status == MS_OK) {
+        status = settle_voxels(&own, shape, &input->mesh, err);
+    }
+    if (status == MS_OK && shape->holes > 0) {
+        own.allow_open = 1;
+        status = ms_perturb_open(&input->mesh, shape->holes, 1, err);
+    }
+    if (status == MS_OK) {
+        status = ms_mesh_repair(&input->mesh, &input->report, err);
+    }
+    if (status == MS_OK) {
+        const ms_bytes bytes = {(uint8_t *)input->mesh.vertex, input->mesh.n_vertices * sizeof *input->mesh.vertex};
+        input->checksum = ms_bytes_checksum(&bytes);
+        status = ms_input_target(input, &own, err);
+    }
+    if (status != MS_OK) {
+        ms_input_free(input);
+    }
+    return status;
+}

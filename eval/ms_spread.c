@@ -1,0 +1,231 @@
+#include "ms_spread.h"
+
+#include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics_double.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_report.h"
+
+ms_spread ms_spread_of(double *values, size_t count)
+{
+    size_t n = 0;
+    for (size_t v = 0; v < count; v++) {
+        if (isfinite(values[v])) {
+            values[n++] = values[v];
+        }
+    }
+    if (n == 0) {
+        return (ms_spread){0, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
+    }
+    gsl_sort(values, 1, n);
+    return (ms_spread){n, values[0], gsl_stats_median_from_sorted_data(values, 1, n), values[n - 1],
+                       n > 1 ? gsl_stats_sd(values, 1, n) : 0};
+}
+
+static int gave_spheres(const ms_stability_run *run)
+{
+    return run->outcome == MS_OUTCOME_OK || run->outcome == MS_OUTCOME_SHORT;
+}
+
+static int is_of(const ms_spread_group *group, const ms_stability_run *run)
+{
+    return run->change == group->change && strcmp(run->method, group->method) == 0 &&
+           (!group->shape || strcmp(run->shape, group->shape) == 0);
+}
+
+/* The run on the unchanged shape by the same method; NULL if it failed. */
+static const ms_stability_run *find_unchanged(const ms_stability_run *run, const ms_stability_run *runs, size_t n_runs)
+{
+    const ms_spread_group unchanged = {.shape = run->shape, .method = run->method, .change = MS_CHANGE_NONE};
+    for (size_t r = 0; r < n_runs; r++) {
+        if (is_of(&unchanged, &runs[r])) {
+            return gave_spheres(&runs[r]) ? &runs[r] : NULL;
+        }
+    }
+    return NULL;
+}
+
+static void count_outcome(ms_spread_group *g, const ms_stability_run *run)
+{
+    const int was_failed = g->failed > 0;
+    g->unusable += run->outcome == MS_OUTCOME_UNUSABLE;
+    g->failed += run->outcome == MS_OUTCOME_FAILED;
+    g->shorter += run->outcome == MS_OUTCOME_SHORT;
+    g->runs += run->outcome != MS_OUTCOME_UNUSABLE;
+    if (run->cause.text[0] && (!g->cause || (!was_failed && g->failed))) {
+        g->cause = &run->cause;
+    }
+}
+
+/* D of a run in a group: that of all shapes sets it over D of the unchanged shape. */
+static double weigh_dice(ms_spread_group *g, double *largest, const ms_stability_run *run,
+                         const ms_stability_run *unchanged)
+{
+    const double dice = run->metrics.score.dice;
+    if (g->shape) {
+        return dice;
+    }
+    const double ratio = unchanged ? dice / unchanged->metrics.score.dice : (double)NAN;
+    if (ratio > *largest) {
+        *largest = ratio;
+        g->worst = run->shape;
+    }
+    return ratio;
+}
+
+/* `room` has three numbers for each run. */
+static void measure(ms_spread_group *g, const ms_stability_run *runs, size_t n_runs, double *room)
+{
+    double *dice = room, *inertia = room + n_runs, *until = room + 2 * n_runs, largest = 1;
+    size_t n = 0;
+    for (size_t r = 0; r < n_runs; r++) {
+        const ms_stability_run *run = &runs[r];
+        if (!is_of(g, run)) {
+            continue;
+        }
+        count_outcome(g, run);
+        if (gave_spheres(run)) {
+            const ms_stability_run *unchanged = find_unchanged(run, runs, n_runs);
+            g->identical += unchanged && run->checksum == unchanged->checksum;
+            g->not_reached += run->until_dice >= 0 && !run->spheres_until;
+            dice[n] = weigh_dice(g, &largest, run, unchanged);
+            inertia[n] = run->metrics.inertia.weighted;
+            until[n++] = run->spheres_until ? (double)run->spheres_until : (double)NAN;
+        }
+    }
+    g->dice = ms_spread_of(dice, n);
+    g->inertia = ms_spread_of(inertia, n);
+    g->until = ms_spread_of(until, n);
+}
+
+/* The groups that the runs fall into, not yet measured. @return how many */
+static size_t list_groups(ms_spread_group *groups, const ms_stability_run *runs, size_t n_runs, int all_shapes)
+{
+    size_t count = 0;
+    for (size_t r = 0; r < n_runs; r++) {
+        const ms_spread_group next = {.shape = all_shapes ? NULL : runs[r].shape, .method = runs[r].method,
+                                      .change = runs[r].change};
+        int known = 0;
+        for (size_t g = count; g-- > 0 && !known;) {
+            known = is_of(&groups[g], &runs[r]);
+        }
+        if (!known) {
+            groups[count++] = next;
+        }
+    }
+    return count;
+}
+
+ms_status ms_spread_group_runs(ms_spread_group **groups, size_t *count, const ms_stability_run *runs, size_t n_runs,
+                               ms_error *err)
+{
+    double *room = malloc((3 * n_runs + 1) * sizeof *room);
+    *groups = malloc((2 * n_runs + 1) * sizeof **groups);
+    *count = 0;
+    if (!room || !*groups) {
+        free(room);
+        free(*groups);
+        *groups = NULL;
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the summary of %zu runs", n_runs);
+    }
+    *count = list_groups(*groups, runs, n_runs, 0);
+    if (n_runs && strcmp(runs[0].shape, runs[n_runs - 1].shape) != 0) {
+        *count += list_groups(*groups + *count, runs, n_runs, 1);
+    }
+    for (size_t g = 0; g < *count; g++) {
+        measure(&(*groups)[g], runs, n_runs, room);
+    }
+    free(room);
+    return MS_OK;
+}
+
+static void print_number(FILE *stream, int width, int digits, double value)
+{
+    if (isfinite(value)) {
+        fprintf(stream, " %*.*f", width, digits, value);
+    } else {
+        fprintf(stream, " %*s", width, "-");
+    }
+}
+
+static void print_head(FILE *stream, const ms_spread_group *g, int until)
+{
+    fprintf(stream, "%s\n  %-22s %-10s %4s %5s %6s %5s %8s %31s %17s%s\n", g->shape ? g->shape : "all shapes",
+            "method", "changed", "runs", "same", "failed", "short", "unusable",
+            g->shape ? "D least  median    most st.dev." : "D/D none least .. most   st.dev.", "inertia error %",
+            until ? "    n at fixed D" : "");
+}
+
+static void print_group(FILE *stream, const ms_spread_group *g, int until)
+{
+    const ms_spread *d = &g->dice;
+    fprintf(stream, "  %-22s %-10s %4zu %5zu %6zu %5zu %8zu", g->method, ms_change_name(g->change), g->runs,
+            g->identical, g->failed, g->shorter, g->unusable);
+    print_number(stream, 7, 4, d->least);
+    print_number(stream, 7, 4, d->median);
+    print_number(stream, 7, 4, d->most);
+    print_number(stream, 8, 5, d->deviation);
+    print_number(stream, 8, 2, 100 * g->inertia.median);
+    print_number(stream, 8, 2, 100 * g->inertia.most);
+    if (until) {
+        print_number(stream, 6, 0, g->until.least);
+        print_number(stream, 5, 0, g->until.median);
+        print_number(stream, 5, 0, g->until.most);
+        if (g->not_reached) {
+            fprintf(stream, ", not reached %zu times", g->not_reached);
+        }
+    }
+    fprintf(stream, "%s%s\n", g->worst ? "  worst: " : "", g->worst ? g->worst : "");
+}
+
+static int same_table(const ms_spread_group *a, const ms_spread_group *b)
+{
+    return a->shape == b->shape || (a->shape && b->shape && strcmp(a->shape, b->shape) == 0);
+}
+
+void ms_spread_print(FILE *stream, const ms_spread_group *groups, size_t count, int until)
+{
+    for (size_t g = 0; g < count; g++) {
+        if (g == 0 || !same_table(&groups[g], &groups[g - 1])) {
+            print_head(stream, &groups[g], until);
+        }
+        print_group(stream, &groups[g], until);
+    }
+    for (size_t g = 0; g < count; g++) {
+        const ms_spread_group *at = &groups[g];
+        if (at->shape && at->cause) {
+            fprintf(stream, "%s, %s, %s: %zu failed, %zu unusable: %s\n", at->shape, at->method,
+                    ms_change_name(at->change), at->failed, at->unusable, at->cause->text);
+        }
+    }
+}
+
+static json_t *spread_json(const ms_spread *s)
+{
+    return json_pack("{s:I,s:o,s:o,s:o,s:o}", "count", (json_int_t)s->count, "min", ms_report_number(s->least),
+                     "median", ms_report_number(s->median), "max", ms_report_number(s->most), "deviation",
+                     ms_report_number(s->deviation));
+}
+
+static json_t *group_json(const ms_spread_group *g)
+{
+    return json_pack("{s:o,s:o,s:s,s:I,s:I,s:I,s:I,s:I,s:I,s:o,s:o,s:o,s:o,s:o}", "shape",
+                     g->shape ? ms_report_text(g->shape) : json_null(), "method", ms_report_text(g->method),
+                     "perturbation", ms_change_name(g->change), "runs", (json_int_t)g->runs, "identical",
+                     (json_int_t)g->identical, "failed", (json_int_t)g->failed, "short", (json_int_t)g->shorter, "unusable", (json_int_t)g->unusable,
+                     "not_reached", (json_int_t)g->not_reached, g->shape ? "dice" : "dice_ratio",
+                     spread_json(&g->dice), "inertia_error_spread", spread_json(&g->inertia), "n_until",
+                     spread_json(&g->until), "worst", g->worst ? ms_report_text(g->worst) : json_null(), "cause",
+                     g->cause ? ms_report_text(g->cause->text) : json_null());
+}
+
+json_t *ms_spread_json(const ms_spread_group *groups, size_t count)
+{
+    json_t *json = json_array();
+    for (size_t g = 0; g < count && json; g++) {
+        json_array_append_new(json, group_json(&groups[g]));
+    }
+    return json;
+}

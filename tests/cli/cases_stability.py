@@ -1,0 +1,193 @@
+"""mskit stability: what a result owes to things that should not matter."""
+import csv
+import io
+import json
+import math
+import os
+
+from support import Case, box_obj, npy
+
+KINDS = ("axes", "rotation", "shift", "resolution", "noise", "refine", "decimate", "seed", "order", "threads")
+
+
+def rows_of(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+class Stability(Case):
+    def rows(self, *args, **more):
+        """The rows of a run as dictionaries of text."""
+        self.mskit("stability", *args, "-o", "s.csv", **more)
+        return rows_of(self.read("s.csv").decode())
+
+    def test_rows_are_those_asked_for(self):
+        rows = self.rows("cube", "-g", "mss", "-n", "4", "--cells", "12", "--runs", "3")
+        wanted = ["none"] + [kind for kind in KINDS for _ in range(2 if kind == "refine" else 3)]
+        self.assertEqual([row["perturbation"] for row in rows], wanted)
+        for row in rows:
+            self.assertIsNone(row.get(None), "a field more than there are columns")
+            self.assertNotIn(None, row.values(), "a field less than there are columns")
+            self.assertEqual((row["shape"], row["method"], row["n_asked"]), ("cube", "mss", "4"))
+
+    def test_judged_as_score_does(self):
+        """D of the unchanged shape is that of score, on the same grid."""
+        self.shape("tetrahedron", name="t.ply")
+        self.mskit("generate", "t.ply", "-g", "setcover", "-n", "6", "--cells", "15", "-o", "c.csv")
+        score = self.mskit("score", "c.csv", "--target", "t.ply", "--cells", "15", "--json").json["scores"]
+        row = self.rows("t.ply", "-g", "setcover", "-n", "6", "--cells", "15", "--perturb", "seed", "--runs", "1")[0]
+        self.assertEqual(row["perturbation"], "none")
+        for column in ("eta", "dice", "coverage", "overshoot", "off_volume", "smallest_radius_ratio", "pieces"):
+            self.assertEqual(float(row[column]), score[column], column)
+        self.assertEqual(float(row["inertia_error"]), score["inertia_error"]["weighted_mean"])
+
+    def test_a_turned_cube_is_the_same_cube(self):
+        """The rotations of a cube leave it as it is, and MSS keeps its symmetry: D is that of the unchanged one."""
+        rows = self.rows("cube", "-g", "mss", "-n", "9", "--cells", "14", "--perturb", "axes", "--runs", "23")
+        self.assertEqual(len({row["level"] for row in rows}), 24)
+        self.assertEqual(len({row["dice"] for row in rows}), 1)
+
+    def test_what_must_not_matter_does_not(self):
+        """Threads, and for MSS seed, order and refined faces of a box: the same spheres to the last bit."""
+        self.write("box.obj", box_obj((0, 0, 0), (3, 2, 1)))
+        rows = self.rows("box.obj", "-g", "mss", "-n", "5", "--cells", "12", "--runs", "2", "--perturb", "threads",
+                         "--perturb", "seed", "--perturb", "order", "--perturb", "refine")
+        self.assertEqual(len(rows), 9)
+        self.assertEqual(len({row["spheres_fnv1a"] for row in rows}), 1)
+        self.assertEqual([row["threads"] for row in rows if row["perturbation"] == "threads"], ["1", "2"])
+
+    def test_another_seed_gives_other_spheres_where_numbers_are_drawn(self):
+        rows = self.rows("speck", "-g", "fcm:filling=500", "-n", "5", "--perturb", "seed", "--runs", "2")
+        self.assertEqual([row["seed"] for row in rows], ["1", "2", "3"])
+        self.assertEqual(len({row["spheres_fnv1a"] for row in rows}), 3)
+
+    def test_levels(self):
+        """Ladders in equal ratios from end to end; the voxels go with the resolution."""
+        rows = self.rows("cube", "-g", "mss", "-n", "1", "--cells", "10", "--runs", "3", "--perturb", "resolution",
+                         "--perturb", "noise", "--perturb", "decimate")
+        for kind, ladder in (("resolution", (0.5, 1, 2)), ("noise", (0.001, math.sqrt(3e-5), 0.03)),
+                             ("decimate", (0.02, math.sqrt(0.004), 0.2))):
+            levels = [float(row["level"]) for row in rows if row["perturbation"] == kind]
+            for level, truth in zip(levels, ladder, strict=True):
+                self.assert_close(level, truth, 1e-12, kind)
+        for row in rows:
+            factor = float(row["level"]) if row["perturbation"] == "resolution" else 1
+            self.assert_close(float(row["voxel_size"]), 0.1 / factor, 1e-12, "voxel size")
+
+    def test_the_number_at_fixed_mismatch(self):
+        """It is the number with which generate ends by the same rule."""
+        self.shape("cone", "fineness=8", name="c.ply")
+        run = self.generate("c.ply", "-g", "setcover", "--cells", "15", "--until", "dice=0.3", "-o", "x.csv")
+        rows = self.rows("c.ply", "-g", "setcover", "-n", "10", "--cells", "15", "--until-dice", "0.3", "--perturb", "seed",
+                         "--runs", "1")
+        self.assertEqual(run["stopped_by"], "dice")
+        self.assertEqual({row["n_until"] for row in rows}, {str(run["scores"]["spheres"])})
+        rows = self.rows("c.ply", "-g", "setcover", "-n", "1", "--cells", "15", "--until-dice", "0.0001", "--perturb",
+                         "seed", "--runs", "1")
+        self.assertEqual({row["n_until"] for row in rows}, {""})
+
+    def test_a_failure_is_a_row_with_its_cause(self):
+        """fcm that may draw 10 centres cannot touch the nodes: named, counted, and the others go on."""
+        result = self.mskit("stability", "speck", "-g", "fcm:tries=10", "-g", "mss", "-n", "3", "--perturb", "seed", "--runs", "2",
+                            "-o", "s.csv")
+        rows = rows_of(self.read("s.csv").decode())
+        for row in rows[:3]:
+            self.assertEqual((row["status"], row["dice"], row["n"]), ("failed", "", ""))
+            self.assertIn("random centres", row["cause"])
+        self.assertEqual([row["status"] for row in rows[3:]], ["ok"] * 3)
+        self.assertIn("2 failed, 0 unusable: 10 random centres", result.out)
+
+    def test_a_shape_that_cannot_be_used_is_no_failure_of_the_method(self):
+        """Twice the cells do not fit the memory allowed."""
+        groups = self.mskit("stability", "cube", "-g", "mss", "-n", "2", "--cells", "40", "--max-memory", "2M", "--perturb",
+                            "resolution", "--runs", "2", "--json", "-o", "s.csv").json
+        rows = rows_of(self.read("s.csv").decode())
+        self.assertEqual([row["status"] for row in rows if row["perturbation"] == "resolution"][1], "unusable")
+        self.assertIn("more than the memory allowed", rows[2]["cause"])
+        self.assertEqual([(g["runs"], g["failed"], g["unusable"]) for g in groups], [(1, 0, 0), (1, 0, 1)])
+
+    def test_summary_is_that_of_the_rows(self):
+        """Least, median, most and deviation, computed here."""
+        groups = self.mskit("stability", "cube", "speck", "-g", "mss", "-n", "3", "--runs", "4", "--cells", "10", "--perturb",
+                            "rotation", "--json", "-o", "s.csv").json
+        rows = rows_of(self.read("s.csv").decode())
+        self.assertEqual([(g["shape"], g["perturbation"]) for g in groups],
+                         [("cube", "none"), ("cube", "rotation"), ("speck", "none"), ("speck", "rotation"),
+                          (None, "none"), (None, "rotation")])
+        for group in (groups[1], groups[3]):
+            dice = sorted(float(r["dice"]) for r in rows
+                          if r["shape"] == group["shape"] and r["perturbation"] == "rotation")
+            mean = sum(dice) / 4
+            truth = {"count": 4, "min": dice[0], "median": (dice[1] + dice[2]) / 2, "max": dice[3],
+                     "deviation": math.sqrt(sum((d - mean)**2 for d in dice) / 3)}
+            for key, value in truth.items():
+                self.assert_close(group["dice"][key], value, 1e-9, key)
+        unchanged = {r["shape"]: float(r["dice"]) for r in rows if r["perturbation"] == "none"}
+        ratios = [(float(r["dice"]) / unchanged[r["shape"]], r["shape"]) for r in rows if r["perturbation"] == "rotation"]
+        self.assert_close(groups[5]["dice_ratio"]["max"], max(ratios)[0], 1e-12, "largest ratio")
+        self.assertEqual(groups[5]["worst"], max(ratios)[1] if max(ratios)[0] > 1 else None)
+
+    def test_threads_give_the_same_rows(self):
+        args = ("speck", "cube", "-n", "3", "--cells", "8", "-g", "mss", "-g", "variational", "-g", "setcover", "--perturb",
+                "rotation", "--perturb", "noise", "--runs", "1")
+        runs = [self.rows(*args, "-j", threads) for threads in ("1", "2")]
+        for one, two in zip(*runs, strict=True):
+            for column in one:
+                if column not in ("seconds", "threads"):
+                    self.assertEqual(one[column], two[column], column)
+
+    def test_rows_on_standard_output(self):
+        result = self.mskit("stability", "speck", "-g", "mss", "-n", "2", "--perturb", "seed", "--runs", "1", "-o", "-")
+        self.assertEqual(len(rows_of(result.out)), 2)
+        self.assertIn("unusable", result.err)
+        self.assertEqual(self.files(), [])
+
+    def test_built_in_shapes(self):
+        """Every one is made and judged: the open mesh is open, the speck a few voxels across."""
+        rows = self.rows("-g", "mss", "-n", "1", "--perturb", "threads", "--runs", "1")
+        names = [row["shape"] for row in rows if row["perturbation"] == "none"]
+        self.assertEqual(names, ["plate", "needle", "cube", "tetrahedron", "shell", "torus", "dumbbell", "cone", "rough",
+                                 "speck", "open"])
+        self.assertEqual({row["status"] for row in rows}, {"ok"})
+
+    def test_wrong_usage(self):
+        for args, says in (
+            (("-g", "nonsense"), ("'nonsense'", "mss", "fcm")),
+            (("-g", "mss:nonsense=1"), ("'nonsense'", "spacing")),
+            (("-g", "mss:boost=9"), ("boost", "1 to 5")),
+            (("-g", "mss:plane"), ("a,b,c,d",)),
+            (("--perturb", "nonsense"), ("'nonsense'", *KINDS)),
+            (("--perturb", "none"), ("'none'",)),
+            (("--runs", "0"), ("--runs", "1 to 1000")),
+            (("--until-dice", "2"), ("--until-dice", "0 to 1")),
+            (("-n", "0"), ("--spheres",)),
+            (("--json", "-o", "-"), ("standard output",)),
+        ):
+            with self.subTest(args=args):
+                self.assert_refused("stability", "cube", *args, code=2, says=says)
+
+    def test_shapes_are_tried_before_the_work(self):
+        self.write("scan.npy", npy([1] * 1000, (10, 10, 10)))
+        self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))
+        self.assert_refused("stability", "cube", "missing.stl", code=1, says=("missing.stl", "cannot be opened"))
+        self.assert_refused("stability", "cube", "scan.npy", code=1, says=("volume",))
+        self.assert_refused("stability", "cube", "-o", "no/such/s.csv", code=1, says=("no/such/s.csv",))
+        self.mskit("stability", "open.obj", "-o", "s.csv", code=1)
+        self.assertEqual(rows_of(self.read("s.csv").decode()), [])
+
+    def test_a_full_disk_is_named(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("no /dev/full here")
+        self.assert_refused("stability", "speck", "-g", "mss", "-n", "1", "--perturb", "seed", "-o", "/dev/full", code=1,
+                            says=("is the disk full?",))
+
+    def test_formats_name_every_column(self):
+        path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "formats.md")
+        with open(path, encoding="utf-8") as f:
+            text = f.read()
+        row = self.rows("speck", "-g", "mss", "-n", "1", "--perturb", "seed", "--runs", "1")[0]
+        groups = self.mskit("stability", "speck", "cube", "-g", "mss", "-n", "1", "--cells", "8", "--perturb", "seed",
+                            "--runs", "1", "--json", "-o", "s.csv").json
+        keys = set(row).union(*(set(g) | set(g["inertia_error_spread"]) for g in groups))
+        for key in keys | set(KINDS):
+            self.assertIn(f"`{key}`", text, f"formats.md does not explain '{key}'")
+        self.assertEqual(json.dumps(groups).count("dice_ratio"), 2)
