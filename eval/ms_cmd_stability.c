@@ -11,6 +11,7 @@
 #include "ms_report.h"
 #include "ms_spread.h"
 #include "ms_stability.h"
+#include "ms_stability_charts.h"
 
 enum { MAX_METHODS = 32, DEFAULT_SPHERES = 20, DEFAULT_RUNS = 5, MOST_RUNS = 1000 };
 
@@ -23,6 +24,7 @@ static const ms_flag FLAGS[] = {
     {"runs", 0, "R", "runs of each perturbation (5)"},
     {"seed", 0, "S", "seed of the methods and of the perturbations (1)"},
     {"output", 'o', "FILE", "a row for each run as CSV, written as they come; - for standard output (stability.csv)"},
+    {"charts", 0, "DIR", "charts of D into this folder, as SVG and PNG; takes gnuplot"},
     {"json", 0, NULL, "the summary as JSON on standard output"},
     MS_INPUT_FLAGS,
     {0},
@@ -34,7 +36,7 @@ typedef struct arguments {
     size_t n_methods;
     int wanted[MS_CHANGES];
     double spheres, runs, seed, until_dice;
-    const char *output;
+    const char *output, *charts;
     int json;
     char **shape; /* none: the built-in ones */
     int n_shapes;
@@ -97,10 +99,10 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
     if (strcmp(name, "seed") == 0) {
         return ms_flag_whole(&a->seed, name, value, 0, 9007199254740992.0, err);
     }
-    if (strcmp(name, "output") == 0) {
-        a->output = value;
-    } else {
+    if (strcmp(name, "json") == 0) {
         a->json = 1;
+    } else {
+        *(name[0] == 'c' ? &a->charts : &a->output) = value;
     }
     return MS_OK;
 }
@@ -180,6 +182,12 @@ static ms_status try_shapes(const arguments *a, ms_error *err)
     return status;
 }
 
+static ms_status try_outputs(const arguments *a, ms_error *err)
+{
+    ms_status status = a->charts ? ms_outputs_make_folder(a->charts, err) : MS_OK;
+    return status == MS_OK && strcmp(a->output, "-") != 0 ? ms_outputs_try_file("", a->output, err) : status;
+}
+
 static void show(const progress *p, const ms_stability *s, ms_change change)
 {
     if (isatty(STDERR_FILENO)) {
@@ -249,7 +257,7 @@ static ms_status report(const arguments *a, const progress *p, ms_error *err)
         ms_spread_print(words, groups, count, a->until_dice >= 0);
     }
     free(groups);
-    return status;
+    return status == MS_OK && a->charts ? ms_stability_charts(a->charts, p->run, p->n_runs, err) : status;
 }
 
 static size_t count_runs(const arguments *a)
@@ -269,8 +277,8 @@ static int work(const ms_command *command, const arguments *a)
     ms_error err;
     progress p = {.planned = count_runs(a)};
     ms_status status = try_shapes(a, &err);
-    if (status == MS_OK && strcmp(a->output, "-") != 0) {
-        status = ms_outputs_try_file("", a->output, &err);
+    if (status == MS_OK) {
+        status = try_outputs(a, &err);
     }
     if (status != MS_OK) {
         return ms_fail_command(command, &err);

@@ -24,27 +24,10 @@ ms_spread ms_spread_of(double *values, size_t count)
                        n > 1 ? gsl_stats_sd(values, 1, n) : 0};
 }
 
-static int gave_spheres(const ms_stability_run *run)
-{
-    return run->outcome == MS_OUTCOME_OK || run->outcome == MS_OUTCOME_SHORT;
-}
-
 static int is_of(const ms_spread_group *group, const ms_stability_run *run)
 {
     return run->change == group->change && strcmp(run->method, group->method) == 0 &&
            (!group->shape || strcmp(run->shape, group->shape) == 0);
-}
-
-/* The run on the unchanged shape by the same method; NULL if it failed. */
-static const ms_stability_run *find_unchanged(const ms_stability_run *run, const ms_stability_run *runs, size_t n_runs)
-{
-    const ms_spread_group unchanged = {.shape = run->shape, .method = run->method, .change = MS_CHANGE_NONE};
-    for (size_t r = 0; r < n_runs; r++) {
-        if (is_of(&unchanged, &runs[r])) {
-            return gave_spheres(&runs[r]) ? &runs[r] : NULL;
-        }
-    }
-    return NULL;
 }
 
 static void count_outcome(ms_spread_group *g, const ms_stability_run *run)
@@ -86,8 +69,8 @@ static void measure(ms_spread_group *g, const ms_stability_run *runs, size_t n_r
             continue;
         }
         count_outcome(g, run);
-        if (gave_spheres(run)) {
-            const ms_stability_run *unchanged = find_unchanged(run, runs, n_runs);
+        if (ms_stability_gave(run)) {
+            const ms_stability_run *unchanged = ms_stability_unchanged(runs, run);
             g->identical += unchanged && run->checksum == unchanged->checksum;
             g->not_reached += run->until_dice >= 0 && !run->spheres_until;
             dice[n] = weigh_dice(g, &largest, run, unchanged);
@@ -214,7 +197,8 @@ static json_t *group_json(const ms_spread_group *g)
     return json_pack("{s:o,s:o,s:s,s:I,s:I,s:I,s:I,s:I,s:I,s:o,s:o,s:o,s:o,s:o}", "shape",
                      g->shape ? ms_report_text(g->shape) : json_null(), "method", ms_report_text(g->method),
                      "perturbation", ms_change_name(g->change), "runs", (json_int_t)g->runs, "identical",
-                     (json_int_t)g->identical, "failed", (json_int_t)g->failed, "short", (json_int_t)g->shorter, "unusable", (json_int_t)g->unusable,
+                     (json_int_t)g->identical, "failed", (json_int_t)g->failed, "short", (json_int_t)g->shorter,
+                     "unusable", (json_int_t)g->unusable,
                      "not_reached", (json_int_t)g->not_reached, g->shape ? "dice" : "dice_ratio",
                      spread_json(&g->dice), "inertia_error_spread", spread_json(&g->inertia), "n_until",
                      spread_json(&g->until), "worst", g->worst ? ms_report_text(g->worst) : json_null(), "cause",

@@ -109,8 +109,8 @@ static ms_status decimate(ms_mesh *mesh, double cell, int closed, ms_error *err)
     ms_status status = ms_perturb_decimate(&coarser, &report, mesh, cell, err);
     if (status == MS_OK && closed && !report.closed) {
         ms_mesh_free(&coarser);
-        return ms_fail(err, MS_ERR_SHAPE, "with its vertices joined in cells of %g the mesh is open: %zu odd edges", cell,
-                       report.odd_edges);
+        return ms_fail(err, MS_ERR_SHAPE, "with its vertices joined in cells of %g the mesh is open: %zu odd edges",
+                       cell, report.odd_edges);
     }
     if (status == MS_OK) {
         ms_mesh_free(mesh);
@@ -248,6 +248,19 @@ void ms_stability_try(ms_stability_run *run, const ms_stability *s, ms_change ch
     free_changed(&c);
 }
 
+int ms_stability_gave(const ms_stability_run *run)
+{
+    return run->outcome == MS_OUTCOME_OK || run->outcome == MS_OUTCOME_SHORT;
+}
+
+const ms_stability_run *ms_stability_unchanged(const ms_stability_run *runs, const ms_stability_run *run)
+{
+    while (run > runs && run->change != MS_CHANGE_NONE) {
+        run--;
+    }
+    return ms_stability_gave(run) ? run : NULL;
+}
+
 void ms_stability_header(FILE *stream)
 {
     fputs("shape,checksum,method,perturbation,level,seed,voxel_size,threads,n_asked,status,n,stopped_by,eta,dice,"
@@ -304,7 +317,7 @@ void ms_stability_row(FILE *stream, const ms_stability_run *run)
     fprintf(stream, ",%" PRIu64, run->seed);
     put_number(stream, run->voxel_size);
     fprintf(stream, ",%d,%zu,%s", run->threads, run->asked, OUTCOMES[run->outcome]);
-    if (run->outcome == MS_OUTCOME_OK || run->outcome == MS_OUTCOME_SHORT) {
+    if (ms_stability_gave(run)) {
         put_results(stream, run);
     } else {
         fputs(",,,,,,,,,,,,,", stream);

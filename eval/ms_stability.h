@@ -88,6 +88,16 @@ typedef struct ms_stability_run {
  */
 void ms_stability_try(ms_stability_run *run, const ms_stability *s, ms_change change, int number);
 
+/** Nonzero if it gave spheres, which were judged. */
+int ms_stability_gave(const ms_stability_run *run);
+
+/**
+ * The run on the unchanged shape by the same method: those of a shape and method begin with it.
+ * @param run one of the array `runs`
+ * @return NULL if it gave no spheres
+ */
+const ms_stability_run *ms_stability_unchanged(const ms_stability_run *runs, const ms_stability_run *run);
+
 /** The columns of the CSV. */
 void ms_stability_header(FILE *stream);
 void ms_stability_row(FILE *stream, const ms_stability_run *run);

@@ -4,6 +4,7 @@ import io
 import json
 import math
 import os
+import shutil
 
 from support import Case, box_obj, npy
 
@@ -77,8 +78,8 @@ class Stability(Case):
         """It is the number with which generate ends by the same rule."""
         self.shape("cone", "fineness=8", name="c.ply")
         run = self.generate("c.ply", "-g", "setcover", "--cells", "15", "--until", "dice=0.3", "-o", "x.csv")
-        rows = self.rows("c.ply", "-g", "setcover", "-n", "10", "--cells", "15", "--until-dice", "0.3", "--perturb", "seed",
-                         "--runs", "1")
+        rows = self.rows("c.ply", "-g", "setcover", "-n", "10", "--cells", "15", "--until-dice", "0.3", "--perturb",
+                         "seed", "--runs", "1")
         self.assertEqual(run["stopped_by"], "dice")
         self.assertEqual({row["n_until"] for row in rows}, {str(run["scores"]["spheres"])})
         rows = self.rows("c.ply", "-g", "setcover", "-n", "1", "--cells", "15", "--until-dice", "0.0001", "--perturb",
@@ -87,8 +88,8 @@ class Stability(Case):
 
     def test_a_failure_is_a_row_with_its_cause(self):
         """fcm that may draw 10 centres cannot touch the nodes: named, counted, and the others go on."""
-        result = self.mskit("stability", "speck", "-g", "fcm:tries=10", "-g", "mss", "-n", "3", "--perturb", "seed", "--runs", "2",
-                            "-o", "s.csv")
+        result = self.mskit("stability", "speck", "-g", "fcm:tries=10", "-g", "mss", "-n", "3", "--perturb", "seed",
+                            "--runs", "2", "-o", "s.csv")
         rows = rows_of(self.read("s.csv").decode())
         for row in rows[:3]:
             self.assertEqual((row["status"], row["dice"], row["n"]), ("failed", "", ""))
@@ -98,8 +99,8 @@ class Stability(Case):
 
     def test_a_shape_that_cannot_be_used_is_no_failure_of_the_method(self):
         """Twice the cells do not fit the memory allowed."""
-        groups = self.mskit("stability", "cube", "-g", "mss", "-n", "2", "--cells", "40", "--max-memory", "2M", "--perturb",
-                            "resolution", "--runs", "2", "--json", "-o", "s.csv").json
+        groups = self.mskit("stability", "cube", "-g", "mss", "-n", "2", "--cells", "40", "--max-memory", "2M",
+                            "--perturb", "resolution", "--runs", "2", "--json", "-o", "s.csv").json
         rows = rows_of(self.read("s.csv").decode())
         self.assertEqual([row["status"] for row in rows if row["perturbation"] == "resolution"][1], "unusable")
         self.assertIn("more than the memory allowed", rows[2]["cause"])
@@ -107,8 +108,8 @@ class Stability(Case):
 
     def test_summary_is_that_of_the_rows(self):
         """Least, median, most and deviation, computed here."""
-        groups = self.mskit("stability", "cube", "speck", "-g", "mss", "-n", "3", "--runs", "4", "--cells", "10", "--perturb",
-                            "rotation", "--json", "-o", "s.csv").json
+        groups = self.mskit("stability", "cube", "speck", "-g", "mss", "-n", "3", "--runs", "4", "--cells", "10",
+                            "--perturb", "rotation", "--json", "-o", "s.csv").json
         rows = rows_of(self.read("s.csv").decode())
         self.assertEqual([(g["shape"], g["perturbation"]) for g in groups],
                          [("cube", "none"), ("cube", "rotation"), ("speck", "none"), ("speck", "rotation"),
@@ -122,13 +123,14 @@ class Stability(Case):
             for key, value in truth.items():
                 self.assert_close(group["dice"][key], value, 1e-9, key)
         unchanged = {r["shape"]: float(r["dice"]) for r in rows if r["perturbation"] == "none"}
-        ratios = [(float(r["dice"]) / unchanged[r["shape"]], r["shape"]) for r in rows if r["perturbation"] == "rotation"]
+        ratios = [(float(r["dice"]) / unchanged[r["shape"]], r["shape"]) for r in rows
+                  if r["perturbation"] == "rotation"]
         self.assert_close(groups[5]["dice_ratio"]["max"], max(ratios)[0], 1e-12, "largest ratio")
         self.assertEqual(groups[5]["worst"], max(ratios)[1] if max(ratios)[0] > 1 else None)
 
     def test_threads_give_the_same_rows(self):
-        args = ("speck", "cube", "-n", "3", "--cells", "8", "-g", "mss", "-g", "variational", "-g", "setcover", "--perturb",
-                "rotation", "--perturb", "noise", "--runs", "1")
+        args = ("speck", "cube", "-n", "3", "--cells", "8", "-g", "mss", "-g", "variational", "-g", "setcover",
+                "--perturb", "rotation", "--perturb", "noise", "--runs", "1")
         runs = [self.rows(*args, "-j", threads) for threads in ("1", "2")]
         for one, two in zip(*runs, strict=True):
             for column in one:
@@ -145,9 +147,44 @@ class Stability(Case):
         """Every one is made and judged: the open mesh is open, the speck a few voxels across."""
         rows = self.rows("-g", "mss", "-n", "1", "--perturb", "threads", "--runs", "1")
         names = [row["shape"] for row in rows if row["perturbation"] == "none"]
-        self.assertEqual(names, ["plate", "needle", "cube", "tetrahedron", "shell", "torus", "dumbbell", "cone", "rough",
-                                 "speck", "open"])
+        self.assertEqual(names, ["plate", "needle", "cube", "tetrahedron", "shell", "torus", "dumbbell", "cone",
+                                 "rough", "speck", "open"])
         self.assertEqual({row["status"] for row in rows}, {"ok"})
+
+    def test_charts(self):
+        """Every run stands in the chart of all; the lines over the noise are ratios of D, from the least level up."""
+        if not shutil.which("gnuplot"):
+            self.skipTest("gnuplot is not installed here")
+        rows = self.rows("speck", "cube", "-g", "mss:order=gain", "-n", "3", "--cells", "8", "--runs", "3", "--perturb",
+                         "noise", "--perturb", "seed", "--charts", "charts")
+        stems = ("1-mss-order-gain-all", "1-mss-order-gain-noise")
+        self.assertEqual(sorted(os.listdir(self.path("charts"))),
+                         sorted(stem + ending for stem in stems for ending in (".dat", ".gp", ".png", ".svg")))
+        unchanged = {row["shape"]: float(row["dice"]) for row in rows if row["perturbation"] == "none"}
+        blocks = self.blocks("charts/1-mss-order-gain-all.dat")
+        self.assertEqual([(name, len(points)) for name, points in blocks], [("none", 2), ("noise", 6), ("seed", 6)])
+        for name, points in blocks:
+            for (x, y), row in zip(points, [row for row in rows if row["perturbation"] == name], strict=True):
+                self.assert_close(x, unchanged[row["shape"]], 1e-8, "D of the unchanged shape")
+                self.assert_close(y, float(row["dice"]), 1e-8, "D of the changed shape")
+        blocks = self.blocks("charts/1-mss-order-gain-noise.dat")
+        self.assertEqual([name for name, _ in blocks], ["speck", "cube"])
+        for name, points in blocks:
+            own = [row for row in rows if row["shape"] == name and row["perturbation"] == "noise"]
+            for (x, y), row in zip(points, own, strict=True):
+                self.assert_close(x, float(row["level"]), 1e-8, "level")
+                self.assert_close(y, float(row["dice"]) / unchanged[name], 1e-8, "ratio")
+        svg = self.read("charts/1-mss-order-gain-noise.svg").decode()
+        for word in ("mss:order=gain", "speck", "cube", "amplitude of the noise / d_eq", "D / D of the unchanged shape"):
+            self.assertIn(word, svg)
+
+    def blocks(self, name):
+        """The series of a chart: name and points."""
+        found = []
+        for block in self.read(name).decode().strip().split("\n\n\n"):
+            head, *lines = block.splitlines()
+            found.append((head.split("'")[1], [tuple(float(w) for w in line.split()[:2]) for line in lines]))
+        return found
 
     def test_wrong_usage(self):
         for args, says in (
@@ -177,8 +214,8 @@ class Stability(Case):
     def test_a_full_disk_is_named(self):
         if not os.path.exists("/dev/full"):
             self.skipTest("no /dev/full here")
-        self.assert_refused("stability", "speck", "-g", "mss", "-n", "1", "--perturb", "seed", "-o", "/dev/full", code=1,
-                            says=("is the disk full?",))
+        self.assert_refused("stability", "speck", "-g", "mss", "-n", "1", "--perturb", "seed", "-o", "/dev/full",
+                            code=1, says=("is the disk full?",))
 
     def test_formats_name_every_column(self):
         path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "formats.md")

@@ -1,0 +1,151 @@
+#include "ms_stability_charts.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ms_chart.h"
+
+/* The runs of one method, and the chart that is being made of them. */
+typedef struct album {
+    const char *folder;
+    const ms_stability_run *runs; /* of all methods */
+    size_t n_runs;
+    const char *method;
+    int number; /* of the method */
+    ms_chart_point *point; /* one for each run */
+    ms_chart_series *series;
+    size_t n_points, n_series;
+} album;
+
+/* NAN if the method gave nothing. */
+static double unchanged_dice(const album *a, const ms_stability_run *run)
+{
+    const ms_stability_run *unchanged = ms_stability_unchanged(a->runs, run);
+    return unchanged ? unchanged->metrics.score.dice : (double)NAN;
+}
+
+static void begin_series(album *a, const char *name, ms_chart_style style)
+{
+    a->series[a->n_series++] = (ms_chart_series){.name = name, .style = style, .point = a->point + a->n_points};
+}
+
+static void add_point(album *a, double x, double y, const char *label)
+{
+    ms_chart_point *point = &a->point[a->n_points++];
+    *point = (ms_chart_point){.x = x, .y = y};
+    snprintf(point->label, sizeof point->label, "%s", label);
+    a->series[a->n_series - 1].count++;
+}
+
+/* Letters, digits and dashes of what the user called the method. */
+static void make_stem(char *stem, size_t size, const album *a, const char *kind)
+{
+    const int folder = snprintf(stem, size, "%s/", a->folder);
+    snprintf(stem + folder, size - (size_t)folder, "%d-%.40s-%s", a->number, a->method, kind);
+    for (char *at = stem + folder; *at; at++) {
+        *at = (char)(isalnum((unsigned char)*at) ? *at : '-');
+    }
+}
+
+static ms_status draw(album *a, const char *kind, ms_chart chart, ms_error *err)
+{
+    const size_t size = strlen(a->folder) + 128;
+    char *stem = malloc(size);
+    if (!stem) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for a chart");
+    }
+    make_stem(stem, size, a, kind);
+    chart.title = a->method;
+    chart.series = a->series;
+    chart.n_series = a->n_series;
+    ms_status status = ms_chart_write(&chart, stem, err);
+    if (status == MS_OK) {
+        status = ms_chart_draw(stem, err);
+    }
+    free(stem);
+    return status;
+}
+
+static int is_of(const album *a, const ms_stability_run *run, ms_change change)
+{
+    return run->change == change && ms_stability_gave(run) && strcmp(run->method, a->method) == 0;
+}
+
+static ms_status draw_all(album *a, ms_error *err)
+{
+    static const ms_chart chart = {.x_label = "D of the unchanged shape", .y_label = "D of the changed shape",
+                                   .x_log = 1, .y_log = 1};
+    a->n_points = a->n_series = 0;
+    for (int c = 0; c < MS_CHANGES; c++) {
+        begin_series(a, ms_change_name((ms_change)c), MS_CHART_POINTS);
+        for (size_t r = 0; r < a->n_runs; r++) {
+            const ms_stability_run *run = &a->runs[r];
+            if (is_of(a, run, (ms_change)c)) {
+                add_point(a, unchanged_dice(a, run), run->metrics.score.dice, c == MS_CHANGE_NONE ? run->shape : "");
+            }
+        }
+    }
+    return a->n_points ? draw(a, "all", chart, err) : MS_OK;
+}
+
+static ms_status draw_levels(album *a, ms_change change, const char *x_label, ms_error *err)
+{
+    const ms_chart chart = {.x_label = x_label, .y_label = "D / D of the unchanged shape", .x_log = 1, .y_log = 1};
+    const char *shape = NULL;
+    a->n_points = a->n_series = 0;
+    for (size_t r = 0; r < a->n_runs; r++) {
+        const ms_stability_run *run = &a->runs[r];
+        if (!is_of(a, run, change) || !(unchanged_dice(a, run) > 0)) {
+            continue;
+        }
+        if (!shape || strcmp(shape, run->shape) != 0) {
+            shape = run->shape;
+            begin_series(a, shape, MS_CHART_CURVE);
+        }
+        add_point(a, run->level, run->metrics.score.dice / unchanged_dice(a, run), "");
+    }
+    return a->n_points ? draw(a, ms_change_name(change), chart, err) : MS_OK;
+}
+
+static ms_status draw_method(album *a, ms_error *err)
+{
+    ms_status status = draw_all(a, err);
+    if (status == MS_OK) {
+        status = draw_levels(a, MS_CHANGE_RESOLUTION, "cells / cells asked for", err);
+    }
+    if (status == MS_OK) {
+        status = draw_levels(a, MS_CHANGE_NOISE, "amplitude of the noise / d_eq", err);
+    }
+    return status == MS_OK ? draw_levels(a, MS_CHANGE_DECIMATE, "cell of joined vertices / d_eq", err) : status;
+}
+
+/* Has a run before this one the same method? */
+static int is_known(const ms_stability_run *runs, size_t r)
+{
+    int known = 0;
+    for (size_t q = 0; q < r && !known; q++) {
+        known = strcmp(runs[q].method, runs[r].method) == 0;
+    }
+    return known;
+}
+
+ms_status ms_stability_charts(const char *folder, const ms_stability_run *runs, size_t n_runs, ms_error *err)
+{
+    album a = {.folder = folder, .runs = runs, .n_runs = n_runs,
+               .point = malloc((n_runs + 1) * sizeof *a.point),
+               .series = malloc((n_runs + MS_CHANGES) * sizeof *a.series)};
+    ms_status status = a.point && a.series ? MS_OK
+                                           : ms_fail(err, MS_ERR_NOMEM, "no memory for charts of %zu runs", n_runs);
+    for (size_t r = 0; r < n_runs && status == MS_OK; r++) {
+        if (!is_known(runs, r)) {
+            a.method = runs[r].method;
+            a.number++;
+            status = draw_method(&a, err);
+        }
+    }
+    free(a.point);
+    free(a.series);
+    return status;
+}
