@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "ms_commands.h"
+#include "ms_compare_methods.h"
 #include "ms_hard_shapes.h"
 #include "ms_outputs.h"
 #include "ms_report.h"
@@ -13,7 +14,7 @@
 #include "ms_stability.h"
 #include "ms_stability_charts.h"
 
-enum { MAX_METHODS = 32, DEFAULT_SPHERES = 20, DEFAULT_RUNS = 5, MOST_RUNS = 1000 };
+enum { DEFAULT_SPHERES = 20, DEFAULT_RUNS = 5, MOST_RUNS = 1000 };
 
 static const ms_flag FLAGS[] = {
     {"generator", 'g', "NAME[:OPTION=VALUE,...]", "a method, with options; may be repeated (all methods)"},
@@ -32,8 +33,7 @@ static const ms_flag FLAGS[] = {
 
 typedef struct arguments {
     ms_input_flags input;
-    ms_method method[MAX_METHODS];
-    size_t n_methods;
+    ms_methods methods;
     int wanted[MS_CHANGES];
     double spheres, runs, seed, until_dice;
     const char *output, *charts;
@@ -48,22 +48,6 @@ typedef struct progress {
     ms_stability_run *run;
     size_t n_runs, planned;
 } progress;
-
-static ms_status add_method(arguments *a, const char *text, ms_error *err)
-{
-    if (a->n_methods == MAX_METHODS) {
-        return ms_fail(err, MS_ERR_LIMIT, "more than %d methods", MAX_METHODS);
-    }
-    ms_method *method = &a->method[a->n_methods];
-    ms_status status = ms_method_parse(method, text, err);
-    if (status != MS_OK) {
-        return status;
-    }
-    a->n_methods++;
-    return method->settings.n_planes || method->settings.clump.n_spheres
-               ? ms_fail(err, MS_ERR_ARG, "%s: planes and spheres to start from do not turn with the shape", text)
-               : MS_OK;
-}
 
 static ms_status take_change(arguments *a, const char *name, ms_error *err)
 {
@@ -82,7 +66,7 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
         return status;
     }
     if (strcmp(name, "generator") == 0) {
-        return add_method(a, value, err);
+        return ms_methods_add(&a->methods, value, err);
     }
     if (strcmp(name, "spheres") == 0) {
         return ms_flag_whole(&a->spheres, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
@@ -110,7 +94,6 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
 /* What follows from all flags together. */
 static ms_status settle(arguments *a, ms_error *err)
 {
-    ms_status status = MS_OK;
     int any = 0;
     for (int c = 0; c < MS_CHANGES; c++) {
         any |= a->wanted[c];
@@ -118,9 +101,12 @@ static ms_status settle(arguments *a, ms_error *err)
     for (int c = 0; c < MS_CHANGES; c++) {
         a->wanted[c] |= !any || c == MS_CHANGE_NONE;
     }
-    if (a->n_methods == 0) {
-        for (const ms_generator *const *g = ms_generators; *g && status == MS_OK; g++) {
-            status = add_method(a, (*g)->name, err);
+    ms_status status = ms_methods_check(&a->methods, err);
+    for (size_t m = 0; m < a->methods.count && status == MS_OK; m++) {
+        const ms_settings *settings = &a->methods.method[m].settings;
+        if (settings->n_planes || settings->clump.n_spheres) {
+            status = ms_fail(err, MS_ERR_ARG, "%s: planes and spheres to start from do not turn with the shape",
+                             a->methods.method[m].name);
         }
     }
     if (status == MS_OK && a->json && strcmp(a->output, "-") == 0) {
@@ -191,8 +177,8 @@ static ms_status try_outputs(const arguments *a, ms_error *err)
 static void show(const progress *p, const ms_stability *s, ms_change change)
 {
     if (isatty(STDERR_FILENO)) {
-        fprintf(stderr, "\r\033[K%zu of %zu: %s, %s, %s ", p->n_runs + 1, p->planned, s->input->path, s->method->text,
-                ms_change_name(change));
+        fprintf(stderr, "\r\033[K%zu of %zu: %s, %s, %s ", p->n_runs + 1, p->planned, s->input->path,
+                ms_stability_label(s->method).text, ms_change_name(change));
     }
 }
 
@@ -214,8 +200,8 @@ static ms_status try_shape(progress *p, const arguments *a, const char *name, ms
         return status;
     }
     input.path = name; /* outlives the input */
-    for (size_t m = 0; m < a->n_methods && status == MS_OK; m++) {
-        const ms_stability s = {.input = &input, .method = &a->method[m], .spheres = (size_t)a->spheres,
+    for (size_t m = 0; m < a->methods.count && status == MS_OK; m++) {
+        const ms_stability s = {.input = &input, .method = &a->methods.method[m], .spheres = (size_t)a->spheres,
                                 .until_dice = a->until_dice, .seed = (uint64_t)a->seed, .runs = (int)a->runs,
                                 .threads = omp_get_max_threads(), .flags = &a->input};
         for (int c = 0; c < MS_CHANGES && status == MS_OK; c++) {
@@ -269,7 +255,7 @@ static size_t count_runs(const arguments *a)
     for (const ms_hard_shape *shape = ms_hard_shapes; !a->n_shapes && shape->name; shape++) {
         shapes++;
     }
-    return each * shapes * a->n_methods;
+    return each * shapes * a->methods.count;
 }
 
 static int work(const ms_command *command, const arguments *a)
@@ -313,9 +299,7 @@ static int run(const ms_command *command, int argc, char **argv)
         a.n_shapes = argc - first;
         code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_wrong_usage(command, err.text);
     }
-    for (size_t m = 0; m < a.n_methods; m++) {
-        ms_method_free(&a.method[m]);
-    }
+    ms_methods_free(&a.methods);
     return code;
 }
 

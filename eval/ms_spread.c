@@ -26,7 +26,7 @@ ms_spread ms_spread_of(double *values, size_t count)
 
 static int is_of(const ms_spread_group *group, const ms_stability_run *run)
 {
-    return run->change == group->change && strcmp(run->method, group->method) == 0 &&
+    return run->change == group->change && run->method == group->method &&
            (!group->shape || strcmp(run->shape, group->shape) == 0);
 }
 
@@ -144,7 +144,7 @@ static void print_head(FILE *stream, const ms_spread_group *g, int until)
 static void print_group(FILE *stream, const ms_spread_group *g, int until)
 {
     const ms_spread *d = &g->dice;
-    fprintf(stream, "  %-22s %-10s %4zu %5zu %6zu %5zu %8zu", g->method, ms_change_name(g->change), g->runs,
+    fprintf(stream, "  %-22s %-10s %4zu %5zu %6zu %5zu %8zu", ms_stability_label(g->method).text, ms_change_name(g->change), g->runs,
             g->identical, g->failed, g->shorter, g->unusable);
     print_number(stream, 7, 4, d->least);
     print_number(stream, 7, 4, d->median);
@@ -179,8 +179,8 @@ void ms_spread_print(FILE *stream, const ms_spread_group *groups, size_t count, 
     for (size_t g = 0; g < count; g++) {
         const ms_spread_group *at = &groups[g];
         if (at->shape && at->cause) {
-            fprintf(stream, "%s, %s, %s: %zu failed, %zu unusable: %s\n", at->shape, at->method,
-                    ms_change_name(at->change), at->failed, at->unusable, at->cause->text);
+            fprintf(stream, "%s, %s, %s: %zu failed, %zu unusable: %s\n", at->shape,
+                    ms_stability_label(at->method).text, ms_change_name(at->change), at->failed, at->unusable, at->cause->text);
         }
     }
 }
@@ -195,7 +195,7 @@ static json_t *spread_json(const ms_spread *s)
 static json_t *group_json(const ms_spread_group *g)
 {
     return json_pack("{s:o,s:o,s:s,s:I,s:I,s:I,s:I,s:I,s:I,s:o,s:o,s:o,s:o,s:o}", "shape",
-                     g->shape ? ms_report_text(g->shape) : json_null(), "method", ms_report_text(g->method),
+                     g->shape ? ms_report_text(g->shape) : json_null(), "method", ms_report_text(ms_stability_label(g->method).text),
                      "perturbation", ms_change_name(g->change), "runs", (json_int_t)g->runs, "identical",
                      (json_int_t)g->identical, "failed", (json_int_t)g->failed, "short", (json_int_t)g->shorter,
                      "unusable", (json_int_t)g->unusable,

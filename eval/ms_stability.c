@@ -5,6 +5,7 @@
 #include <omp.h>
 #include <string.h>
 
+#include "ms_csv.h"
 #include "ms_file.h"
 #include "ms_perturb.h"
 #include "ms_text.h"
@@ -225,7 +226,7 @@ void ms_stability_try(ms_stability_run *run, const ms_stability *s, ms_change ch
     changed c = {0};
     memset(run, 0, sizeof *run);
     run->shape = s->input->path;
-    run->method = s->method->text;
+    run->method = s->method;
     run->shape_checksum = s->input->checksum;
     run->change = change;
     run->number = number;
@@ -248,6 +249,13 @@ void ms_stability_try(ms_stability_run *run, const ms_stability *s, ms_change ch
     free_changed(&c);
 }
 
+ms_label ms_stability_label(const ms_method *method)
+{
+    ms_label label;
+    snprintf(label.text, sizeof label.text, "%s%s%s", method->name, method->options[0] ? ":" : "", method->options);
+    return label;
+}
+
 int ms_stability_gave(const ms_stability_run *run)
 {
     return run->outcome == MS_OUTCOME_OK || run->outcome == MS_OUTCOME_SHORT;
@@ -263,27 +271,10 @@ const ms_stability_run *ms_stability_unchanged(const ms_stability_run *runs, con
 
 void ms_stability_header(FILE *stream)
 {
-    fputs("shape,checksum,method,perturbation,level,seed,voxel_size,threads,n_asked,status,n,stopped_by,eta,dice,"
-          "coverage,overshoot,off_volume,inertia_error,smallest_radius_ratio,pieces,n_until,seconds,spheres_fnv1a,"
+    fputs("shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,status,n,stopped_by,"
+          "eta,dice,coverage,overshoot,off_volume,inertia_error,smallest_radius_ratio,pieces,n_until,seconds,spheres_fnv1a,"
           "cause\n",
           stream);
-}
-
-/* In quotes where it has to be. */
-static void put_text(FILE *stream, const char *text)
-{
-    if (!strpbrk(text, ",\"\r\n")) {
-        fputs(text, stream);
-        return;
-    }
-    fputc('"', stream);
-    for (; *text; text++) {
-        if (*text == '"') {
-            fputc('"', stream);
-        }
-        fputc(*text == '\n' || *text == '\r' ? ' ' : *text, stream);
-    }
-    fputc('"', stream);
 }
 
 /* Empty where there is none. */
@@ -309,9 +300,11 @@ static void put_results(FILE *stream, const ms_stability_run *run)
 
 void ms_stability_row(FILE *stream, const ms_stability_run *run)
 {
-    put_text(stream, run->shape);
+    ms_csv_put(stream, run->shape);
     fprintf(stream, ",%016" PRIx64 ",", run->shape_checksum);
-    put_text(stream, run->method);
+    ms_csv_put(stream, run->method->name);
+    fputc(',', stream);
+    ms_csv_put(stream, run->method->options);
     fprintf(stream, ",%s", CHANGES[run->change]);
     put_number(stream, run->level);
     fprintf(stream, ",%" PRIu64, run->seed);
@@ -323,6 +316,6 @@ void ms_stability_row(FILE *stream, const ms_stability_run *run)
         fputs(",,,,,,,,,,,,,", stream);
     }
     fputc(',', stream);
-    put_text(stream, run->cause.text);
+    ms_csv_put(stream, run->cause.text);
     fputc('\n', stream);
 }

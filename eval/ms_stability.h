@@ -4,8 +4,8 @@
 
 #include <stdio.h>
 
+#include "ms_compare_methods.h"
 #include "ms_input.h"
-#include "ms_method.h"
 #include "ms_metrics.h"
 
 /* Changes, and what says how large one is (its level). */
@@ -60,8 +60,8 @@ typedef struct ms_stability {
 
 /** A run. What it did not get to is NAN or 0. */
 typedef struct ms_stability_run {
-    const char *shape;  /* borrowed */
-    const char *method; /* borrowed */
+    const char *shape;       /* borrowed */
+    const ms_method *method; /* borrowed */
     uint64_t shape_checksum;
     ms_change change;
     int number; /* from 1 */
@@ -87,6 +87,13 @@ typedef struct ms_stability_run {
  * @param number from 1 to ms_change_runs
  */
 void ms_stability_try(ms_stability_run *run, const ms_stability *s, ms_change change, int number);
+
+/** What a method is called in tables: NAME or NAME:OPTIONS, cut if it is long. */
+typedef struct ms_label {
+    char text[128];
+} ms_label;
+
+ms_label ms_stability_label(const ms_method *method);
 
 /** Nonzero if it gave spheres, which were judged. */
 int ms_stability_gave(const ms_stability_run *run);

@@ -12,7 +12,7 @@ typedef struct album {
     const char *folder;
     const ms_stability_run *runs; /* of all methods */
     size_t n_runs;
-    const char *method;
+    const ms_method *method;
     int number; /* of the method */
     ms_chart_point *point; /* one for each run */
     ms_chart_series *series;
@@ -43,7 +43,7 @@ static void add_point(album *a, double x, double y, const char *label)
 static void make_stem(char *stem, size_t size, const album *a, const char *kind)
 {
     const int folder = snprintf(stem, size, "%s/", a->folder);
-    snprintf(stem + folder, size - (size_t)folder, "%d-%.40s-%s", a->number, a->method, kind);
+    snprintf(stem + folder, size - (size_t)folder, "%d-%.40s-%s", a->number, ms_stability_label(a->method).text, kind);
     for (char *at = stem + folder; *at; at++) {
         *at = (char)(isalnum((unsigned char)*at) ? *at : '-');
     }
@@ -57,7 +57,8 @@ static ms_status draw(album *a, const char *kind, ms_chart chart, ms_error *err)
         return ms_fail(err, MS_ERR_NOMEM, "no memory for a chart");
     }
     make_stem(stem, size, a, kind);
-    chart.title = a->method;
+    const ms_label label = ms_stability_label(a->method);
+    chart.title = label.text;
     chart.series = a->series;
     chart.n_series = a->n_series;
     ms_status status = ms_chart_write(&chart, stem, err);
@@ -70,7 +71,7 @@ static ms_status draw(album *a, const char *kind, ms_chart chart, ms_error *err)
 
 static int is_of(const album *a, const ms_stability_run *run, ms_change change)
 {
-    return run->change == change && ms_stability_gave(run) && strcmp(run->method, a->method) == 0;
+    return run->change == change && ms_stability_gave(run) && run->method == a->method;
 }
 
 static ms_status draw_all(album *a, ms_error *err)
@@ -126,7 +127,7 @@ static int is_known(const ms_stability_run *runs, size_t r)
 {
     int known = 0;
     for (size_t q = 0; q < r && !known; q++) {
-        known = strcmp(runs[q].method, runs[r].method) == 0;
+        known = runs[q].method == runs[r].method;
     }
     return known;
 }

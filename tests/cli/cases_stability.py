@@ -28,7 +28,7 @@ class Stability(Case):
         for row in rows:
             self.assertIsNone(row.get(None), "a field more than there are columns")
             self.assertNotIn(None, row.values(), "a field less than there are columns")
-            self.assertEqual((row["shape"], row["method"], row["n_asked"]), ("cube", "mss", "4"))
+            self.assertEqual((row["shape"], row["generator"], row["options"], row["n_asked"]), ("cube", "mss", "", "4"))
 
     def test_judged_as_score_does(self):
         """D of the unchanged shape is that of score, on the same grid."""
@@ -175,7 +175,8 @@ class Stability(Case):
                 self.assert_close(x, float(row["level"]), 1e-8, "level")
                 self.assert_close(y, float(row["dice"]) / unchanged[name], 1e-8, "ratio")
         svg = self.read("charts/1-mss-order-gain-noise.svg").decode()
-        for word in ("mss:order=gain", "speck", "cube", "amplitude of the noise / d_eq", "D / D of the unchanged shape"):
+        for word in ("mss:order=gain", "speck", "cube", "amplitude of the noise / d_eq",
+                     "D / D of the unchanged shape"):
             self.assertIn(word, svg)
 
     def blocks(self, name):
@@ -192,6 +193,8 @@ class Stability(Case):
             (("-g", "mss:nonsense=1"), ("'nonsense'", "spacing")),
             (("-g", "mss:boost=9"), ("boost", "1 to 5")),
             (("-g", "mss:plane"), ("a,b,c,d",)),
+            (("-g", "mss:plane=0,0,1,0"), ("mss", "planes")),
+            (("-g", "mss", "-g", "mss"), ("mss is there twice",)),
             (("--perturb", "nonsense"), ("'nonsense'", *KINDS)),
             (("--perturb", "none"), ("'none'",)),
             (("--runs", "0"), ("--runs", "1 to 1000")),

@@ -4,7 +4,7 @@ import shlex
 
 from support import Case, box_obj
 
-COMMANDS = ("generate", "score", "correct", "convert", "info", "shape", "stability", "generators", "help")
+COMMANDS = ("generate", "score", "correct", "convert", "info", "shape", "compare", "stability", "generators", "help")
 
 
 class Help(Case):
