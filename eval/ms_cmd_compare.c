@@ -11,6 +11,7 @@
 #include "ms_compare.h"
 #include "ms_compare_charts.h"
 #include "ms_compare_methods.h"
+#include "ms_compare_sheet.h"
 #include "ms_input.h"
 #include "ms_outputs.h"
 #include "ms_trial.h"
@@ -134,7 +135,10 @@ typedef struct walk {
     int target_made;
     ms_status status;  /* of the shape, then of the target */
     ms_error cause;
-    char checksum[20], label[20];
+    char checksum[20], label[20], name[256];
+    ms_sheet sheet;     /* of the shape, at its last resolution */
+    ms_status drawn;    /* of the first chart that failed; the comparison goes on */
+    ms_error why_not;
 } walk;
 
 static ms_compare_row begin_row(const walk *w, const ms_method *method, double asked)
@@ -233,6 +237,26 @@ static ms_status add_row(walk *w, const ms_compare_row *row, ms_error *err)
     return status;
 }
 
+/* Remembers the first failure of a chart. */
+static void note_drawn(walk *w, ms_status status, const ms_error *err)
+{
+    if (status != MS_OK && w->drawn == MS_OK) {
+        w->drawn = status;
+        w->why_not = *err;
+    }
+}
+
+/* For the contact sheet. */
+static void keep_clump(walk *w, const ms_method *method, double asked, const ms_clump *clump, size_t n)
+{
+    ms_error err;
+    const ms_clump prefix = {.n_spheres = n, .capacity = n, .sphere = clump->sphere};
+    const double finest = w->a->cells.value[w->a->cells.count - 1];
+    if (w->a->charts && method->generator && !(w->cells < finest)) {
+        note_drawn(w, ms_sheet_keep(&w->sheet, method, asked, &prefix, &err), &err);
+    }
+}
+
 /* One row, of the first spheres of what a trial or another tool gave, or of why there are none. */
 static ms_status make_row(walk *w, const ms_method *method, double asked, const ms_trial *trial, double seconds,
                           ms_status failure, const ms_error *why, ms_error *err)
@@ -251,6 +275,7 @@ static ms_status make_row(walk *w, const ms_method *method, double asked, const 
     }
     if (failure == MS_OK) {
         const size_t n = asked < (double)clump->n_spheres ? (size_t)asked : clump->n_spheres;
+        keep_clump(w, method, asked, clump, n);
         failure = ms_trial_judge(&row, clump, n, &w->input.target, ms_input_max_voxels(&w->a->input), &cause);
         why = &cause;
     }
@@ -318,11 +343,23 @@ static ms_status compare_methods(walk *w, ms_error *err)
     return status;
 }
 
+static void draw_sheet(walk *w)
+{
+    ms_error err;
+    need_target(w);
+    if (w->status == MS_OK) {
+        note_drawn(w, ms_sheet_draw(&w->sheet, &w->input.target, &err), &err);
+    }
+}
+
 static ms_status compare_shape(walk *w, const char *shape, ms_error *err)
 {
     const numbers *cells = &w->a->cells;
     ms_status status = MS_OK;
     w->shape = shape;
+    ms_compare_name(w->name, sizeof w->name, shape, w->label);
+    w->sheet = (ms_sheet){.folder = w->a->charts, .shape = w->name, .methods = &w->a->methods,
+                          .asked = w->a->asked.value, .n_asked = w->a->asked.count};
     const ms_status read = ms_input_read(&w->input, shape, &w->a->input, &w->cause);
     snprintf(w->checksum, sizeof w->checksum, "%016llx", (unsigned long long)w->input.checksum);
     const int is_volume = w->input.volume.label != NULL;
@@ -331,6 +368,9 @@ static ms_status compare_shape(walk *w, const char *shape, ms_error *err)
         w->status = read;
         w->target_made = 0;
         status = compare_methods(w, err);
+    }
+    if (status == MS_OK && w->a->charts) {
+        draw_sheet(w);
     }
     ms_input_free(&w->input);
     return status;
@@ -383,7 +423,9 @@ static int work(const ms_command *command, const arguments *a)
             printf(w.failed ? "; %zu of the new ones failed, see the column cause\n" : "\n", w.failed);
         }
         if (status == MS_OK && a->charts) {
-            status = ms_compare_charts(&w.csv, a->charts, &err);
+            note_drawn(&w, ms_compare_charts(&w.csv, a->charts, &err), &err);
+            status = w.drawn;
+            err = w.why_not;
         }
         ms_csv_close(&w.csv);
     }

@@ -1,6 +1,7 @@
 #include "ms_compare.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "ms_text.h"
 
@@ -13,7 +14,7 @@ ms_compare_row ms_compare_empty(void)
     ms_compare_row row;
     for (int c = 0; c < MS_COLUMNS; c++) {
         row.text[c] = NULL;
-        row.number[c] = NAN;
+        row.number[c] = (double)NAN;
     }
     return row;
 }
@@ -57,4 +58,11 @@ char *ms_compare_line(const ms_compare_row *row)
 char *ms_compare_key(const ms_compare_row *row)
 {
     return make_text(row, MS_COLUMN_SPHERES);
+}
+
+void ms_compare_name(char *out, size_t size, const char *shape, const char *label)
+{
+    const char *slash = strrchr(shape, '/'), *base = slash ? slash + 1 : shape, *dot = strrchr(base, '.');
+    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
+    snprintf(out, size, "%.*s%s%s", length, base, label[0] ? "-" : "", label);
 }

@@ -40,4 +40,7 @@ char *ms_compare_line(const ms_compare_row *row);
 /** How its line begins: the fields of what was asked for, with the comma behind them. Likewise. */
 char *ms_compare_key(const ms_compare_row *row);
 
+/** How the names of a shape's charts begin: its file without folder and ending, and the label. */
+void ms_compare_name(char *out, size_t size, const char *shape, const char *label);
+
 #endif

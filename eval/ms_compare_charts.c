@@ -91,7 +91,7 @@ static const kind KINDS[] = {
 /* Greatest value of a column among the rows of a shape; NAN without any. */
 static double greatest(const records *all, const record *shape, ms_column column)
 {
-    double value = NAN;
+    double value = (double)NAN;
     for (size_t r = 0; r < all->count; r++) {
         if (same_shape(&all->record[r], shape)) {
             value = fmax(value, number(&all->record[r], column));
@@ -204,13 +204,9 @@ static ms_status fill_draft(draft *d, const records *all, const record *shape, c
     return MS_OK;
 }
 
-/* Name of the shape's file without folder and ending, and the label. */
 static void name_shape(char *out, size_t size, const record *shape)
 {
-    const char *path = shape->field[MS_COLUMN_SHAPE], *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
-    const char *dot = strrchr(base, '.'), *label = shape->field[MS_COLUMN_LABEL];
-    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
-    snprintf(out, size, "%.*s%s%s", length, base, label[0] ? "-" : "", label);
+    ms_compare_name(out, size, shape->field[MS_COLUMN_SHAPE], shape->field[MS_COLUMN_LABEL]);
 }
 
 static ms_status draw(const records *all, const record *shape, const kind *k, ms_error *err)
@@ -232,9 +228,8 @@ static ms_status draw(const records *all, const record *shape, const kind *k, ms
         if (status == MS_ERR_ARG) { /* every run failed: the rows say why */
             fprintf(stderr, "%s\n", err->text);
             status = MS_OK;
-        } else if (status == MS_OK) {
-            status = ms_chart_draw(stem, err);
-            printf(status == MS_OK ? "drew %s.svg, .png\n" : "", stem);
+        } else if (status == MS_OK && (status = ms_chart_draw(stem, err)) == MS_OK) {
+            printf("drew %s.svg, .png\n", stem);
         }
     }
     free_draft(&d);

@@ -10,13 +10,13 @@
 
 const ms_hard_shape ms_hard_shapes[] = {
     {.name = "plate", .kind = "plate", .value = {5, 5, 0.1, 50}, .deq = 100},
-    {.name = "needle", .kind = "needle", .value = {20, 0.5, 16}, .deq = 40},
+    {.name = "needle", .kind = "needle", .value = {20, 0.5, 8}, .deq = 40},
     {.name = "cube", .kind = "cube", .value = {1, 16}, .deq = 40},
     {.name = "tetrahedron", .kind = "tetrahedron", .value = {1, 16}, .deq = 40},
-    {.name = "shell", .kind = "hollow", .value = {1, 0.8, 16}, .deq = 60},
-    {.name = "torus", .kind = "torus", .value = {3, 1, 16}, .deq = 40},
-    {.name = "dumbbell", .kind = "dumbbell", .value = {1, 3, 0.2, 16}, .deq = 40},
-    {.name = "cone", .kind = "cone", .value = {1, 2, 16}, .deq = 40},
+    {.name = "shell", .kind = "hollow", .value = {1, 0.8, 12}, .deq = 60},
+    {.name = "torus", .kind = "torus", .value = {3, 1, 10}, .deq = 40},
+    {.name = "dumbbell", .kind = "dumbbell", .value = {1, 3, 0.2, 8}, .deq = 40},
+    {.name = "cone", .kind = "cone", .value = {1, 2, 12}, .deq = 40},
     {.name = "rough", .kind = "grain", .value = {1, 1.3, 1.2, 0.3, 32, 1.5, 1, 24}, .deq = 40},
     {.name = "speck", .kind = "grain", .value = {1, 1.3, 1.2, 0.1, 16, 3, 1, 16}, .deq = 6, .only = 1},
     {.name = "open", .kind = "grain", .value = {1, 1.3, 1.2, 0.1, 16, 3, 1, 16}, .deq = 40, .holes = 0.02},

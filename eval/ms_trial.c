@@ -1,6 +1,8 @@
 #include "ms_trial.h"
 
-#include <fcntl.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -12,23 +14,24 @@
 #include "ms_density.h"
 #include "ms_metrics.h"
 
-/* Lets Linux count the largest memory anew; elsewhere it is that of the program so far. */
+/* Gives back what earlier runs have freed and lets Linux count the largest memory anew; elsewhere it is that of the
+ * program so far. */
 static void forget_peak(void)
 {
-    const int fd = open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
-    if (fd >= 0) {
-        if (write(fd, "5", 1) != 1) {
-            close(fd);
-            return;
-        }
-        close(fd);
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+    FILE *stream = fopen("/proc/self/clear_refs", "w");
+    if (stream) {
+        fputc('5', stream);
+        fclose(stream);
     }
 }
 
 static double peak_memory(void)
 {
     char line[256];
-    double peak = NAN;
+    double peak = (double)NAN;
     struct rusage usage;
     FILE *stream = fopen("/proc/self/status", "r");
     while (stream && isnan(peak) && fgets(line, sizeof line, stream)) {

@@ -122,6 +122,12 @@ class Stability(Case):
         self.assertIn("more than the memory allowed", rows[2]["cause"])
         self.assertEqual([(g["runs"], g["failed"], g["unusable"]) for g in groups], [(1, 0, 0), (1, 0, 1)])
 
+    def test_a_mesh_that_decimation_opens_is_unusable(self):
+        """Two sheets of the rough grain fall onto each other; of equal triangles one is kept."""
+        rows = self.rows("rough", "-g", "mss", "-n", "1", "--deq", "15", "--perturb", "decimate", "--runs", "3")
+        self.assertEqual([row["status"] for row in rows], ["ok", "ok", "ok", "unusable"])
+        self.assertIn("the mesh is open", rows[3]["cause"])
+
     def test_summary_is_that_of_the_rows(self):
         """Least, median, most and deviation, computed here."""
         groups = self.mskit("stability", "cube", "speck", "-g", "mss", "-n", "3", "--runs", "4", "--cells", "10",

@@ -1,0 +1,180 @@
+#include "ms_compare_sheet.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "ms_chart.h"
+#include "ms_file.h"
+#include "ms_render.h"
+#include "ms_write.h"
+
+enum { TILE = 220, MOST_ROWS = 4, HEAD = 40 };
+
+/* FOLDER/SHAPE-NAME; the caller frees it. */
+static char *make_path(const ms_sheet *sheet, const char *name, ms_error *err)
+{
+    const size_t room = strlen(sheet->folder) + strlen(sheet->shape) + strlen(name) + 3;
+    char *path = malloc(room);
+    if (path) {
+        snprintf(path, room, "%s/%s-%s", sheet->folder, sheet->shape, name);
+    } else {
+        ms_fail(err, MS_ERR_NOMEM, "no memory for the contact sheet");
+    }
+    return path;
+}
+
+static char *clump_path(const ms_sheet *sheet, const ms_method *method, double asked, ms_error *err)
+{
+    char name[256];
+    snprintf(name, sizeof name, "%.80s%s%.120s-%g.csv", method->name, method->options[0] ? "-" : "", method->options,
+             asked);
+    for (char *c = name; *c; c++) {
+        if (!isalnum((unsigned char)*c) && !strchr(".,=_-", *c)) {
+            *c = '_';
+        }
+    }
+    return make_path(sheet, name, err);
+}
+
+ms_status ms_sheet_keep(const ms_sheet *sheet, const ms_method *method, double asked, const ms_clump *clump,
+                        ms_error *err)
+{
+    const ms_content content = {.clump = clump};
+    char *path = clump_path(sheet, method, asked, err);
+    const ms_status status = path ? ms_write_clump(&content, path, ms_format_find("csv", err), err) : MS_ERR_NOMEM;
+    free(path);
+    return status;
+}
+
+static size_t count_rows(const ms_sheet *sheet)
+{
+    return sheet->n_asked < MOST_ROWS ? sheet->n_asked : MOST_ROWS;
+}
+
+/* Which number a row shows: the first, the last, and others between. */
+static double row_number(const ms_sheet *sheet, size_t row)
+{
+    const size_t rows = count_rows(sheet);
+    return sheet->asked[rows > 1 ? row * (sheet->n_asked - 1) / (rows - 1) : 0];
+}
+
+static ms_status draw_clump(ms_picture *picture, const ms_view *view, const ms_sheet *sheet, const ms_method *method,
+                            double asked, ms_error *err)
+{
+    ms_clump clump;
+    if (!method->generator) {
+        ms_render_clump(picture, view, &method->clump);
+        return MS_OK;
+    }
+    char *path = clump_path(sheet, method, asked, err);
+    ms_status status = path ? MS_OK : MS_ERR_NOMEM;
+    if (path && access(path, F_OK) != 0) {
+        fprintf(stderr, "%s is not there: its place on the contact sheet is empty\n", path);
+    } else if (path && (status = ms_clump_read(&clump, path, err)) == MS_OK) {
+        ms_render_clump(picture, view, &clump);
+        ms_clump_free(&clump);
+    }
+    free(path);
+    return status;
+}
+
+static ms_status draw_tiles(ms_picture *picture, const ms_sheet *sheet, const ms_target *target, ms_error *err)
+{
+    ms_view view;
+    ms_status status = ms_view_of(&view, target, 0, 0, TILE, err);
+    if (status == MS_OK) {
+        ms_render_target(picture, &view, target);
+    }
+    for (size_t row = 0; row < count_rows(sheet); row++) {
+        for (size_t m = 0; m < sheet->methods->count && status == MS_OK; m++) {
+            const ms_method *method = &sheet->methods->method[m];
+            if (method->generator || row == 0) { /* a clump of another tool is there once */
+                view.x = (int)(m + 1) * TILE;
+                view.y = (int)row * TILE;
+                status = draw_clump(picture, &view, sheet, method, row_number(sheet, row), err);
+            }
+        }
+    }
+    return status;
+}
+
+static void put_label(FILE *stream, const char *text, double x, double y, const char *align)
+{
+    fputs("set label '", stream);
+    for (; *text; text++) {
+        fputs(*text == '\'' ? "''" : (char[2]){(unsigned char)*text < ' ' ? '?' : *text, 0}, stream);
+    }
+    fprintf(stream, "' at %g,%g %s front noenhanced\n", x, y, align);
+}
+
+/* Puts words to the tiles; y of gnuplot's picture goes upward. */
+static void put_script(FILE *stream, const ms_sheet *sheet, const ms_picture *picture)
+{
+    fprintf(stream,
+            "# `gnuplot %s-sheet.gp`, here, draws %s-sheet.png from %s-tiles.png\n"
+            "set encoding utf8\n"
+            "if (strstrt(GPVAL_TERMINALS, 'pngcairo') > 0) { set terminal pngcairo size %d,%d font 'DejaVu Sans,11' }\n"
+            "if (strstrt(GPVAL_TERMINALS, 'pngcairo') == 0) { set terminal png size %d,%d }\n"
+            "set output '%s-sheet.png'\nunset border\nunset tics\nunset key\nset margins 0,0,0,0\n"
+            "set xrange [0:%d]\nset yrange [0:%d]\n",
+            sheet->shape, sheet->shape, sheet->shape, picture->width, picture->height + HEAD, picture->width,
+            picture->height + HEAD, sheet->shape, picture->width, picture->height + HEAD);
+    put_label(stream, sheet->shape, 0.5 * TILE, picture->height + 0.5 * HEAD, "center");
+    for (size_t m = 0; m < sheet->methods->count; m++) {
+        char name[256];
+        const ms_method *method = &sheet->methods->method[m];
+        snprintf(name, sizeof name, "%.80s%s%.120s", method->name, method->generator && method->options[0] ? ":" : "",
+                 method->generator ? method->options : "");
+        put_label(stream, name, ((double)m + 1.5) * TILE, picture->height + 0.5 * HEAD, "center");
+    }
+    for (size_t row = 0; row < count_rows(sheet); row++) {
+        char number[64];
+        snprintf(number, sizeof number, "n = %g", row_number(sheet, row));
+        put_label(stream, number, TILE - 8, picture->height - (double)row * TILE - 16, "right");
+    }
+    fprintf(stream, "plot '%s-tiles.png' binary filetype=png with rgbimage\n", sheet->shape);
+}
+
+static ms_status write_script(const ms_sheet *sheet, const ms_picture *picture, ms_error *err)
+{
+    ms_output output;
+    char *path = make_path(sheet, "sheet.gp", err);
+    ms_status status = path ? ms_output_open(&output, path, err) : MS_ERR_NOMEM;
+    if (status == MS_OK) {
+        put_script(output.stream, sheet, picture);
+        status = ms_output_close(&output, MS_OK, err);
+    }
+    free(path);
+    return status;
+}
+
+ms_status ms_sheet_draw(const ms_sheet *sheet, const ms_target *target, ms_error *err)
+{
+    ms_picture picture = {0};
+    char *tiles = make_path(sheet, "tiles.png", err), *stem = make_path(sheet, "sheet", err);
+    ms_status status = tiles && stem ? ms_picture_alloc(&picture, (int)(sheet->methods->count + 1) * TILE,
+                                                        (int)count_rows(sheet) * TILE, err)
+                                     : MS_ERR_NOMEM;
+    if (status == MS_OK) {
+        status = draw_tiles(&picture, sheet, target, err);
+    }
+    if (status == MS_OK) {
+        status = ms_picture_write(&picture, tiles, err);
+    }
+    if (status == MS_OK) {
+        status = write_script(sheet, &picture, err);
+    }
+    if (status == MS_OK) {
+        status = ms_chart_draw(stem, err);
+    }
+    if (status == MS_OK) {
+        printf("drew %s.png\n", stem);
+    }
+    ms_picture_free(&picture);
+    free(tiles);
+    free(stem);
+    return status;
+}
