@@ -3,8 +3,9 @@
 #
 #     docs/make-comparison.sh [FOLDER OF SHAPES]
 #
-# Without a folder, on shapes that mskit makes. MSKIT names the program, OUT the folder of the results (comparison), REPEAT
-# how many runs the times are medians of (3), CELLS the resolutions (50,100). What was begun before is gone on with.
+# Without a folder, on shapes that mskit makes. MSKIT names the program, OUT the folder of the results (comparison),
+# REPEAT how many runs the times are medians of (3), CELLS the resolutions (50,100). What was begun before is gone on
+# with.
 set -eu
 here="$(cd "$(dirname "$0")" && pwd)"
 MSKIT="${MSKIT:-$here/../build/eval/mskit}"

@@ -246,6 +246,7 @@ class Refusals(Compare):
         self.assert_refused("compare", "box.obj", "missing.stl", *run, code=1, says=("missing.stl",))
         self.assert_refused("compare", "box.obj", *run, "-o", "no/such.csv", code=1, says=("no/such.csv",))
         self.assert_refused("compare", "box.obj", *run, "-o", "", code=1, says=("cannot be written",))
+        self.assert_refused("compare", "box.obj", *run, "-o", "-", code=1, says=("go to a file",))
         self.assert_refused("compare", "box.obj", *run, "--charts", "no/such", code=1, says=("no/such",))
         self.assert_refused("compare", "box.obj", *run, "-o", "/dev/full", "--resume", code=1, says=("device",))
 
@@ -356,8 +357,8 @@ class Charts(Compare):
         self.assertEqual(len(self.rows()), 1)
         names = sorted(os.listdir(self.path("charts")))
         sheet = ["box-mss-3.csv", "box-sheet.gp", "box-tiles.png"]
-        self.assertEqual(names, sorted(sheet + [f"box-{k}.{e}" for k in ("dice", "time", "inertia", "corrected")
-                                                for e in ("dat", "gp") if (k != "corrected" or self.rows()[0]["epsilon"])]))
+        kinds = ["dice", "time", "inertia"] + (["corrected"] if self.rows()[0]["epsilon"] else [])
+        self.assertEqual(names, sorted(sheet + [f"box-{k}.{e}" for k in kinds for e in ("dat", "gp")]))
 
     def test_same_names(self):
         os.mkdir(self.path("other"))
