@@ -1,7 +1,5 @@
 /* mskit compare SHAPE... */
 #include <errno.h>
-#include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,15 +7,8 @@
 
 #include "ms_commands.h"
 #include "ms_compare.h"
-#include "ms_compare_charts.h"
-#include "ms_compare_methods.h"
-#include "ms_compare_sheet.h"
-#include "ms_input.h"
+#include "ms_compare_walk.h"
 #include "ms_outputs.h"
-#include "ms_trial.h"
-#include "ms_version.h"
-
-enum { MAX_NUMBERS = 256 };
 
 static const ms_flag FLAGS[] = {
     {"generator", 'g', "NAME[:OPTION=VALUE,...]",
@@ -37,24 +28,13 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
-/* A list of whole numbers that the user wrote, ascending, each once. */
-typedef struct numbers {
-    double value[MAX_NUMBERS];
-    size_t count;
-} numbers;
-
 typedef struct arguments {
-    char **shape;
-    size_t n_shapes;
-    ms_input_flags input;
-    ms_methods methods;
-    numbers asked, cells;
-    double repeats, seed;
-    const char *output, *charts;
+    ms_comparison comparison;
+    const char *output;
     int resume;
 } arguments;
 
-static void insert(numbers *list, double value)
+static void insert(ms_numbers *list, double value)
 {
     size_t at = list->count;
     while (at > 0 && list->value[at - 1] > value) {
@@ -68,14 +48,14 @@ static void insert(numbers *list, double value)
     list->count++;
 }
 
-static ms_status take_numbers(numbers *list, const char *name, const char *text, double most, ms_error *err)
+static ms_status take_numbers(ms_numbers *list, const char *name, const char *text, double most, ms_error *err)
 {
     for (const char *at = text;; at++) {
         char word[32];
         double value;
         const size_t length = strcspn(at, ",");
-        if (list->count == MAX_NUMBERS || length >= sizeof word) {
-            return ms_fail(err, MS_ERR_ARG, "--%s takes up to %d numbers, separated by commas", name, MAX_NUMBERS);
+        if (list->count == MS_NUMBERS_MAX || length >= sizeof word) {
+            return ms_fail(err, MS_ERR_ARG, "--%s takes up to %d numbers, separated by commas", name, MS_NUMBERS_MAX);
         }
         snprintf(word, sizeof word, "%.*s", (int)length, at);
         const ms_status status = ms_flag_whole(&value, name, word, 1, most, err);
@@ -93,379 +73,100 @@ static ms_status take_numbers(numbers *list, const char *name, const char *text,
 static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
 {
     arguments *a = context;
+    ms_comparison *c = &a->comparison;
     int taken;
     if (strcmp(name, "cells") == 0) {
-        return take_numbers(&a->cells, name, value, MS_GRID_MAX_EXTENT, err);
+        return take_numbers(&c->cells, name, value, MS_GRID_MAX_EXTENT, err);
     }
-    const ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
+    const ms_status status = ms_input_flag(&taken, &c->input, name, value, err);
     if (taken) {
         return status;
     }
     if (strcmp(name, "generator") == 0) {
-        return ms_methods_add(&a->methods, value, err);
+        return ms_methods_add(&c->methods, value, err);
     }
     if (strcmp(name, "clump") == 0) {
-        return ms_methods_add_clump(&a->methods, value, err);
+        return ms_methods_add_clump(&c->methods, value, err);
     }
     if (strcmp(name, "spheres") == 0) {
-        return take_numbers(&a->asked, name, value, MS_CLUMP_MAX_SPHERES, err);
+        return take_numbers(&c->asked, name, value, MS_CLUMP_MAX_SPHERES, err);
     }
     if (strcmp(name, "repeat") == 0) {
-        return ms_flag_whole(&a->repeats, name, value, 1, 1000, err);
+        return ms_flag_whole(&c->repeats, name, value, 1, 1000, err);
     }
     if (strcmp(name, "seed") == 0) {
-        return ms_flag_whole(&a->seed, name, value, 0, 9007199254740992.0, err);
+        return ms_flag_whole(&c->seed, name, value, 0, 9007199254740992.0, err);
     }
     if (strcmp(name, "resume") == 0) {
         a->resume = 1;
         return MS_OK;
     }
-    *(strcmp(name, "output") == 0 ? &a->output : &a->charts) = value;
+    *(strcmp(name, "output") == 0 ? &a->output : &c->charts) = value;
     return MS_OK;
 }
 
-/* Where the comparison stands: shapes, resolutions, methods and numbers follow one another in a fixed order. */
-typedef struct walk {
-    const arguments *a;
-    ms_csv csv;
-    size_t at, failed; /* rows */
-    const char *shape;
-    ms_input input;
-    double cells;      /* NAN for a volume */
-    int target_made;
-    ms_status status;  /* of the shape, then of the target */
-    ms_error cause;
-    char checksum[20], label[20], name[256];
-    ms_sheet sheet;     /* of the shape, at its last resolution */
-    ms_status drawn;    /* of the first chart that failed; the comparison goes on */
-    ms_error why_not;
-} walk;
-
-static ms_compare_row begin_row(const walk *w, const ms_method *method, double asked)
-{
-    ms_compare_row row = ms_compare_empty();
-    row.text[MS_COLUMN_SHAPE] = w->shape;
-    row.text[MS_COLUMN_CHECKSUM] = w->checksum;
-    row.text[MS_COLUMN_LABEL] = w->label;
-    row.text[MS_COLUMN_GENERATOR] = method->name;
-    row.text[MS_COLUMN_OPTIONS] = method->options;
-    row.number[MS_COLUMN_CELLS] = w->cells;
-    if (method->generator) {
-        row.number[MS_COLUMN_SEED] = w->a->seed;
-        row.number[MS_COLUMN_ASKED] = asked;
-        row.number[MS_COLUMN_REPEATS] = w->a->repeats;
-    }
-    row.number[MS_COLUMN_THREADS] = omp_get_max_threads();
-    row.text[MS_COLUMN_VERSION] = MS_VERSION;
-    return row;
-}
-
-static void put_input(ms_compare_row *row, const ms_input *input)
-{
-    row->number[MS_COLUMN_VOXEL] = input->target.grid.h;
-    row->number[MS_COLUMN_READ] = input->read_seconds;
-    row->number[MS_COLUMN_VOXELIZE] = input->target.voxelize_seconds;
-    row->number[MS_COLUMN_DISTANCE] = input->target.distance_seconds;
-}
-
-/* Nonzero if the next row was there before, which must have been made for the same. */
-static int is_there(const walk *w, size_t at, const ms_method *method, double asked, ms_status *status, ms_error *err)
-{
-    if (at >= w->csv.n_rows) {
-        return 0;
-    }
-    const ms_compare_row row = begin_row(w, method, asked);
-    char *key = ms_compare_key(&row);
-    if (!key) {
-        *status = ms_fail(err, MS_ERR_NOMEM, "no memory for a row");
-    } else if (strncmp(w->csv.row[at], key, strlen(key)) != 0) {
-        *status = ms_fail(err, MS_ERR_ARG,
-                          "%s: line %zu is of another comparison; it should begin with '%.300s'; --resume takes the "
-                          "shapes, methods and numbers as they were",
-                          w->csv.path, at + 2, key);
-    }
-    free(key);
-    return 1;
-}
-
-/* The target is made only where a row needs it. */
-static void need_target(walk *w)
-{
-    ms_input_flags flags = w->a->input;
-    if (w->target_made || w->status != MS_OK) {
-        return;
-    }
-    flags.cells = isnan(w->cells) ? 0 : w->cells;
-    ms_target_free(&w->input.target);
-    w->status = ms_input_target(&w->input, &flags, &w->cause);
-    w->target_made = 1;
-}
-
-static void say_row(const ms_compare_row *row)
-{
-    printf("%s %s%s%s", row->text[MS_COLUMN_SHAPE], row->text[MS_COLUMN_GENERATOR],
-           row->text[MS_COLUMN_OPTIONS][0] ? ":" : "", row->text[MS_COLUMN_OPTIONS]);
-    if (isfinite(row->number[MS_COLUMN_CELLS])) {
-        printf(", %g cells", row->number[MS_COLUMN_CELLS]);
-    }
-    const ms_column n = isfinite(row->number[MS_COLUMN_SPHERES]) ? MS_COLUMN_SPHERES : MS_COLUMN_ASKED;
-    if (isfinite(row->number[n])) {
-        printf(", n %g", row->number[n]);
-    }
-    if (isfinite(row->number[MS_COLUMN_DICE])) {
-        printf(": D %.4f", row->number[MS_COLUMN_DICE]);
-    } else if (row->text[MS_COLUMN_CAUSE]) {
-        printf(": %s", row->text[MS_COLUMN_CAUSE]);
-    }
-    if (isfinite(row->number[MS_COLUMN_GENERATE])) {
-        printf(", %.3g s", row->number[MS_COLUMN_GENERATE]);
-    }
-    printf("\n");
-    fflush(stdout);
-}
-
-static ms_status add_row(walk *w, const ms_compare_row *row, ms_error *err)
-{
-    char *line = ms_compare_line(row);
-    ms_status status = line ? ms_csv_add(&w->csv, line, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for a row");
-    free(line);
-    if (status == MS_OK) {
-        w->at++;
-        w->failed += !isfinite(row->number[MS_COLUMN_DICE]);
-        say_row(row);
-    }
-    return status;
-}
-
-/* Remembers the first failure of a chart. */
-static void note_drawn(walk *w, ms_status status, const ms_error *err)
-{
-    if (status != MS_OK && w->drawn == MS_OK) {
-        w->drawn = status;
-        w->why_not = *err;
-    }
-}
-
-/* For the contact sheet. */
-static void keep_clump(walk *w, const ms_method *method, double asked, const ms_clump *clump, size_t n)
-{
-    ms_error err;
-    const ms_clump prefix = {.n_spheres = n, .capacity = n, .sphere = clump->sphere};
-    const double finest = w->a->cells.value[w->a->cells.count - 1];
-    if (w->a->charts && method->generator && !(w->cells < finest)) {
-        note_drawn(w, ms_sheet_keep(&w->sheet, method, asked, &prefix, &err), &err);
-    }
-}
-
-/* One row, of the first spheres of what a trial or another tool gave, or of why there are none. */
-static ms_status make_row(walk *w, const ms_method *method, double asked, const ms_trial *trial, double seconds,
-                          ms_status failure, const ms_error *why, ms_error *err)
-{
-    ms_error cause;
-    ms_compare_row row = begin_row(w, method, asked);
-    const ms_clump *clump = method->generator ? &trial->clump : &method->clump;
-    if (w->status == MS_OK) {
-        put_input(&row, &w->input);
-    }
-    if (failure == MS_OK && method->generator) {
-        row.text[MS_COLUMN_STOPPED] =
-            ms_stop_name(asked <= (double)clump->n_spheres ? MS_STOP_SPHERES : trial->reason);
-        row.number[MS_COLUMN_GENERATE] = seconds;
-        row.number[MS_COLUMN_MEMORY] = trial->memory;
-    }
-    if (failure == MS_OK) {
-        const size_t n = asked < (double)clump->n_spheres ? (size_t)asked : clump->n_spheres;
-        keep_clump(w, method, asked, clump, n);
-        failure = ms_trial_judge(&row, clump, n, &w->input.target, ms_input_max_voxels(&w->a->input), &cause);
-        why = &cause;
-    }
-    if (failure != MS_OK) {
-        row.text[MS_COLUMN_CAUSE] = why->text;
-    }
-    return add_row(w, &row, err);
-}
-
-/* The rows of one run, from `first` on; those before were there. */
-static ms_status make_rows(walk *w, const ms_method *method, const double *asked, size_t count, size_t first,
-                           ms_error *err)
-{
-    size_t n[MAX_NUMBERS];
-    char title[256];
-    ms_trial trial = {0};
-    ms_error cause;
-    ms_trial_run run = {.generator = method->generator, .settings = &method->settings, .seed = (uint64_t)w->a->seed,
-                        .repeats = (int)w->a->repeats, .asked = n, .n_asked = count, .title = title};
-    for (size_t k = 0; k < count; k++) {
-        n[k] = method->generator ? (size_t)asked[k] : 0;
-    }
-    snprintf(title, sizeof title, "%.150s %.80s", w->shape, method->name);
-    need_target(w);
-    ms_status made = w->status;
-    cause = w->cause;
-    if (made == MS_OK && method->generator) {
-        made = ms_trial_make(&trial, &run, &w->input.target, &cause);
-    }
-    ms_status status = MS_OK;
-    for (size_t k = first; k < count && status == MS_OK; k++) {
-        status = make_row(w, method, asked[k], &trial, trial.seconds ? trial.seconds[k] : 0, made, &cause, err);
-    }
-    ms_trial_free(&trial);
-    return status;
-}
-
-static ms_status compare_method(walk *w, const ms_method *method, ms_error *err)
-{
-    static const double AS_IT_IS[] = {HUGE_VAL};
-    const numbers *list = &w->a->asked;
-    const double *asked = method->generator ? list->value : AS_IT_IS;
-    const size_t count = method->generator ? list->count : 1;
-    const size_t batch = method->generator && method->generator->nested ? count : 1;
-    ms_status status = MS_OK;
-    for (size_t k = 0; k < count && status == MS_OK; k += batch) {
-        size_t there = 0;
-        while (status == MS_OK && there < batch && is_there(w, w->at, method, asked[k + there], &status, err)) {
-            there++;
-            w->at++;
-        }
-        if (status == MS_OK && there < batch) {
-            status = make_rows(w, method, asked + k, batch, there, err);
-        }
-    }
-    return status;
-}
-
-static ms_status compare_methods(walk *w, ms_error *err)
-{
-    ms_status status = MS_OK;
-    for (size_t m = 0; m < w->a->methods.count && status == MS_OK; m++) {
-        status = compare_method(w, &w->a->methods.method[m], err);
-    }
-    return status;
-}
-
-static void draw_sheet(walk *w)
-{
-    ms_error err;
-    need_target(w);
-    if (w->status == MS_OK) {
-        note_drawn(w, ms_sheet_draw(&w->sheet, &w->input.target, &err), &err);
-    }
-}
-
-static ms_status compare_shape(walk *w, const char *shape, ms_error *err)
-{
-    const numbers *cells = &w->a->cells;
-    ms_status status = MS_OK;
-    w->shape = shape;
-    ms_compare_name(w->name, sizeof w->name, shape, w->label);
-    w->sheet = (ms_sheet){.folder = w->a->charts, .shape = w->name, .methods = &w->a->methods,
-                          .asked = w->a->asked.value, .n_asked = w->a->asked.count};
-    const ms_status read = ms_input_read(&w->input, shape, &w->a->input, &w->cause);
-    snprintf(w->checksum, sizeof w->checksum, "%016llx", (unsigned long long)w->input.checksum);
-    const int is_volume = w->input.volume.label != NULL;
-    for (size_t c = 0; c < (is_volume ? 1 : cells->count) && status == MS_OK; c++) {
-        w->cells = is_volume ? (double)NAN : cells->value[c];
-        w->status = read;
-        w->target_made = 0;
-        status = compare_methods(w, err);
-    }
-    if (status == MS_OK && w->a->charts) {
-        draw_sheet(w);
-    }
-    ms_input_free(&w->input);
-    return status;
-}
-
-static ms_status compare(walk *w, ms_error *err)
-{
-    const arguments *a = w->a;
-    ms_status status = MS_OK;
-    if (a->input.threads) {
-        omp_set_num_threads(a->input.threads);
-    }
-    if (a->input.label) {
-        snprintf(w->label, sizeof w->label, "%lu", (unsigned long)a->input.label);
-    }
-    for (size_t s = 0; s < a->n_shapes && status == MS_OK; s++) {
-        status = compare_shape(w, a->shape[s], err);
-    }
-    if (status == MS_OK && w->at < w->csv.n_rows) {
-        status = ms_fail(err, MS_ERR_ARG, "%s: holds %zu rows of another comparison behind these; name another file",
-                         w->csv.path, w->csv.n_rows - w->at);
-    }
-    return status;
-}
-
 /* What can be known before the work. */
-static ms_status check_shapes(const arguments *a, ms_error *err)
+static ms_status check_files(const ms_comparison *c, ms_error *err)
 {
-    for (size_t s = 0; s < a->n_shapes; s++) {
-        if (access(a->shape[s], R_OK) != 0) {
-            return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s; check the path", a->shape[s], strerror(errno));
+    for (size_t s = 0; s < c->n_shapes; s++) {
+        if (access(c->shape[s], R_OK) != 0) {
+            return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s; check the path", c->shape[s], strerror(errno));
         }
     }
-    return a->charts ? ms_outputs_make_folder(a->charts, err) : MS_OK;
+    return c->charts ? ms_outputs_make_folder(c->charts, err) : MS_OK;
 }
 
 static int work(const ms_command *command, const arguments *a)
 {
     ms_error err;
-    walk w = {.a = a};
+    ms_csv csv;
     char *header = ms_compare_header();
-    ms_status status = header ? check_shapes(a, &err) : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
+    ms_status status = header ? check_files(&a->comparison, &err)
+                              : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
     if (status == MS_OK) {
-        status = ms_csv_open(&w.csv, a->output, header, a->resume, &err);
+        status = ms_csv_open(&csv, a->output, header, a->resume, &err);
         if (status == MS_OK) {
-            status = compare(&w, &err);
+            status = ms_compare_walk(&csv, &a->comparison, &err);
         }
-        if (status == MS_OK) {
-            printf("wrote %s, %zu rows", a->output, w.csv.n_rows);
-            printf(w.failed ? "; %zu of the new ones failed, see the column cause\n" : "\n", w.failed);
-        }
-        if (status == MS_OK && a->charts) {
-            note_drawn(&w, ms_compare_charts(&w.csv, a->charts, &err), &err);
-            status = w.drawn;
-            err = w.why_not;
-        }
-        ms_csv_close(&w.csv);
+        ms_csv_close(&csv);
     }
     free(header);
     return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
 }
 
 /* What follows from all flags together. */
-static ms_status settle(arguments *a, ms_error *err)
+static ms_status settle(ms_comparison *c, ms_error *err)
 {
     static const double ASKED[] = {5, 10, 20, 50, 100};
-    if (a->asked.count == 0) {
-        memcpy(a->asked.value, ASKED, sizeof ASKED);
-        a->asked.count = sizeof ASKED / sizeof *ASKED;
+    if (c->asked.count == 0) {
+        memcpy(c->asked.value, ASKED, sizeof ASKED);
+        c->asked.count = sizeof ASKED / sizeof *ASKED;
     }
-    if (a->cells.count == 0) {
-        insert(&a->cells, 100);
+    if (c->cells.count == 0) {
+        insert(&c->cells, 100);
     }
-    if (ms_methods_clumps(&a->methods) > 0 && a->n_shapes > 1) {
+    if (ms_methods_clumps(&c->methods) > 0 && c->n_shapes > 1) {
         return ms_fail(err, MS_ERR_ARG, "--clump belongs to one shape; compare the others by themselves");
     }
-    return a->methods.count == 0 ? ms_methods_add_all(&a->methods, err) : ms_methods_check(&a->methods, err);
+    return ms_methods_check(&c->methods, err);
 }
 
 static int run(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {.repeats = 1, .seed = 1, .output = "compare.csv"};
+    arguments a = {.comparison = {.repeats = 1, .seed = 1}, .output = "compare.csv"};
     int first;
     ms_error err;
-    ms_input_defaults(&a.input);
+    ms_input_defaults(&a.comparison.input);
     int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
     if (code == MS_FLAGS_GO_ON && first >= argc) {
         code = ms_wrong_usage(command, "takes one or more shapes");
     }
     if (code == MS_FLAGS_GO_ON) {
-        a.shape = argv + first;
-        a.n_shapes = (size_t)(argc - first);
-        code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_wrong_usage(command, err.text);
+        a.comparison.shape = argv + first;
+        a.comparison.n_shapes = (size_t)(argc - first);
+        code = settle(&a.comparison, &err) == MS_OK ? work(command, &a) : ms_wrong_usage(command, err.text);
     }
-    ms_methods_free(&a.methods);
+    ms_methods_free(&a.comparison.methods);
     return code;
 }
 

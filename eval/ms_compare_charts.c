@@ -217,7 +217,7 @@ static ms_status draw(const records *all, const record *shape, const kind *k, ms
     const size_t room = strlen(all->folder) + sizeof name + 32;
     char *stem = malloc(room);
     name_shape(name, sizeof name, shape);
-    snprintf(at, sizeof at, k->fixed == MS_COLUMN_CELLS ? " (%g cells)" : " (%g spheres)", fixed);
+    snprintf(at, sizeof at, k->fixed == MS_COLUMN_CELLS ? " (%g cells)" : " (up to %g spheres)", fixed);
     snprintf(title, sizeof title, "%s: %s%s", name, k->what, isnan(fixed) ? "" : at);
     ms_status status = stem ? fill_draft(&d, all, shape, k, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for a chart");
     if (status == MS_OK) {

@@ -34,7 +34,7 @@ ms_status ms_methods_add_clump(ms_methods *methods, const char *text, ms_error *
 /** Adds every generator, by default options. */
 ms_status ms_methods_add_all(ms_methods *methods, ms_error *err);
 
-/** Does each stand there once? Adds every generator if there are only clumps. @return MS_OK; MS_ERR_ARG */
+/** Does each stand there once? Adds every generator if there is none yet. @return MS_OK; MS_ERR_ARG */
 ms_status ms_methods_check(ms_methods *methods, ms_error *err);
 
 /** Number of clumps among them. */

@@ -164,6 +164,9 @@ ms_status ms_csv_open(ms_csv *csv, const char *path, const char *header, int res
 {
     struct stat info;
     *csv = (ms_csv){.path = path, .fd = -1};
+    if (strcmp(path, "-") == 0) {
+        return ms_fail(err, MS_ERR_IO, "-: these results go to a file, so that they can be taken up again; name one");
+    }
     const int exists = stat(path, &info) == 0;
     if (exists && !resume) {
         return ms_fail(err, MS_ERR_IO, "%s: exists already; --resume goes on with it, or name another file", path);

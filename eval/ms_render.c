@@ -93,13 +93,13 @@ ms_status ms_view_of(ms_view *view, const ms_target *target, int x, int y, int s
     return MS_OK;
 }
 
-/* Lit from the upper left, in front of whatever was there. */
+/* Lit from the upper left, in front of whatever was there; what is turned from the light is darker still. */
 static void put(ms_picture *picture, size_t at, double depth, const double normal[3], uint32_t part)
 {
     static const double LIGHT[3] = {-0.42, 0.54, 0.73};
     if ((float)depth > picture->depth[at]) {
         picture->depth[at] = (float)depth;
-        picture->grey[at] = (uint8_t)(70 + 170 * fmax(0, ms_dot(normal, LIGHT)));
+        picture->grey[at] = (uint8_t)(145 + 100 * ms_dot(normal, LIGHT));
         picture->part[at] = part;
     }
 }

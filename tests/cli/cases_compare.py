@@ -9,6 +9,7 @@ import shutil
 import signal
 import struct
 import subprocess
+import sys
 import time
 import unittest
 import xml.etree.ElementTree as ElementTree
@@ -83,6 +84,25 @@ class Rows(Compare):
             moments = (5, 10, 13)  # of a box 3 x 2 x 1, over mass / 12
             weighted = sum(abs(e) * m for e, m in zip(masses["error_moments"], moments)) / sum(moments)
             self.assertLess(abs(float(row["inertia_corrected"]) - weighted), 1e-9)
+
+    def test_threads_do_not_matter(self):
+        found = []
+        for threads in ("1", "3"):
+            self.mskit("compare", "box.obj", "-n", "5,9", "--cells", "16", "-j", threads, "-o", threads + ".csv")
+            found.append([{k: v for k, v in row.items() if k != "threads"}
+                          for row in without_times(self.rows(threads + ".csv"))])
+        self.assertEqual(*found)
+        self.assertEqual(len(found[0]), 8)
+
+    def test_tables_of_the_documents(self):
+        """The script beside the documents: every D stands in its place."""
+        rows = self.compare("box.obj", "-g", "mss", "-g", "setcover", "-n", "2,5000", "--cells", "12")
+        script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "comparison-tables.py")
+        process = subprocess.run([sys.executable, script, "compare.csv", "2", "5000"], cwd=self.dir, check=True,
+                                 stdout=subprocess.PIPE)
+        line = next(line for line in process.stdout.decode().split("\n") if line.startswith("| box |"))
+        self.assertEqual(line.strip("| ").split(" | ")[1:],
+                         [f"{float(r['dice']):.4f}" + ("*" if r["n_asked"] == "5000" else "") for r in rows])
 
     def test_too_many_asked_for(self):
         rows = self.compare("box.obj", "-g", "mss", "-n", "2,5000", "--cells", "12")
@@ -226,6 +246,7 @@ class Refusals(Compare):
         self.assert_refused("compare", "box.obj", "missing.stl", *run, code=1, says=("missing.stl",))
         self.assert_refused("compare", "box.obj", *run, "-o", "no/such.csv", code=1, says=("no/such.csv",))
         self.assert_refused("compare", "box.obj", *run, "-o", "", code=1, says=("cannot be written",))
+        self.assert_refused("compare", "box.obj", *run, "-o", "-", code=1, says=("go to a file",))
         self.assert_refused("compare", "box.obj", *run, "--charts", "no/such", code=1, says=("no/such",))
         self.assert_refused("compare", "box.obj", *run, "-o", "/dev/full", "--resume", code=1, says=("device",))
 
@@ -336,8 +357,8 @@ class Charts(Compare):
         self.assertEqual(len(self.rows()), 1)
         names = sorted(os.listdir(self.path("charts")))
         sheet = ["box-mss-3.csv", "box-sheet.gp", "box-tiles.png"]
-        self.assertEqual(names, sorted(sheet + [f"box-{k}.{e}" for k in ("dice", "time", "inertia", "corrected")
-                                                for e in ("dat", "gp") if (k != "corrected" or self.rows()[0]["epsilon"])]))
+        kinds = ["dice", "time", "inertia"] + (["corrected"] if self.rows()[0]["epsilon"] else [])
+        self.assertEqual(names, sorted(sheet + [f"box-{k}.{e}" for k in kinds for e in ("dat", "gp")]))
 
     def test_same_names(self):
         os.mkdir(self.path("other"))

@@ -1,0 +1,38 @@
+/** A comparison: every method on every shape, at every resolution, to every number of spheres. */
+#ifndef MS_COMPARE_WALK_H
+#define MS_COMPARE_WALK_H
+
+#include "ms_compare_methods.h"
+#include "ms_csv.h"
+#include "ms_input.h"
+
+enum { MS_NUMBERS_MAX = 256 };
+
+/** A list of whole numbers, ascending, each once. */
+typedef struct ms_numbers {
+    double value[MS_NUMBERS_MAX];
+    size_t count;
+} ms_numbers;
+
+/** What is compared. */
+typedef struct ms_comparison {
+    char **shape; /* paths */
+    size_t n_shapes;
+    ms_input_flags input; /* without its resolution */
+    ms_methods methods;
+    ms_numbers asked, cells; /* numbers of spheres; resolutions, which a volume does not take */
+    double repeats, seed;
+    const char *charts; /* folder, which exists; NULL for none */
+} ms_comparison;
+
+/**
+ * Walks through the comparison in a fixed order and adds a row for each run; those that are there already must be its
+ * first rows, and are not run again. Says each row on standard output. Then draws the charts.
+ *
+ * @param csv with ms_compare_header
+ * @return MS_OK, also where runs failed: that is in their rows; MS_ERR_ARG for rows of another comparison; as
+ *         ms_csv_add; of charts, as ms_compare_charts and ms_sheet_draw, when all else is done
+ */
+ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error *err);
+
+#endif
