@@ -74,8 +74,8 @@ static ms_status choose_by_tolerance(ms_scene_shape *shape, const ms_goal *goal,
         best = goal->measure->rises ? fmax(best, have) : fmin(best, have);
     }
     return ms_fail(err, MS_ERR_LIMIT,
-                   "%s: no template of up to %zu spheres has %s %.6g, the best has %.6g; raise --max-spheres or ease "
-                   "the tolerance",
+                   "%s: no template of up to %zu spheres has %s %.6g, the best has %.6g; raise --max-spheres, use more "
+                   "cells or another method, or ease the tolerance",
                    shape->row->path, shape->most, goal->measure->name, value, best);
 }
 
