@@ -74,8 +74,8 @@ static ms_status choose_by_tolerance(ms_scene_shape *shape, const ms_goal *goal,
         best = goal->measure->rises ? fmax(best, have) : fmin(best, have);
     }
     return ms_fail(err, MS_ERR_LIMIT,
-                   "%s: no template of up to %zu spheres has %s %.6g, the best has %.6g; raise --max-spheres or ease "
-                   "the tolerance",
+                   "%s: no template of up to %zu spheres has %s %.6g, the best has %.6g; raise --max-spheres, use more "
+                   "cells or another method, or ease the tolerance",
                    shape->row->path, shape->most, goal->measure->name, value, best);
 }
 
@@ -143,10 +143,11 @@ static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const 
     return status;
 }
 
-static ms_status make_templates(ms_scene_shape *shape, const ms_input *input, const ms_scene_run *how, ms_error *err)
+static ms_status make_templates(ms_scene_shape *shape, const char *title, const ms_input *input,
+                                const ms_scene_run *how, ms_error *err)
 {
     const ms_recipe *recipe = how->recipe;
-    ms_progress_line line = {.name = shape->row->path};
+    ms_progress_line line = {.name = title};
     ms_stop_reason reason;
     ms_clump clump;
     ms_error cause;
@@ -165,10 +166,13 @@ static ms_status make_templates(ms_scene_shape *shape, const ms_input *input, co
     return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
 }
 
-static ms_status make_shape(ms_scene_shape *shape, const ms_manifest_row *row, const ms_scene_run *run,
+static ms_status make_shape(ms_scene *scene, size_t at, const ms_manifest_row *row, const ms_scene_run *run,
                             const ms_goal *goal, ms_error *err)
 {
     ms_input input;
+    ms_scene_shape *shape = &scene->shape[at];
+    char title[80];
+    snprintf(title, sizeof title, "%.40s (%zu of %zu)", row->path, at + 1, scene->count);
     shape->row = row;
     ms_status status = ms_input_read(&input, row->path, run->input, err);
     if (status != MS_OK) {
@@ -176,7 +180,7 @@ static ms_status make_shape(ms_scene_shape *shape, const ms_manifest_row *row, c
     }
     status = ms_input_target(&input, run->input, err);
     if (status == MS_OK) {
-        status = make_templates(shape, &input, run, err);
+        status = make_templates(shape, title, &input, run, err);
     }
     ms_input_free(&input);
     return status == MS_OK ? choose_alone(shape, goal, err) : status;
@@ -192,7 +196,7 @@ ms_status ms_scene_make(ms_scene *scene, const ms_manifest *manifest, const ms_s
     }
     ms_status status = MS_OK;
     for (size_t s = 0; s < scene->count && status == MS_OK; s++) {
-        status = make_shape(&scene->shape[s], &manifest->row[s], run, goal, err);
+        status = make_shape(scene, s, &manifest->row[s], run, goal, err);
     }
     if (status != MS_OK) {
         ms_scene_free(scene);

@@ -65,8 +65,10 @@ void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal)
     fprintf(stream, "  %-26s %llu for %llu particles\n", "spheres in the scene", (unsigned long long)sum->spheres,
             (unsigned long long)sum->particles);
     fprintf(stream, "  %-26s %.5f\n", "mean D", sum->error);
-    fprintf(stream, "  %-26s %.5f with %zu for each shape, %llu in all\n", "mean D, spread evenly", scene->even.error,
-            scene->even_each, (unsigned long long)scene->even.spheres);
+    if (scene->count > 1) {
+        fprintf(stream, "  %-26s %.5f with %zu for each shape, %llu in all\n", "mean D, spread evenly",
+                scene->even.error, scene->even_each, (unsigned long long)scene->even.spheres);
+    }
     fprintf(stream, "  %-26s takes %.2g off the sum of D over the particles\n", "least useful sphere",
             scene->least_gain);
     print_slack(stream, sum, goal->kind);
