@@ -1,4 +1,5 @@
 /* mskit stability [SHAPE...] */
+#include <errno.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -170,8 +171,11 @@ static ms_status try_shapes(const arguments *a, ms_error *err)
 
 static ms_status try_outputs(const arguments *a, ms_error *err)
 {
-    ms_status status = a->charts ? ms_outputs_make_folder(a->charts, err) : MS_OK;
-    return status == MS_OK && strcmp(a->output, "-") != 0 ? ms_outputs_try_file("", a->output, err) : status;
+    ms_status status = strcmp(a->output, "-") == 0 ? MS_OK : ms_outputs_try_file("", a->output, err);
+    for (int s = 0; s < a->n_shapes && status == MS_OK; s++) {
+        status = ms_outputs_try_file(a->shape[s], a->output, err); /* not the shape itself */
+    }
+    return status == MS_OK && a->charts ? ms_outputs_make_folder(a->charts, err) : status;
 }
 
 static void show(const progress *p, const ms_stability *s, ms_change change)
@@ -258,10 +262,22 @@ static size_t count_runs(const arguments *a)
     return each * shapes * a->methods.count;
 }
 
+/* The rows are written in place, so that a run that is killed leaves those there are. */
+static ms_status begin(progress *p, const arguments *a, ms_error *err)
+{
+    p->planned = count_runs(a);
+    p->run = malloc(p->planned * sizeof *p->run);
+    if (!p->run) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu runs; fewer --runs need less", p->planned);
+    }
+    p->rows = strcmp(a->output, "-") == 0 ? stdout : fopen(a->output, "w");
+    return p->rows ? MS_OK : ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s", a->output, strerror(errno));
+}
+
 static int work(const ms_command *command, const arguments *a)
 {
     ms_error err;
-    progress p = {.planned = count_runs(a)};
+    progress p = {0};
     ms_status status = try_shapes(a, &err);
     if (status == MS_OK) {
         status = try_outputs(a, &err);
@@ -269,11 +285,8 @@ static int work(const ms_command *command, const arguments *a)
     if (status != MS_OK) {
         return ms_fail_command(command, &err);
     }
-    p.run = malloc(p.planned * sizeof *p.run);
-    p.rows = strcmp(a->output, "-") == 0 ? stdout : fopen(a->output, "w");
-    if (!p.run || !p.rows) {
-        status = ms_fail(&err, MS_ERR_IO, "%s: cannot be opened, or no memory for %zu runs", a->output, p.planned);
-    } else {
+    status = begin(&p, a, &err);
+    if (status == MS_OK) {
         status = try_all(&p, a, &err);
     }
     if (status == MS_OK) {

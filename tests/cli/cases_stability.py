@@ -233,6 +233,11 @@ class Stability(Case):
         self.assert_refused("stability", "cube", "missing.stl", code=1, says=("missing.stl", "cannot be opened"))
         self.assert_refused("stability", "cube", "scan.npy", code=1, says=("volume",))
         self.assert_refused("stability", "cube", "-o", "no/such/s.csv", code=1, says=("no/such/s.csv",))
+        self.assert_refused("stability", "cube", "--charts", "no/such", code=1, says=("no/such",))
+        self.shape("ball", "fineness=4")
+        before = self.read("ball.stl")
+        self.assert_refused("stability", "cube", "ball.stl", "-o", "./ball.stl", code=1, says=("ball.stl",))
+        self.assertEqual(self.read("ball.stl"), before)
         self.mskit("stability", "open.obj", "-o", "s.csv", code=1)
         self.assertEqual(rows_of(self.read("s.csv").decode()), [])
 
