@@ -198,11 +198,11 @@ static void a_search_that_is_too_long_is_given_up(void **state)
     ms_allocation a, b;
     assert_int_equal(ms_allocate_budget(n, &a, share, MANY, 10 * particles + 12345, NULL), MS_OK);
     assert_true(a.spheres <= 10 * particles + 12345 && (double)a.spheres > 9.99 * (double)particles);
-    assert_true(a.slack < 1e-4 * a.error);
+    assert_true(a.slack > 0 && a.slack < 1e-4 * a.error);
     /* The other way round the same number of spheres must do, but for the slack of both. */
     assert_int_equal(ms_allocate_error(n, &b, share, MANY, a.error, NULL), MS_OK);
     assert_true((double)b.spheres <= (double)a.spheres + b.slack);
-    assert_true(b.slack < 1e-4 * (double)b.spheres);
+    assert_true(b.slack > 0 && b.slack < 1e-4 * (double)b.spheres);
 }
 
 static void the_gain_is_that_of_the_least_useful_spheres(void **state)
