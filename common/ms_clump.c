@@ -4,7 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ms_raster.h"
 #include "ms_vector.h"
+
+_Static_assert((int)MS_CLUMP_MAX_SPHERES <= (int)MS_RASTER_MAX_BALLS, "every clump can be counted on a grid");
 
 ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err)
 {

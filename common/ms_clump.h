@@ -8,7 +8,7 @@
 
 MS_C_BEGIN
 
-/* First-cover indices are 16 bits wide, and 65535 says "none". */
+/* As many as a union on a grid can number (ms_raster.h). */
 enum { MS_CLUMP_MAX_SPHERES = 65534 };
 
 typedef struct ms_sphere {

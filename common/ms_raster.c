@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_clump.h"
 #include "ms_vector.h"
 
 /* Half the diagonal of a voxel: a ball's surface farther from the centre misses the voxel. */
@@ -260,8 +259,8 @@ static ms_status find_neighbours(neighbours *list, ms_raster *raster, size_t fro
 
 static ms_status append(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err)
 {
-    if (count > MS_CLUMP_MAX_SPHERES - raster->n_balls) {
-        return ms_fail(err, MS_ERR_LIMIT, "more than %d spheres in a clump", MS_CLUMP_MAX_SPHERES);
+    if (count > MS_RASTER_MAX_BALLS - raster->n_balls) {
+        return ms_fail(err, MS_ERR_LIMIT, "more than %d spheres in a clump", MS_RASTER_MAX_BALLS);
     }
     for (size_t b = 0; b < count; b++) {
         const double *c = balls[b].centre;

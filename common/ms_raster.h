@@ -14,6 +14,9 @@ MS_C_BEGIN
 /* First-cover index of a voxel that no sphere covers. */
 #define MS_RASTER_NONE UINT16_MAX
 
+/* Indices are 16 bits wide, and the last says "none". */
+enum { MS_RASTER_MAX_BALLS = UINT16_MAX - 1 };
+
 /** A sphere in voxels: centre in voxel indices (fractions allowed), radius. */
 typedef struct ms_ball {
     double centre[3];
@@ -55,7 +58,7 @@ ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule 
  * After a failure the raster is of no more use but to be freed.
  *
  * @return MS_OK; MS_ERR_ARG for a radius or place that is not finite or a radius below 0;
- *         MS_ERR_LIMIT above MS_CLUMP_MAX_SPHERES; MS_ERR_NOMEM
+ *         MS_ERR_LIMIT above MS_RASTER_MAX_BALLS; MS_ERR_NOMEM
  * Cost: O(voxels in the spheres' boxes); all cores, the same bits at any number of threads.
  */
 ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err);

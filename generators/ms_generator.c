@@ -3,19 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "ms_fcm.h"
-#include "ms_mss.h"
-#include "ms_setcover.h"
-#include "ms_variational.h"
-
-const ms_generator *const ms_generators[] = {
-    &ms_generator_mss,
-    &ms_generator_setcover,
-    &ms_generator_fcm,
-    &ms_generator_variational,
-    NULL,
-};
-
 const ms_generator *ms_generator_find(const char *name, ms_error *err)
 {
     char names[256] = "";
