@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "ms_bvh.h"
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 struct ms_closest {
     ms_bvh bvh;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "ms_raster.h"
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 _Static_assert((int)MS_CLUMP_MAX_SPHERES <= (int)MS_RASTER_MAX_BALLS, "every clump can be counted on a grid");
 

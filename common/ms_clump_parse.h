@@ -3,7 +3,7 @@
 #define MS_CLUMP_PARSE_H
 
 #include "ms_clump.h"
-#include "ms_file.h"
+#include "base/ms_file.h"
 
 /**
  * @param[out]    clump the caller frees it; empty on failure

@@ -4,8 +4,8 @@
 
 #include "ms_clump.h"
 #include "ms_clump_parse.h"
-#include "ms_file.h"
-#include "ms_text.h"
+#include "base/ms_file.h"
+#include "base/ms_text.h"
 
 static int is_mark(char c)
 {

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "ms_programme.h"
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 /* Errors below this are rounding. */
 static const double EXACT = 1e-9;

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "ms_error.h"
+#include "base/ms_error.h"
 
 MS_C_BEGIN
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 /* A sum that carries its own rounding error along (Neumaier 1974). */
 typedef struct sum {

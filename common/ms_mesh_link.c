@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "ms_mesh_orient.h"
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 /* A side of a crowded edge, by the angle of its triangle around the edge. */
 typedef struct spoke {

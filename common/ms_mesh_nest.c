@@ -3,7 +3,7 @@
 
 #include "ms_bvh.h"
 #include "ms_mesh_orient.h"
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 enum { SAMPLES = 32, DIRECTIONS = 8 };
 

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "ms_mesh_formats.h"
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 /* x y z, then nothing, a weight, a colour, or a colour with opacity. */
 static ms_status parse_vertex(ms_mesh_builder *builder, ms_text *text, ms_error *err)

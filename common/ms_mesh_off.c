@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "ms_mesh_formats.h"
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 /* The first word: OFF behind prefixes. `extras` is set where vertices carry more than x, y, z. */
 static ms_status parse_keyword(int *extras, ms_text *text, ms_error *err)

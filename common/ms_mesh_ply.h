@@ -2,7 +2,7 @@
 #ifndef MS_MESH_PLY_H
 #define MS_MESH_PLY_H
 
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 enum { MS_PLY_MAX_ELEMENTS = 32, MS_PLY_MAX_PROPERTIES = 512 };
 

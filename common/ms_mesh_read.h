@@ -2,7 +2,7 @@
 #ifndef MS_MESH_READ_H
 #define MS_MESH_READ_H
 
-#include "ms_file.h"
+#include "base/ms_file.h"
 #include "ms_mesh.h"
 
 MS_C_BEGIN

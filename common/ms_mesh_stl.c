@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "ms_mesh_formats.h"
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 #define HEADER_SIZE 84 /* a comment of 80 bytes and the number of triangles */
 #define RECORD_SIZE 50 /* normal and corners as float32, and 2 bytes of attributes */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "ms_file.h"
+#include "base/ms_file.h"
 
 /* Little-endian bytes, whatever the machine: `n` of them. Returns 0 if they could not be written. */
 static int put_bytes(FILE *stream, uint64_t bits, int n)

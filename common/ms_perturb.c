@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 /* Must be freed by gsl_rng_free; NULL without memory. */
 static gsl_rng *make_random(uint64_t seed, ms_error *err)

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "ms_error.h"
+#include "base/ms_error.h"
 
 /**
  * Shares m_1..m_n within bounds; equations on them that may be off by a goal's column times a weight.

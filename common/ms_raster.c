@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 /* Half the diagonal of a voxel: a ball's surface farther from the centre misses the voxel. */
 static const double HALF_DIAGONAL = 0.86602540378443871;

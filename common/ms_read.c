@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "ms_clump_parse.h"
-#include "ms_file.h"
+#include "base/ms_file.h"
 #include "ms_read_formats.h"
 
 typedef ms_status parser(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);

@@ -2,7 +2,7 @@
 #ifndef MS_READ_FORMATS_H
 #define MS_READ_FORMATS_H
 
-#include "ms_file.h"
+#include "base/ms_file.h"
 #include "ms_read.h"
 
 /**

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "ms_read_formats.h"
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 /* What the file says of each sphere. */
 typedef struct table {

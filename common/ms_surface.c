@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 /* Triangles are taken in chunks of this size, whatever the number of threads, so that sums
  * are always made in the same order. */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 static ms_status principal_of(ms_principal *principal, const ms_particle *particle, ms_error *err)
 {

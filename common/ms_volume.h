@@ -5,8 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "ms_error.h"
-#include "ms_file.h"
+#include "base/ms_error.h"
+#include "base/ms_file.h"
 
 MS_C_BEGIN
 

@@ -2,7 +2,7 @@
 #ifndef MS_VOLUME_FORMATS_H
 #define MS_VOLUME_FORMATS_H
 
-#include "ms_text.h"
+#include "base/ms_text.h"
 #include "ms_volume.h"
 
 /**

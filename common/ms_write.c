@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "ms_file.h"
+#include "base/ms_file.h"
 #include "ms_version.h"
 #include "ms_write_formats.h"
 

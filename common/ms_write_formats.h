@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "ms_text.h"
+#include "base/ms_text.h"
 #include "ms_write.h"
 
 /* As ms_part.write. Templates get a clump and particle in the frame of the template. */

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "ms_error.h"
+#include "base/ms_error.h"
 
 /** One shape of a scene. Borrowed. */
 typedef struct ms_share {

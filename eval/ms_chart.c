@@ -8,7 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "ms_file.h"
+#include "base/ms_file.h"
 
 static double height(const ms_chart *chart, const ms_chart_point *point)
 {

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "ms_error.h"
+#include "base/ms_error.h"
 
 enum { MS_CHART_LABEL = 24 };
 

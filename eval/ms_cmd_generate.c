@@ -13,7 +13,7 @@
 #include "ms_recipe.h"
 #include "ms_record.h"
 #include "ms_report.h"
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 enum { DEFAULT_SPHERES = 50 };
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "ms_commands.h"
-#include "ms_file.h"
+#include "base/ms_file.h"
 #include "ms_outputs.h"
 #include "ms_record.h"
 #include "ms_report.h"

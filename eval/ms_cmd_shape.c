@@ -6,7 +6,7 @@
 #include "ms_mesh_read.h"
 #include "ms_mesh_write.h"
 #include "ms_shape.h"
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 static const ms_flag FLAGS[] = {
     {"output", 'o', "FILE", "the mesh: .stl, .obj, .ply or .off; - for OFF on standard output"},

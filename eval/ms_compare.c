@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 #define COLUMN_NAME(code, name) name,
 static const char *const NAMES[] = {MS_COLUMN_LIST(COLUMN_NAME)};

@@ -6,7 +6,7 @@
 
 #include "ms_chart.h"
 #include "ms_compare.h"
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 /* One row, cut into its fields. */
 typedef struct record {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "ms_chart.h"
-#include "ms_file.h"
+#include "base/ms_file.h"
 #include "ms_render.h"
 #include "ms_write.h"
 

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "ms_file.h"
+#include "base/ms_file.h"
 
 void ms_csv_put(FILE *stream, const char *text)
 {

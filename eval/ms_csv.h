@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <sys/types.h>
 
-#include "ms_error.h"
+#include "base/ms_error.h"
 
 /** An open file. Rows are text without the end of the line. */
 typedef struct ms_csv {

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "ms_generator.h"
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 /* Room for the flags of a command and the options of all generators. */
 enum { MAX_FLAGS = 128, HELP_COLUMN = 28 };

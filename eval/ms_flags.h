@@ -2,7 +2,7 @@
 #ifndef MS_FLAGS_H
 #define MS_FLAGS_H
 
-#include "ms_error.h"
+#include "base/ms_error.h"
 #include "ms_option.h"
 
 /* Exit codes of the program. */

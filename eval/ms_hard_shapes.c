@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "ms_file.h"
+#include "base/ms_file.h"
 #include "ms_inertia.h"
 #include "ms_perturb.h"
 #include "ms_shape.h"

@@ -7,9 +7,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "ms_file.h"
+#include "base/ms_file.h"
 #include "ms_mesh_read.h"
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 static double machine_memory(void)
 {

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "ms_error.h"
+#include "base/ms_error.h"
 
 /** What can be chosen of one kind. Borrowed. */
 typedef struct ms_kind {

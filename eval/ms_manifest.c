@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 enum { SHAPE, COUNT, TOLERANCE, COLUMNS };
 

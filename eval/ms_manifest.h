@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "ms_error.h"
+#include "base/ms_error.h"
 
 enum { MS_MANIFEST_MAX_SHAPES = 1000, MS_MANIFEST_MAX_PARTICLES = 1000000000 };
 

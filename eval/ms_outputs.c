@@ -4,7 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "ms_file.h"
+#include "base/ms_file.h"
 
 static ms_status take_format(ms_outputs *outputs, const char *name, ms_error *err)
 {

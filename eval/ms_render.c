@@ -5,8 +5,8 @@
 #include <string.h>
 #include <zlib.h>
 
-#include "ms_file.h"
-#include "ms_vector.h"
+#include "base/ms_file.h"
+#include "base/ms_vector.h"
 
 ms_status ms_picture_alloc(ms_picture *picture, int width, int height, ms_error *err)
 {

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "ms_csv.h"
-#include "ms_file.h"
+#include "base/ms_file.h"
 #include "ms_perturb.h"
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 #define CHANGE_NAME(code, name, level) name,
 static const char *const CHANGES[] = {MS_CHANGE_LIST(CHANGE_NAME)};

@@ -15,7 +15,7 @@
 
 #include <stdint.h>
 
-#include "ms_error.h"
+#include "base/ms_error.h"
 
 MS_C_BEGIN
 

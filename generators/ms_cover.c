@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 enum { WORD = 64 };
 

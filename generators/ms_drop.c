@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "ms_variational_start.h"
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 /* Counts all spheres and their images on the grid; `all` is how many there are. */
 static ms_status count_all(overlap *out, size_t *all, const ms_ball *ball, size_t count, const ms_grid *grid, int step,

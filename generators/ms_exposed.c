@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 /* Ridge added to the normal equations, as part of the sum of weights. */
 static const double RIDGE = 1e-3;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 /* The distance counts as rising above this slope: cosine of 26 degrees. */
 static const double RISING = 0.9;

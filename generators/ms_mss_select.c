@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 /* Ranks and distances of mirror images agree but for rounding. */
 static const double EQUAL = 1e-6;

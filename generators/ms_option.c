@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_text.h"
+#include "base/ms_text.h"
 
 static size_t count_options(const ms_option *options)
 {

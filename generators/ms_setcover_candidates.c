@@ -6,7 +6,7 @@
 
 #include "ms_inertia.h"
 #include "ms_medial.h"
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 #include "ms_voxelize.h"
 
 /* A skeleton's grid of this size is allowed whatever the target's. */

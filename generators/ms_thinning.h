@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "ms_error.h"
+#include "base/ms_error.h"
 
 MS_C_BEGIN
 

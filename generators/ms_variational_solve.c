@@ -9,7 +9,7 @@
 #include "ms_overlap.h"
 #include "ms_pattern.h"
 #include "ms_variational_start.h"
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 /* Spheres at the start: so many times those asked for, and some more. */
 static const double SURPLUS = 1.25;

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "ms_file.h"
+#include "base/ms_file.h"
 
 /** A file in memory that a test puts together. */
 typedef struct sample {

@@ -1,6 +1,6 @@
 /* Charts: the Pareto front against brute force, what the files hold. */
 #include "ms_chart.h"
-#include "ms_file.h"
+#include "base/ms_file.h"
 #include "test_support.h"
 
 static int beats(const ms_chart_point *a, const ms_chart_point *b)

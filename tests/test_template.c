@@ -6,7 +6,7 @@
 #include "body_samples.h"
 #include "clump_samples.h"
 #include "ms_read.h"
-#include "ms_text.h"
+#include "base/ms_text.h"
 #include "ms_write.h"
 
 static const double SCALE = 1e-3, CENTRE[3] = {12.5, -3, 700};

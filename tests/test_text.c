@@ -2,7 +2,7 @@
 #include <locale.h>
 #include <math.h>
 
-#include "ms_text.h"
+#include "base/ms_text.h"
 #include "reader_samples.h"
 
 static int parse(double *value, const char *text)

@@ -10,7 +10,7 @@
 #include "ms_overlap.h"
 #include "ms_pattern.h"
 #include "ms_variational.h"
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 static double uniform(double from, double to)
 {

@@ -10,7 +10,7 @@
 #include "ms_mss.h"
 #include "ms_setcover.h"
 #include "ms_variational.h"
-#include "ms_vector.h"
+#include "base/ms_vector.h"
 
 enum { POINTS = 1000 };
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_file.h"
+#include "base/ms_file.h"
 
 /* Ends the run with a stack trace in any build. */
 #define FUZZ_REQUIRE(condition)  \
