@@ -3,7 +3,7 @@
 #define MS_MESH_FORMATS_H
 
 #include "base/ms_file.h"
-#include "ms_mesh.h"
+#include "mesh/ms_mesh.h"
 
 /**
  * One parser per format, from memory, so that tests and fuzzers need no files.

@@ -3,7 +3,7 @@
 #define MS_MESH_READ_H
 
 #include "base/ms_file.h"
-#include "ms_mesh.h"
+#include "mesh/ms_mesh.h"
 
 MS_C_BEGIN
 

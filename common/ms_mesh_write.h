@@ -2,7 +2,7 @@
 #ifndef MS_MESH_WRITE_H
 #define MS_MESH_WRITE_H
 
-#include "ms_mesh.h"
+#include "mesh/ms_mesh.h"
 
 MS_C_BEGIN
 

@@ -3,7 +3,7 @@
 #define MS_PARTICLE_H
 
 #include "ms_clump.h"
-#include "ms_inertia.h"
+#include "mesh/ms_inertia.h"
 
 MS_C_BEGIN
 

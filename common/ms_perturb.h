@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "ms_clump.h"
-#include "ms_mesh.h"
+#include "mesh/ms_mesh.h"
 
 MS_C_BEGIN
 

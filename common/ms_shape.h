@@ -2,7 +2,7 @@
 #ifndef MS_SHAPE_H
 #define MS_SHAPE_H
 
-#include "ms_mesh.h"
+#include "mesh/ms_mesh.h"
 
 MS_C_BEGIN
 

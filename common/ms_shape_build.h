@@ -2,7 +2,7 @@
 #ifndef MS_SHAPE_BUILD_H
 #define MS_SHAPE_BUILD_H
 
-#include "ms_mesh.h"
+#include "mesh/ms_mesh.h"
 
 /**
  * Octahedral grid: the lattice points with |i| + |j| + |k| = n, each placed at

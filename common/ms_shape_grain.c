@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ms_inertia.h"
+#include "mesh/ms_inertia.h"
 #include "ms_shape_build.h"
 
 /* Degrees 0 (size) and 1 (place) say nothing of the shape. */

@@ -3,7 +3,7 @@
 #define MS_SWEEP_H
 
 #include "ms_grid.h"
-#include "ms_mesh.h"
+#include "mesh/ms_mesh.h"
 
 /**
  * Sends rays x rays parallel rays through each voxel and marks what they find inside.

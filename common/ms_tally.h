@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "ms_grid.h"
-#include "ms_inertia.h"
+#include "mesh/ms_inertia.h"
 
 MS_C_BEGIN
 

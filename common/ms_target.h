@@ -2,10 +2,10 @@
 #ifndef MS_TARGET_H
 #define MS_TARGET_H
 
-#include "ms_closest.h"
+#include "mesh/ms_closest.h"
 #include "ms_grid.h"
-#include "ms_inertia.h"
-#include "ms_mesh.h"
+#include "mesh/ms_inertia.h"
+#include "mesh/ms_mesh.h"
 #include "ms_raster.h"
 #include "ms_volume.h"
 #include "ms_voxelize.h"

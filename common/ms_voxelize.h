@@ -3,7 +3,7 @@
 #define MS_VOXELIZE_H
 
 #include "ms_grid.h"
-#include "ms_mesh.h"
+#include "mesh/ms_mesh.h"
 
 MS_C_BEGIN
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/ms_file.h"
-#include "ms_inertia.h"
+#include "mesh/ms_inertia.h"
 #include "ms_perturb.h"
 #include "ms_shape.h"
 

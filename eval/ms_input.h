@@ -3,7 +3,7 @@
 #define MS_INPUT_H
 
 #include "ms_flags.h"
-#include "ms_mesh.h"
+#include "mesh/ms_mesh.h"
 #include "ms_target.h"
 #include "ms_volume.h"
 

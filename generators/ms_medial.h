@@ -2,7 +2,7 @@
 #ifndef MS_MEDIAL_H
 #define MS_MEDIAL_H
 
-#include "ms_closest.h"
+#include "mesh/ms_closest.h"
 
 MS_C_BEGIN
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_inertia.h"
+#include "mesh/ms_inertia.h"
 #include "ms_medial.h"
 #include "base/ms_vector.h"
 #include "ms_voxelize.h"

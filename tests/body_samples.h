@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-#include "ms_inertia.h"
-#include "ms_mesh.h"
+#include "mesh/ms_inertia.h"
+#include "mesh/ms_mesh.h"
 #include "ms_shape.h"
 #include "reader_samples.h"
 

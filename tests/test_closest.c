@@ -1,6 +1,6 @@
 /* Nearest points against brute force, by formulas other than the library's. */
 #include "body_samples.h"
-#include "ms_closest.h"
+#include "mesh/ms_closest.h"
 
 typedef double vec[3];
 
