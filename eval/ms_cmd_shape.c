@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "ms_commands.h"
-#include "ms_mesh_read.h"
-#include "ms_mesh_write.h"
+#include "mesh/formats/ms_mesh_read.h"
+#include "mesh/formats/ms_mesh_write.h"
 #include "ms_shape.h"
 #include "base/ms_text.h"
 

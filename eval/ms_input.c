@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/ms_file.h"
-#include "ms_mesh_read.h"
+#include "mesh/formats/ms_mesh_read.h"
 #include "base/ms_text.h"
 
 static double machine_memory(void)

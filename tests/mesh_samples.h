@@ -2,7 +2,7 @@
 #ifndef MESH_SAMPLES_H
 #define MESH_SAMPLES_H
 
-#include "ms_mesh_formats.h"
+#include "mesh/formats/ms_mesh_formats.h"
 #include "reader_samples.h"
 
 /* Powers of two apart, so that float32 holds them; a coordinate is negative, one is 0. */

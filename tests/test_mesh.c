@@ -1,6 +1,6 @@
 /* Repair: what is dropped, what is turned, what is counted. */
 #include "body_samples.h"
-#include "ms_mesh_read.h"
+#include "mesh/formats/ms_mesh_read.h"
 
 static const double small_ball[] = {1, 4};
 

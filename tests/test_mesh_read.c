@@ -1,7 +1,7 @@
 /* Mesh files by their paths: the shared shapes, the broken inputs, and what is no mesh file. */
 #include <unistd.h>
 
-#include "ms_mesh_read.h"
+#include "mesh/formats/ms_mesh_read.h"
 #include "reader_samples.h"
 
 static void expect_refused(const char *path, ms_status status, const char *message)

@@ -2,8 +2,8 @@
 #include <unistd.h>
 
 #include "body_samples.h"
-#include "ms_mesh_read.h"
-#include "ms_mesh_write.h"
+#include "mesh/formats/ms_mesh_read.h"
+#include "mesh/formats/ms_mesh_write.h"
 
 static void expect_read_back(const ms_mesh *mesh, const char *path, int single)
 {

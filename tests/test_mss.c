@@ -6,7 +6,7 @@
 
 #include "ms_distance.h"
 #include "ms_generator.h"
-#include "ms_mesh_read.h"
+#include "mesh/formats/ms_mesh_read.h"
 #include "ms_metrics.h"
 #include "ms_mss.h"
 #include "ms_mss_field.h"

@@ -3,7 +3,7 @@
 #define FUZZ_MESH_H
 
 #include "fuzz.h"
-#include "ms_mesh_formats.h"
+#include "mesh/formats/ms_mesh_formats.h"
 
 typedef ms_status fuzz_mesh_parser(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
 
