@@ -5,7 +5,7 @@
 #include "ms_commands.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "mesh/formats/ms_mesh_write.h"
-#include "ms_shape.h"
+#include "shape/ms_shape.h"
 #include "base/ms_text.h"
 
 static const ms_flag FLAGS[] = {

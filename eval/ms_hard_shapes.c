@@ -6,7 +6,7 @@
 #include "base/ms_file.h"
 #include "mesh/ms_inertia.h"
 #include "ms_perturb.h"
-#include "ms_shape.h"
+#include "shape/ms_shape.h"
 
 const ms_hard_shape ms_hard_shapes[] = {
     {.name = "plate", .kind = "plate", .value = {5, 5, 0.1, 50}, .deq = 100},

@@ -6,7 +6,7 @@
 
 #include "mesh/ms_inertia.h"
 #include "mesh/ms_mesh.h"
-#include "ms_shape.h"
+#include "shape/ms_shape.h"
 #include "reader_samples.h"
 
 static const double pi = 3.14159265358979323846;

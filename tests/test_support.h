@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_shape.h"
+#include "shape/ms_shape.h"
 #include "ms_target.h"
 
 /* cmocka 1.1.5 compares floats only. */

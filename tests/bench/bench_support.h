@@ -2,7 +2,7 @@
 #ifndef BENCH_SUPPORT_H
 #define BENCH_SUPPORT_H
 
-#include "ms_shape.h"
+#include "shape/ms_shape.h"
 
 /** The grain of `mskit shape grain`: as large as a ball of radius 1. */
 static inline ms_status make_grain(ms_mesh *mesh, ms_error *err)
