@@ -7,7 +7,7 @@
 #include "mesh/ms_inertia.h"
 #include "mesh/ms_mesh.h"
 #include "ms_raster.h"
-#include "ms_volume.h"
+#include "volume/ms_volume.h"
 #include "ms_voxelize.h"
 
 MS_C_BEGIN

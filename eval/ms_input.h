@@ -5,7 +5,7 @@
 #include "ms_flags.h"
 #include "mesh/ms_mesh.h"
 #include "ms_target.h"
-#include "ms_volume.h"
+#include "volume/ms_volume.h"
 
 /** Flags about the shape and its grid, common to several commands; see MS_INPUT_FLAGS. */
 typedef struct ms_input_flags {

@@ -1,7 +1,7 @@
 /* Volume files by their paths: the shared volumes, the broken inputs, and data files beside a header. */
 #include <unistd.h>
 
-#include "ms_volume.h"
+#include "volume/ms_volume.h"
 #include "volume_samples.h"
 
 static void expect_refused(const char *path, ms_status status, const char *message)

@@ -3,7 +3,7 @@
 #define VOLUME_SAMPLES_H
 
 #include "reader_samples.h"
-#include "ms_volume_formats.h"
+#include "volume/ms_volume_formats.h"
 
 enum { NX = 2, NY = 3, NZ = 4, N_VOXELS = NX * NY * NZ };
 

@@ -3,7 +3,7 @@
 #define FUZZ_VOLUME_H
 
 #include "fuzz.h"
-#include "ms_volume_formats.h"
+#include "volume/ms_volume_formats.h"
 
 typedef ms_status fuzz_volume_parser(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
                                 ms_error *err);
