@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_raster.h"
+#include "voxel/ms_raster.h"
 #include "base/ms_vector.h"
 
 _Static_assert((int)MS_CLUMP_MAX_SPHERES <= (int)MS_RASTER_MAX_BALLS, "every clump can be counted on a grid");

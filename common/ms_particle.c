@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ms_raster.h"
+#include "voxel/ms_raster.h"
 
 static int is_positive(double value)
 {

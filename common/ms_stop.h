@@ -5,7 +5,7 @@
 #include <stddef.h>
 
 #include "ms_metrics.h"
-#include "ms_target.h"
+#include "voxel/ms_target.h"
 
 MS_C_BEGIN
 

@@ -3,7 +3,7 @@
 #define MS_SURFACE_H
 
 #include "ms_clump.h"
-#include "ms_target.h"
+#include "voxel/ms_target.h"
 
 MS_C_BEGIN
 

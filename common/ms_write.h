@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "ms_grid.h"
+#include "voxel/ms_grid.h"
 #include "ms_template.h"
 
 MS_C_BEGIN

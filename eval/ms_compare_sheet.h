@@ -3,7 +3,7 @@
 #define MS_COMPARE_SHEET_H
 
 #include "ms_compare_methods.h"
-#include "ms_target.h"
+#include "voxel/ms_target.h"
 
 /** What is on a sheet; all borrowed. */
 typedef struct ms_sheet {

@@ -4,7 +4,7 @@
 
 #include "ms_flags.h"
 #include "mesh/ms_mesh.h"
-#include "ms_target.h"
+#include "voxel/ms_target.h"
 #include "volume/ms_volume.h"
 
 /** Flags about the shape and its grid, common to several commands; see MS_INPUT_FLAGS. */

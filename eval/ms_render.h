@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "ms_clump.h"
-#include "ms_target.h"
+#include "voxel/ms_target.h"
 
 /** Grey pixels, rows from the top. */
 typedef struct ms_picture {

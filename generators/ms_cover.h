@@ -4,8 +4,8 @@
 
 #include <stddef.h>
 
-#include "ms_grid.h"
-#include "ms_raster.h"
+#include "voxel/ms_grid.h"
+#include "voxel/ms_raster.h"
 
 MS_C_BEGIN
 

@@ -7,7 +7,7 @@
 #include "ms_field.h"
 #include "ms_mirror.h"
 #include "ms_planes.h"
-#include "ms_raster.h"
+#include "voxel/ms_raster.h"
 
 /** What the spheres of a fit have to keep to; lengths in voxels. */
 typedef struct exposed_bounds {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_distance.h"
+#include "voxel/ms_distance.h"
 
 void ms_field_free(ms_field *field)
 {

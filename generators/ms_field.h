@@ -2,7 +2,7 @@
 #ifndef MS_FIELD_H
 #define MS_FIELD_H
 
-#include "ms_target.h"
+#include "voxel/ms_target.h"
 
 MS_C_BEGIN
 

@@ -7,7 +7,7 @@
 #include "ms_clump.h"
 #include "ms_option.h"
 #include "ms_stop.h"
-#include "ms_target.h"
+#include "voxel/ms_target.h"
 
 MS_C_BEGIN
 

@@ -2,7 +2,7 @@
 #ifndef MS_MIRROR_H
 #define MS_MIRROR_H
 
-#include "ms_raster.h"
+#include "voxel/ms_raster.h"
 
 /** One plane across each axis, or none. A sphere whose centre lies just on a plane is its own image. */
 typedef struct mirrors {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_distance.h"
+#include "voxel/ms_distance.h"
 
 /* A part of the grid up to a fifth of it is transformed by itself: its flags and distances, five
  * bytes a voxel, then take no more memory than the flags of the whole grid would. */

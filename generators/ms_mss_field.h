@@ -3,8 +3,8 @@
 #define MS_MSS_FIELD_H
 
 #include "ms_planes.h"
-#include "ms_raster.h"
-#include "ms_target.h"
+#include "voxel/ms_raster.h"
+#include "voxel/ms_target.h"
 
 typedef struct mss_field {
     const ms_target *target;

@@ -2,7 +2,7 @@
 #ifndef MS_MSS_SELECT_H
 #define MS_MSS_SELECT_H
 
-#include "ms_raster.h"
+#include "voxel/ms_raster.h"
 
 /** A maximum of E* where a sphere may be placed; in voxels. */
 typedef struct mss_candidate {

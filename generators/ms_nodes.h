@@ -2,7 +2,7 @@
 #ifndef MS_NODES_H
 #define MS_NODES_H
 
-#include "ms_target.h"
+#include "voxel/ms_target.h"
 
 MS_C_BEGIN
 

@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-#include "ms_grid.h"
-#include "ms_raster.h"
+#include "voxel/ms_grid.h"
+#include "voxel/ms_raster.h"
 
 /** Voxels are covered by a sphere that holds their centres. */
 typedef struct overlap {

@@ -3,7 +3,7 @@
 #define MS_PLANES_H
 
 #include "ms_option.h"
-#include "ms_target.h"
+#include "voxel/ms_target.h"
 
 /** How far a place in the mesh's frame is from the nearest plane, in the mesh's unit; HUGE_VAL without planes. */
 double planes_distance(const ms_settings *settings, const double place[3]);

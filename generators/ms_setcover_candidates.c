@@ -7,7 +7,7 @@
 #include "mesh/ms_inertia.h"
 #include "ms_medial.h"
 #include "base/ms_vector.h"
-#include "ms_voxelize.h"
+#include "voxel/ms_voxelize.h"
 
 /* A skeleton's grid of this size is allowed whatever the target's. */
 static const double ALWAYS_FINE = 1 << 24;

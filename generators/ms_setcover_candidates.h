@@ -4,8 +4,8 @@
 
 #include <stddef.h>
 
-#include "ms_raster.h"
-#include "ms_target.h"
+#include "voxel/ms_raster.h"
+#include "voxel/ms_target.h"
 #include "ms_thinning.h"
 
 /** Which voxels of the lattice become candidates. */

@@ -2,8 +2,8 @@
 #ifndef MS_VARIATIONAL_START_H
 #define MS_VARIATIONAL_START_H
 
-#include "ms_raster.h"
-#include "ms_target.h"
+#include "voxel/ms_raster.h"
+#include "voxel/ms_target.h"
 
 /**
  * Every step-th voxel of a target: voxel i of the copy lies on voxel i * step.

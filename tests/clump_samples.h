@@ -4,7 +4,7 @@
 
 #include "grid_samples.h"
 #include "ms_metrics.h"
-#include "ms_target.h"
+#include "voxel/ms_target.h"
 
 /** Room for whatever a test may ask for. */
 enum { MANY_VOXELS = 1 << 26 };

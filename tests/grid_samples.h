@@ -5,7 +5,7 @@
 #include <omp.h>
 
 #include "body_samples.h"
-#include "ms_voxelize.h"
+#include "voxel/ms_voxelize.h"
 
 static inline ms_grid voxels_of(const ms_mesh *mesh, double h, ms_voxel_rule rule)
 {

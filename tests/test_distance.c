@@ -1,6 +1,6 @@
 /* The distance transform against brute force and formulas. */
 #include "grid_samples.h"
-#include "ms_distance.h"
+#include "voxel/ms_distance.h"
 
 static float *distances(const uint8_t *inside, const int n[3])
 {

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-#include "ms_distance.h"
+#include "voxel/ms_distance.h"
 #include "ms_generator.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "ms_metrics.h"

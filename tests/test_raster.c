@@ -1,7 +1,7 @@
 /* Unions of balls on a grid against brute force. */
 #include "grid_samples.h"
 #include "ms_clump.h"
-#include "ms_raster.h"
+#include "voxel/ms_raster.h"
 
 static const ms_voxel_rule both_rules[] = {MS_VOXEL_HALF, MS_VOXEL_CENTRE};
 

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "shape/ms_shape.h"
-#include "ms_target.h"
+#include "voxel/ms_target.h"
 
 /* cmocka 1.1.5 compares floats only. */
 #define assert_close(a, b, tolerance)                                                               \

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_distance.h"
+#include "voxel/ms_distance.h"
 
 enum { REPEATS = 5 };
 
