@@ -2,7 +2,7 @@
 #ifndef MS_CLUMP_PARSE_H
 #define MS_CLUMP_PARSE_H
 
-#include "ms_clump.h"
+#include "clump/ms_clump.h"
 #include "base/ms_file.h"
 
 /**

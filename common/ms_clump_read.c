@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_clump.h"
+#include "clump/ms_clump.h"
 #include "ms_clump_parse.h"
 #include "base/ms_file.h"
 #include "base/ms_text.h"

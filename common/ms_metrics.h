@@ -2,7 +2,7 @@
 #ifndef MS_METRICS_H
 #define MS_METRICS_H
 
-#include "ms_clump.h"
+#include "clump/ms_clump.h"
 #include "voxel/ms_target.h"
 
 MS_C_BEGIN

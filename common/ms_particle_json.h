@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "ms_particle.h"
+#include "clump/ms_particle.h"
 
 /** The caller owns it; NULL without memory or for numbers that are not finite. */
 json_t *ms_particle_to_json(const ms_particle *particle);

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "ms_clump.h"
+#include "clump/ms_clump.h"
 #include "mesh/ms_mesh.h"
 
 MS_C_BEGIN

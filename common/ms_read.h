@@ -2,7 +2,7 @@
 #ifndef MS_READ_H
 #define MS_READ_H
 
-#include "ms_particle.h"
+#include "clump/ms_particle.h"
 
 MS_C_BEGIN
 

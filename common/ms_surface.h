@@ -2,7 +2,7 @@
 #ifndef MS_SURFACE_H
 #define MS_SURFACE_H
 
-#include "ms_clump.h"
+#include "clump/ms_clump.h"
 #include "voxel/ms_target.h"
 
 MS_C_BEGIN

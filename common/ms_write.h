@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "voxel/ms_grid.h"
-#include "ms_template.h"
+#include "clump/ms_template.h"
 
 MS_C_BEGIN
 

@@ -5,7 +5,7 @@
 #include <jansson.h>
 #include <stdio.h>
 
-#include "ms_density.h"
+#include "clump/ms_density.h"
 #include "ms_flags.h"
 #include "ms_input.h"
 

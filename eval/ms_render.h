@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "ms_clump.h"
+#include "clump/ms_clump.h"
 #include "voxel/ms_target.h"
 
 /** Grey pixels, rows from the top. */

@@ -11,7 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "ms_density.h"
+#include "clump/ms_density.h"
 #include "ms_metrics.h"
 
 /* Gives back what earlier runs have freed and lets Linux count the largest memory anew; elsewhere it is that of the

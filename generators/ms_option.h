@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "ms_clump.h"
+#include "clump/ms_clump.h"
 #include "base/ms_error.h"
 
 MS_C_BEGIN

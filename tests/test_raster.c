@@ -1,6 +1,6 @@
 /* Unions of balls on a grid against brute force. */
 #include "grid_samples.h"
-#include "ms_clump.h"
+#include "clump/ms_clump.h"
 #include "voxel/ms_raster.h"
 
 static const ms_voxel_rule both_rules[] = {MS_VOXEL_HALF, MS_VOXEL_CENTRE};

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_programme.h"
+#include "ms_linear_program.h"
 #include "base/ms_vector.h"
 
 /* Errors below this are rounding. */

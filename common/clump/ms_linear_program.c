@@ -1,4 +1,4 @@
-#include "ms_programme.h"
+#include "ms_linear_program.h"
 
 #include <glpk.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /** A linear programme for shares of a whole, with goals met one after the other, by GLPK. Private to ms_density. */
-#ifndef MS_PROGRAMME_H
-#define MS_PROGRAMME_H
+#ifndef MS_LINEAR_PROGRAM_H
+#define MS_LINEAR_PROGRAM_H
 
 #include <stddef.h>
 
