@@ -4,7 +4,7 @@
 #include "ms_commands.h"
 #include "ms_mass.h"
 #include "ms_outputs.h"
-#include "ms_read.h"
+#include "clump/formats/ms_read.h"
 
 static const ms_flag FLAGS[] = {
     {"frame", 0, "FILE", "the STEM.frame.json beside a template: carries it back into the frame of the shape"},

@@ -7,8 +7,8 @@
 #include "ms_commands.h"
 #include "ms_mass.h"
 #include "ms_outputs.h"
-#include "ms_particle_json.h"
-#include "ms_read.h"
+#include "clump/formats/ms_particle_json.h"
+#include "clump/formats/ms_read.h"
 #include "ms_report.h"
 
 static const ms_flag FLAGS[] = {

@@ -6,7 +6,7 @@
 #include "ms_commands.h"
 #include "ms_input.h"
 #include "ms_metrics.h"
-#include "ms_read.h"
+#include "clump/formats/ms_read.h"
 #include "ms_report.h"
 
 static const ms_flag FLAGS[] = {

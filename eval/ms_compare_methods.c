@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_read.h"
+#include "clump/formats/ms_read.h"
 
 /* Room for one more, with its two texts. */
 static ms_status begin_method(ms_method **out, ms_methods *methods, const char *name, size_t length,

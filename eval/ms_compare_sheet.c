@@ -9,7 +9,7 @@
 #include "ms_chart.h"
 #include "base/ms_file.h"
 #include "ms_render.h"
-#include "ms_write.h"
+#include "clump/formats/ms_write.h"
 
 enum { TILE = 220, MOST_ROWS = 4, HEAD = 40 };
 

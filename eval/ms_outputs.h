@@ -3,7 +3,7 @@
 #define MS_OUTPUTS_H
 
 #include "ms_flags.h"
-#include "ms_write.h"
+#include "clump/formats/ms_write.h"
 
 enum { MS_OUTPUTS_MAX = 16, MS_OUTPUTS_FORMATS = 16 };
 

@@ -5,9 +5,9 @@
 
 #include "body_samples.h"
 #include "clump_samples.h"
-#include "ms_read.h"
+#include "clump/formats/ms_read.h"
 #include "base/ms_text.h"
-#include "ms_write.h"
+#include "clump/formats/ms_write.h"
 
 static const double SCALE = 1e-3, CENTRE[3] = {12.5, -3, 700};
 

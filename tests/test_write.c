@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "clump_samples.h"
-#include "ms_write.h"
+#include "clump/formats/ms_write.h"
 
 /* Numbers that need all their digits, and the ends of the range. */
 static ms_clump awkward_clump(void)

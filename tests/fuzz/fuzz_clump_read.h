@@ -3,7 +3,7 @@
 #define FUZZ_CLUMP_READ_H
 
 #include "fuzz.h"
-#include "ms_read_formats.h"
+#include "clump/formats/ms_read_formats.h"
 
 static inline int fuzz_clump_read(const uint8_t *data, size_t size,
                                   ms_status parse(ms_clump *, ms_particle *, ms_bytes *, const char *, ms_error *))
