@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 #include "voxel/ms_target.h"
 
 MS_C_BEGIN

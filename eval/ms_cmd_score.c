@@ -5,7 +5,7 @@
 
 #include "ms_commands.h"
 #include "ms_input.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 #include "clump/formats/ms_read.h"
 #include "ms_report.h"
 

@@ -7,7 +7,7 @@
 #include "ms_generator.h"
 #include "ms_input.h"
 #include "ms_mass.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 
 /** All that a run gave. */
 typedef struct ms_result {

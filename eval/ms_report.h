@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "ms_input.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 
 /** All measures of a clump, a line each. */
 void ms_report_metrics(FILE *stream, const ms_metrics *metrics, const ms_target *target);

@@ -8,7 +8,7 @@
 #include "ms_allocate.h"
 #include "ms_input.h"
 #include "ms_manifest.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 #include "ms_recipe.h"
 
 enum { MS_SCENE_MAX_SPHERES = 1000 };

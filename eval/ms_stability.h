@@ -6,7 +6,7 @@
 
 #include "ms_compare_methods.h"
 #include "ms_input.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 
 /* Changes, and what says how large one is (its level). */
 #define MS_CHANGE_LIST(X)                                                            \

@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "clump/ms_density.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 
 /* Gives back what earlier runs have freed and lets Linux count the largest memory anew; elsewhere it is that of the
  * program so far. */

@@ -3,7 +3,7 @@
 #define MS_CURVE_H
 
 #include "ms_generator.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 
 MS_C_BEGIN
 

@@ -12,7 +12,7 @@
 #include "ms_cluster.h"
 #include "ms_cover.h"
 #include "ms_fill.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 #include "ms_search.h"
 
 enum {

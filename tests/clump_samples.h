@@ -3,7 +3,7 @@
 #define CLUMP_SAMPLES_H
 
 #include "grid_samples.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 #include "voxel/ms_target.h"
 
 /** Room for whatever a test may ask for. */

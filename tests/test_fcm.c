@@ -5,7 +5,7 @@
 
 #include "ms_fcm.h"
 #include "ms_fill.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 #include "ms_search.h"
 
 /* Options as "name=value name=value". */

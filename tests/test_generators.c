@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "ms_generator.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 
 static const char *const CONTRACTED[] = {"mss", "setcover", "fcm", "variational"};
 

@@ -7,7 +7,7 @@
 #include "voxel/ms_distance.h"
 #include "ms_generator.h"
 #include "mesh/formats/ms_mesh_read.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 #include "ms_mss.h"
 #include "ms_mss_field.h"
 

@@ -3,7 +3,7 @@
 
 #include "ms_generator.h"
 #include "ms_medial.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 #include "ms_setcover.h"
 
 /* Options as "name=value name=value". */

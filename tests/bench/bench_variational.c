@@ -6,7 +6,7 @@
 
 #include "bench_support.h"
 #include "ms_generator.h"
-#include "ms_metrics.h"
+#include "measure/ms_metrics.h"
 #include "ms_mss.h"
 #include "ms_setcover.h"
 #include "ms_variational.h"
