@@ -6,7 +6,7 @@
 
 #include "ms_field.h"
 #include "ms_mirror.h"
-#include "ms_planes.h"
+#include "shared/ms_planes.h"
 #include "voxel/ms_raster.h"
 
 /** What the spheres of a fit have to keep to; lengths in voxels. */

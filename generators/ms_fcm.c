@@ -10,10 +10,10 @@
 #include <string.h>
 
 #include "ms_cluster.h"
-#include "ms_cover.h"
+#include "shared/ms_cover.h"
 #include "ms_fill.h"
 #include "measure/ms_metrics.h"
-#include "ms_search.h"
+#include "shared/ms_bisect_count.h"
 
 enum {
     NODES_COVERED,

@@ -2,7 +2,7 @@
 #ifndef MS_MSS_FIELD_H
 #define MS_MSS_FIELD_H
 
-#include "ms_planes.h"
+#include "shared/ms_planes.h"
 #include "voxel/ms_raster.h"
 #include "voxel/ms_target.h"
 

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ms_cover.h"
+#include "shared/ms_cover.h"
 #include "ms_setcover_candidates.h"
 
 enum { SKELETON, SKELETON_DEQ, CANDIDATES, ALIGN, CONNECTED };

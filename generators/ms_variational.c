@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ms_search.h"
+#include "shared/ms_bisect_count.h"
 #include "ms_variational_solve.h"
 
 enum { EFFORT, POINTS, PROTRUSION, EQUAL_RADIUS, SYMMETRY, PLANES, REFINE };

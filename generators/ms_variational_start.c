@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ms_cover.h"
+#include "shared/ms_cover.h"
 
 /* A voxel lies on the ridge unless the distance rises by this much of the way to a neighbour: no
  * direction is more than 27 degrees from one. */

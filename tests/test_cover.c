@@ -2,7 +2,7 @@
 #include "test_support.h"
 
 
-#include "ms_cover.h"
+#include "shared/ms_cover.h"
 
 enum { MAX_BALLS = 40 };
 

@@ -6,7 +6,7 @@
 #include "ms_fcm.h"
 #include "ms_fill.h"
 #include "measure/ms_metrics.h"
-#include "ms_search.h"
+#include "shared/ms_bisect_count.h"
 
 /* Options as "name=value name=value". */
 static ms_status try_fcm(ms_clump *clump, ms_stop_reason *reason, const ms_target *target, ms_stop stop,

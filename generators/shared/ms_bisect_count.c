@@ -1,4 +1,4 @@
-#include "ms_search.h"
+#include "ms_bisect_count.h"
 
 static int is_reached(ms_stop_reason reason)
 {

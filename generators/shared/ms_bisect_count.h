@@ -1,6 +1,6 @@
 /** How many spheres it takes to reach a measure, for methods whose spheres for n are not among those for n + 1. */
-#ifndef MS_SEARCH_H
-#define MS_SEARCH_H
+#ifndef MS_BISECT_COUNT_H
+#define MS_BISECT_COUNT_H
 
 #include "ms_generator.h"
 
