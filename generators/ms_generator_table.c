@@ -2,7 +2,7 @@
 #include "ms_generator.h"
 
 #include "ms_fcm.h"
-#include "ms_mss.h"
+#include "mss/ms_mss.h"
 #include "ms_setcover.h"
 #include "ms_variational.h"
 

@@ -8,8 +8,8 @@
 #include "ms_generator.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "measure/ms_metrics.h"
-#include "ms_mss.h"
-#include "ms_mss_field.h"
+#include "mss/ms_mss.h"
+#include "mss/ms_mss_field.h"
 
 typedef struct outcome {
     ms_clump clump;

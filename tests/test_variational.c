@@ -6,7 +6,7 @@
 
 #include "ms_drop.h"
 #include "ms_exposed.h"
-#include "ms_mss.h"
+#include "mss/ms_mss.h"
 #include "ms_overlap.h"
 #include "ms_pattern.h"
 #include "ms_variational.h"

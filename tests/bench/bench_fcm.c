@@ -9,7 +9,7 @@
 #include "ms_cluster.h"
 #include "ms_fill.h"
 #include "ms_generator.h"
-#include "ms_mss.h"
+#include "mss/ms_mss.h"
 
 enum { MOST = 100 };
 

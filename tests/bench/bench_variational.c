@@ -7,7 +7,7 @@
 #include "bench_support.h"
 #include "ms_generator.h"
 #include "measure/ms_metrics.h"
-#include "ms_mss.h"
+#include "mss/ms_mss.h"
 #include "ms_setcover.h"
 #include "ms_variational.h"
 #include "base/ms_vector.h"
