@@ -3,7 +3,7 @@
 
 #include "ms_fcm.h"
 #include "mss/ms_mss.h"
-#include "ms_setcover.h"
+#include "setcover/ms_setcover.h"
 #include "ms_variational.h"
 
 const ms_generator *const ms_generators[] = {

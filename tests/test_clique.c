@@ -1,6 +1,6 @@
 /* Simple voxels and cliques against brute force from their definitions. */
 #include "topology_samples.h"
-#include "ms_clique.h"
+#include "setcover/ms_clique.h"
 
 enum { ALL = 0777777777, CENTRE = 1 << MS_CLIQUE_CENTRE };
 

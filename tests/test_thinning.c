@@ -1,7 +1,7 @@
 /* Thinning: topology by brute force, algorithm 1 on whole grids, places by analysis. */
 #include "topology_samples.h"
-#include "ms_clique.h"
-#include "ms_thinning.h"
+#include "setcover/ms_clique.h"
+#include "setcover/ms_thinning.h"
 
 static const ms_skeleton both_kinds[] = {MS_SKELETON_SURFACE, MS_SKELETON_CURVE};
 

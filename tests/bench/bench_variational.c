@@ -8,7 +8,7 @@
 #include "ms_generator.h"
 #include "measure/ms_metrics.h"
 #include "mss/ms_mss.h"
-#include "ms_setcover.h"
+#include "setcover/ms_setcover.h"
 #include "ms_variational.h"
 #include "base/ms_vector.h"
 
