@@ -1,7 +1,7 @@
 /* The table of methods: the one file of the interface that knows them. */
 #include "ms_generator.h"
 
-#include "ms_fcm.h"
+#include "fcm/ms_fcm.h"
 #include "mss/ms_mss.h"
 #include "setcover/ms_setcover.h"
 #include "ms_variational.h"

@@ -4,9 +4,9 @@
 
 #include <omp.h>
 
-#include "ms_cluster.h"
-#include "ms_nodes.h"
-#include "ms_power.h"
+#include "fcm/ms_cluster.h"
+#include "fcm/ms_nodes.h"
+#include "fcm/ms_power.h"
 
 enum { MANY = 700, MOST = 12 };
 

@@ -3,8 +3,8 @@
 
 #include <omp.h>
 
-#include "ms_fcm.h"
-#include "ms_fill.h"
+#include "fcm/ms_fcm.h"
+#include "fcm/ms_random_spheres.h"
 #include "measure/ms_metrics.h"
 #include "shared/ms_bisect_count.h"
 

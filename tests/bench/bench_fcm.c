@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "bench_support.h"
-#include "ms_cluster.h"
-#include "ms_fill.h"
+#include "fcm/ms_cluster.h"
+#include "fcm/ms_random_spheres.h"
 #include "ms_generator.h"
 #include "mss/ms_mss.h"
 

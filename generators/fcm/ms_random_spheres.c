@@ -1,4 +1,4 @@
-#include "ms_fill.h"
+#include "ms_random_spheres.h"
 
 #include <gsl/gsl_rng.h>
 #include <math.h>

@@ -11,7 +11,7 @@
 
 #include "ms_cluster.h"
 #include "shared/ms_cover.h"
-#include "ms_fill.h"
+#include "ms_random_spheres.h"
 #include "measure/ms_metrics.h"
 #include "shared/ms_bisect_count.h"
 

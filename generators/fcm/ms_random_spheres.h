@@ -1,6 +1,6 @@
 /** A shape filled with random spheres that touch its surface (Westbrink & Schwung 2017, section 3). */
-#ifndef MS_FILL_H
-#define MS_FILL_H
+#ifndef MS_RANDOM_SPHERES_H
+#define MS_RANDOM_SPHERES_H
 
 #include "ms_generator.h"
 #include "ms_nodes.h"
