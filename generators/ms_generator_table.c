@@ -4,7 +4,7 @@
 #include "fcm/ms_fcm.h"
 #include "mss/ms_mss.h"
 #include "setcover/ms_setcover.h"
-#include "ms_variational.h"
+#include "variational/ms_variational.h"
 
 const ms_generator *const ms_generators[] = {
     &ms_generator_mss,

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_drop.h"
-#include "ms_exposed.h"
+#include "variational/ms_prune.h"
+#include "variational/ms_surface_fit.h"
 #include "mss/ms_mss.h"
-#include "ms_overlap.h"
-#include "ms_pattern.h"
-#include "ms_variational.h"
+#include "variational/ms_coverage_count.h"
+#include "variational/ms_pattern_search.h"
+#include "variational/ms_variational.h"
 #include "base/ms_vector.h"
 
 static double uniform(double from, double to)

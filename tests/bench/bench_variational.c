@@ -9,7 +9,7 @@
 #include "measure/ms_metrics.h"
 #include "mss/ms_mss.h"
 #include "setcover/ms_setcover.h"
-#include "ms_variational.h"
+#include "variational/ms_variational.h"
 #include "base/ms_vector.h"
 
 enum { POINTS = 1000 };

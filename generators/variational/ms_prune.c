@@ -1,4 +1,4 @@
-#include "ms_drop.h"
+#include "ms_prune.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "ms_field.h"
+#include "ms_signed_distance.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /** Pattern search: moves single spheres as long as the mismatch falls. Private to variational. */
-#ifndef MS_PATTERN_H
-#define MS_PATTERN_H
+#ifndef MS_PATTERN_SEARCH_H
+#define MS_PATTERN_SEARCH_H
 
-#include "ms_exposed.h"
+#include "ms_surface_fit.h"
 
 /**
  * Tries, for one sphere after the other, its centre a step to either side along each axis and its

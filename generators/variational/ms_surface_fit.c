@@ -1,4 +1,4 @@
-#include "ms_exposed.h"
+#include "ms_surface_fit.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>

@@ -1,6 +1,6 @@
 /** Signed distance to a target's surface, looked up between the nodes of a lattice. */
-#ifndef MS_FIELD_H
-#define MS_FIELD_H
+#ifndef MS_SIGNED_DISTANCE_H
+#define MS_SIGNED_DISTANCE_H
 
 #include "voxel/ms_target.h"
 

@@ -2,7 +2,7 @@
 #ifndef MS_VARIATIONAL_SOLVE_H
 #define MS_VARIATIONAL_SOLVE_H
 
-#include "ms_exposed.h"
+#include "ms_surface_fit.h"
 #include "ms_generator.h"
 
 typedef struct variational_settings {

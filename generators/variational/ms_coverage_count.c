@@ -1,4 +1,4 @@
-#include "ms_overlap.h"
+#include "ms_coverage_count.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /** How often spheres cover voxels, and what |S xor U| would be with other ones. Private to variational. */
-#ifndef MS_OVERLAP_H
-#define MS_OVERLAP_H
+#ifndef MS_COVERAGE_COUNT_H
+#define MS_COVERAGE_COUNT_H
 
 #include <stdint.h>
 

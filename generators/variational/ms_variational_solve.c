@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_drop.h"
-#include "ms_overlap.h"
-#include "ms_pattern.h"
+#include "ms_prune.h"
+#include "ms_coverage_count.h"
+#include "ms_pattern_search.h"
 #include "ms_variational_start.h"
 #include "base/ms_vector.h"
 

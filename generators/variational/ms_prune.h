@@ -1,9 +1,9 @@
 /** Which spheres a clump can do without. Private to variational. */
-#ifndef MS_DROP_H
-#define MS_DROP_H
+#ifndef MS_PRUNE_H
+#define MS_PRUNE_H
 
 #include "ms_mirror.h"
-#include "ms_overlap.h"
+#include "ms_coverage_count.h"
 
 /**
  * Drops the spheres whose loss raises |S xor U| least. Of those dropped at once no two overlap, as the loss of one

@@ -1,10 +1,10 @@
 /** Fits spheres to a surface where they are exposed. Private to variational. */
-#ifndef MS_EXPOSED_H
-#define MS_EXPOSED_H
+#ifndef MS_SURFACE_FIT_H
+#define MS_SURFACE_FIT_H
 
 #include <stdint.h>
 
-#include "ms_field.h"
+#include "ms_signed_distance.h"
 #include "ms_mirror.h"
 #include "shared/ms_planes.h"
 #include "voxel/ms_raster.h"

@@ -1,9 +1,9 @@
-#include "ms_pattern.h"
+#include "ms_pattern_search.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "ms_overlap.h"
+#include "ms_coverage_count.h"
 
 /* In voxels. */
 static const double FIRST_STEP = 2, LAST_STEP = 0.1;
