@@ -8,7 +8,7 @@
 #include "ms_commands.h"
 #include "ms_compare.h"
 #include "ms_compare_walk.h"
-#include "ms_outputs.h"
+#include "cli/ms_outputs.h"
 
 static const ms_flag FLAGS[] = {
     {"generator", 'g', "NAME[:OPTION=VALUE,...]",

@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "ms_commands.h"
-#include "ms_mass.h"
-#include "ms_outputs.h"
+#include "cli/ms_mass.h"
+#include "cli/ms_outputs.h"
 #include "clump/formats/ms_read.h"
 
 static const ms_flag FLAGS[] = {

@@ -5,11 +5,11 @@
 #include <string.h>
 
 #include "ms_commands.h"
-#include "ms_mass.h"
-#include "ms_outputs.h"
+#include "cli/ms_mass.h"
+#include "cli/ms_outputs.h"
 #include "clump/formats/ms_particle_json.h"
 #include "clump/formats/ms_read.h"
-#include "ms_report.h"
+#include "cli/ms_report.h"
 
 static const ms_flag FLAGS[] = {
     {"target", 't', "SHAPE", "the mesh or volume that the clump stands for; not with --properties union"},

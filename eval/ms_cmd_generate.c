@@ -6,13 +6,13 @@
 
 #include "ms_commands.h"
 #include "ms_curve.h"
-#include "ms_input.h"
-#include "ms_mass.h"
-#include "ms_outputs.h"
-#include "ms_progress.h"
-#include "ms_recipe.h"
-#include "ms_record.h"
-#include "ms_report.h"
+#include "cli/ms_input.h"
+#include "cli/ms_mass.h"
+#include "cli/ms_outputs.h"
+#include "cli/ms_progress.h"
+#include "cli/ms_recipe.h"
+#include "cli/ms_record.h"
+#include "cli/ms_report.h"
 #include "base/ms_text.h"
 
 enum { DEFAULT_SPHERES = 50 };

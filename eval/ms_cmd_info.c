@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "ms_commands.h"
-#include "ms_input.h"
-#include "ms_report.h"
+#include "cli/ms_input.h"
+#include "cli/ms_report.h"
 
 static const ms_flag FLAGS[] = {
     {"json", 0, NULL, "as JSON"},

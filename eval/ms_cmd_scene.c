@@ -6,9 +6,9 @@
 
 #include "ms_commands.h"
 #include "base/ms_file.h"
-#include "ms_outputs.h"
-#include "ms_record.h"
-#include "ms_report.h"
+#include "cli/ms_outputs.h"
+#include "cli/ms_record.h"
+#include "cli/ms_report.h"
 #include "ms_scene.h"
 
 enum { DEFAULT_MAX_SPHERES = 100 };

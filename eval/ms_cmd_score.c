@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "ms_commands.h"
-#include "ms_input.h"
+#include "cli/ms_input.h"
 #include "measure/ms_metrics.h"
 #include "clump/formats/ms_read.h"
-#include "ms_report.h"
+#include "cli/ms_report.h"
 
 static const ms_flag FLAGS[] = {
     {"target", 't', "SHAPE", "the mesh or volume that the clump stands for"},

@@ -2,7 +2,7 @@
 #ifndef MS_COMMANDS_H
 #define MS_COMMANDS_H
 
-#include "ms_flags.h"
+#include "cli/ms_flags.h"
 
 extern const ms_command ms_command_compare;
 extern const ms_command ms_command_convert;

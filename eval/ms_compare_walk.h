@@ -4,7 +4,7 @@
 
 #include "ms_compare_methods.h"
 #include "ms_csv.h"
-#include "ms_input.h"
+#include "cli/ms_input.h"
 
 enum { MS_NUMBERS_MAX = 256 };
 

@@ -2,7 +2,7 @@
 #ifndef MS_HARD_SHAPES_H
 #define MS_HARD_SHAPES_H
 
-#include "ms_input.h"
+#include "cli/ms_input.h"
 
 /** A shape of ms_shape and what is done to it. A table of them ends with a NULL name. */
 typedef struct ms_hard_shape {

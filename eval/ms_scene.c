@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "ms_curve.h"
-#include "ms_progress.h"
-#include "ms_report.h"
+#include "cli/ms_progress.h"
+#include "cli/ms_report.h"
 
 static const ms_scene_measure MEASURES[] = {
     {"dice", offsetof(ms_score, dice), 0},       {"eta", offsetof(ms_score, eta), 0},

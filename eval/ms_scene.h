@@ -6,10 +6,10 @@
 #include <stdio.h>
 
 #include "ms_allocate.h"
-#include "ms_input.h"
+#include "cli/ms_input.h"
 #include "ms_manifest.h"
 #include "measure/ms_metrics.h"
-#include "ms_recipe.h"
+#include "cli/ms_recipe.h"
 
 enum { MS_SCENE_MAX_SPHERES = 1000 };
 

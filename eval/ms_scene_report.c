@@ -1,8 +1,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "ms_record.h"
-#include "ms_report.h"
+#include "cli/ms_record.h"
+#include "cli/ms_report.h"
 #include "ms_scene.h"
 
 static void print_goal(FILE *stream, const ms_goal *goal)

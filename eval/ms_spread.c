@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_report.h"
+#include "cli/ms_report.h"
 
 ms_spread ms_spread_of(double *values, size_t count)
 {

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "ms_compare_methods.h"
-#include "ms_input.h"
+#include "cli/ms_input.h"
 #include "measure/ms_metrics.h"
 
 /* Changes, and what says how large one is (its level). */

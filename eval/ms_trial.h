@@ -4,7 +4,7 @@
 
 #include "ms_compare.h"
 #include "ms_generator.h"
-#include "ms_input.h"
+#include "cli/ms_input.h"
 
 /** What is tried. */
 typedef struct ms_trial_run {
