@@ -2,7 +2,7 @@
 #ifndef MS_COMPARE_H
 #define MS_COMPARE_H
 
-#include "ms_csv.h"
+#include "chart/ms_csv.h"
 
 /* The one list of columns. Those before MS_COLUMN_SPHERES say what was asked for, the others what it gave. */
 #define MS_COLUMN_LIST(X)                                                                                   \

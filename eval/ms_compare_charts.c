@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_chart.h"
+#include "chart/ms_chart.h"
 #include "ms_compare.h"
 #include "base/ms_text.h"
 

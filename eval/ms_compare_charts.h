@@ -2,7 +2,7 @@
 #ifndef MS_COMPARE_CHARTS_H
 #define MS_COMPARE_CHARTS_H
 
-#include "ms_csv.h"
+#include "chart/ms_csv.h"
 
 /**
  * Draws for each shape, as FOLDER/SHAPE-KIND.svg and .png with data and script beside them, by the rows of the finest

@@ -6,9 +6,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "ms_chart.h"
+#include "chart/ms_chart.h"
 #include "base/ms_file.h"
-#include "ms_render.h"
+#include "chart/ms_render.h"
 #include "clump/formats/ms_write.h"
 
 enum { TILE = 220, MOST_ROWS = 4, HEAD = 40 };

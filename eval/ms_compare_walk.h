@@ -3,7 +3,7 @@
 #define MS_COMPARE_WALK_H
 
 #include "ms_compare_methods.h"
-#include "ms_csv.h"
+#include "chart/ms_csv.h"
 #include "cli/ms_input.h"
 
 enum { MS_NUMBERS_MAX = 256 };

@@ -5,7 +5,7 @@
 #include <omp.h>
 #include <string.h>
 
-#include "ms_csv.h"
+#include "chart/ms_csv.h"
 #include "base/ms_file.h"
 #include "ms_perturb.h"
 #include "base/ms_text.h"

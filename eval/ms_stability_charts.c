@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_chart.h"
+#include "chart/ms_chart.h"
 
 /* The runs of one method, and the chart that is being made of them. */
 typedef struct album {

@@ -1,5 +1,5 @@
 /* Charts: the Pareto front against brute force, what the files hold. */
-#include "ms_chart.h"
+#include "chart/ms_chart.h"
 #include "base/ms_file.h"
 #include "test_support.h"
 

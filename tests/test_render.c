@@ -1,5 +1,5 @@
 /* Pictures of bodies whose outlines have a formula. */
-#include "ms_render.h"
+#include "chart/ms_render.h"
 #include "test_support.h"
 
 enum { SIZE = 200 };
