@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "ms_commands.h"
-#include "ms_compare.h"
-#include "ms_compare_walk.h"
+#include "compare/ms_compare.h"
+#include "compare/ms_compare_walk.h"
 #include "cli/ms_outputs.h"
 
 static const ms_flag FLAGS[] = {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "ms_commands.h"
-#include "ms_compare_methods.h"
+#include "compare/ms_compare_methods.h"
 #include "ms_hard_shapes.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_report.h"

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "ms_compare_methods.h"
+#include "compare/ms_compare_methods.h"
 #include "cli/ms_input.h"
 #include "measure/ms_metrics.h"
 
