@@ -8,12 +8,12 @@
 
 #include "ms_commands.h"
 #include "compare/ms_compare_methods.h"
-#include "ms_hard_shapes.h"
+#include "stability/ms_hard_shapes.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_report.h"
-#include "ms_spread.h"
-#include "ms_stability.h"
-#include "ms_stability_charts.h"
+#include "stability/ms_statistics.h"
+#include "stability/ms_stability.h"
+#include "stability/ms_stability_charts.h"
 
 enum { DEFAULT_SPHERES = 20, DEFAULT_RUNS = 5, MOST_RUNS = 1000 };
 

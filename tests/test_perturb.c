@@ -1,5 +1,5 @@
 /* What a perturbation must keep, what it must change, and that a motion can be undone. */
-#include "ms_perturb.h"
+#include "stability/ms_perturb.h"
 
 #include "body_samples.h"
 

@@ -1,4 +1,4 @@
-#include "ms_spread.h"
+#include "ms_statistics.h"
 
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics_double.h>

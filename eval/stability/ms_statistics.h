@@ -1,6 +1,6 @@
 /** How far the results of runs lie apart that should be alike. */
-#ifndef MS_SPREAD_H
-#define MS_SPREAD_H
+#ifndef MS_STATISTICS_H
+#define MS_STATISTICS_H
 
 #include <jansson.h>
 #include <stdio.h>
