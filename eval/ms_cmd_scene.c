@@ -9,7 +9,7 @@
 #include "cli/ms_outputs.h"
 #include "cli/ms_record.h"
 #include "cli/ms_report.h"
-#include "ms_scene.h"
+#include "scene/ms_scene.h"
 
 enum { DEFAULT_MAX_SPHERES = 100 };
 
