@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "ms_commands.h"
+#include "command/ms_commands.h"
 #include "ms_version.h"
 
 static const ms_command *const COMMANDS[] = {
