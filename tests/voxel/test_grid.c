@@ -1,0 +1,121 @@
+/* Voxel grids: extents, indices, enlargement. */
+#include "support/grid_samples.h"
+
+static const double nowhere[3] = {0};
+
+static void expect_no_grid(int nx, int ny, int nz, double h, ms_status status, const char *message)
+{
+    ms_grid grid;
+    ms_error err = {{0}};
+    const int n[3] = {nx, ny, nz};
+    assert_int_equal(ms_grid_alloc(&grid, n, h, nowhere, &err), status);
+    expect_message(&err, message);
+    assert_null(grid.inside);
+    assert_int_equal(ms_grid_alloc(&grid, n, h, nowhere, NULL), status);
+    ms_grid_free(&grid);
+}
+
+static void bad_extents_are_refused(void **state)
+{
+    (void)state;
+    expect_no_grid(0, 1, 1, 1, MS_ERR_ARG, "extent 0 along x");
+    expect_no_grid(1, -3, 1, 1, MS_ERR_ARG, "extent -3 along y");
+    expect_no_grid(1, 1, MS_GRID_MAX_EXTENT + 1, 1, MS_ERR_LIMIT, "along z");
+    expect_no_grid(1, 1, 1, 0, MS_ERR_ARG, "voxel size 0");
+    expect_no_grid(1, 1, 1, -2.385, MS_ERR_ARG, "voxel size -2.385");
+    expect_no_grid(1, 1, 1, (double)NAN, MS_ERR_ARG, "voxel size");
+    expect_no_grid(1, 1, 1, HUGE_VAL, MS_ERR_ARG, "voxel size");
+}
+
+static void a_grid_begins_empty_with_x_fastest(void **state)
+{
+    (void)state;
+    ms_grid grid = empty_grid(3, 4, 5, 2.385);
+    assert_int_equal(ms_grid_voxels(&grid), 60);
+    assert_int_equal(ms_grid_count(&grid), 0);
+    for (size_t v = 0; v < 60; v++) {
+        assert_int_equal(ms_grid_index(&grid, (int)v % 3, (int)v / 3 % 4, (int)v / 12), v);
+        grid.inside[v] = v % 7 == 0;
+    }
+    assert_int_equal(ms_grid_count(&grid), 9);
+    ms_grid_free(&grid);
+    assert_null(grid.inside);
+    ms_grid_free(&grid);
+    ms_grid_free(NULL);
+}
+
+/* The larger grid holds the box with a voxel to spare, and each old voxel at its old place. */
+static void expect_enlarged(const ms_grid *grid, const double lo[3], const double hi[3])
+{
+    ms_grid out;
+    int shift[3];
+    assert_int_equal(ms_grid_enlarge(&out, grid, lo, hi, 1u << 24, NULL), MS_OK);
+    assert_true(out.h == grid->h);
+    for (int a = 0; a < 3; a++) {
+        const double before = (grid->origin[a] - out.origin[a]) / grid->h;
+        shift[a] = (int)rint(before);
+        expect_close(before, shift[a], 1e-9);
+        assert_true(shift[a] >= 0 && shift[a] + grid->n[a] <= out.n[a]);
+        assert_true(out.origin[a] <= lo[a] - 0.5 * out.h);
+        assert_true(out.origin[a] + out.h * (out.n[a] - 1) >= hi[a] + 0.5 * out.h);
+    }
+    assert_int_equal(ms_grid_count(&out), ms_grid_count(grid));
+    for (int k = 0; k < grid->n[2]; k++) {
+        for (int j = 0; j < grid->n[1]; j++) {
+            for (int i = 0; i < grid->n[0]; i++) {
+                assert_int_equal(inside_at(&out, i + shift[0], j + shift[1], k + shift[2]), inside_at(grid, i, j, k));
+            }
+        }
+    }
+    ms_grid_free(&out);
+}
+
+static void a_larger_grid_keeps_what_it_had(void **state)
+{
+    (void)state;
+    uint64_t seed = 3;
+    for (int run = 0; run < 50; run++) {
+        ms_grid grid = empty_grid(1 + pick(&seed, 6), 1 + pick(&seed, 6), 1 + pick(&seed, 6), 0.77);
+        double lo[3], hi[3];
+        for (int a = 0; a < 3; a++) {
+            grid.origin[a] = between(&seed, -100, 100);
+            lo[a] = grid.origin[a] + between(&seed, -9, 5);
+            hi[a] = lo[a] + between(&seed, 0, 12);
+        }
+        for (size_t v = 0; v < ms_grid_voxels(&grid); v++) {
+            grid.inside[v] = next_uniform(&seed) < 0.5;
+        }
+        expect_enlarged(&grid, lo, hi);
+        ms_grid_free(&grid);
+    }
+}
+
+static void what_is_far_away_is_refused(void **state)
+{
+    (void)state;
+    ms_grid grid = empty_grid(4, 4, 4, 1), out;
+    const double lo[3] = {0, 0, 0}, far[][3] = {{3, 3, 1e9}, {3, 3, HUGE_VAL}, {40, 40, 40}, {1e300, 3, 3}};
+    for (int f = 0; f < 4; f++) {
+        ms_error err = {{0}};
+        assert_int_equal(ms_grid_enlarge(&out, &grid, lo, far[f], 43 * 43 * 43 - 1, &err), MS_ERR_LIMIT);
+        expect_message(&err, "check units and frame");
+        assert_null(out.inside);
+    }
+    const double below[3] = {-40000, 0, 0};
+    assert_int_equal(ms_grid_enlarge(&out, &grid, below, lo, SIZE_MAX, NULL), MS_ERR_LIMIT);
+    /* A voxel before 0, that at 0, 40 beyond it and one more: 43 along each axis. */
+    assert_int_equal(ms_grid_enlarge(&out, &grid, lo, far[2], 43 * 43 * 43, NULL), MS_OK);
+    ms_grid_free(&out);
+    ms_grid_free(&grid);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_extents_are_refused),
+        cmocka_unit_test(a_grid_begins_empty_with_x_fastest),
+        cmocka_unit_test(a_larger_grid_keeps_what_it_had),
+        cmocka_unit_test(what_is_far_away_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
