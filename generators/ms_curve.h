@@ -2,8 +2,8 @@
 #ifndef MS_CURVE_H
 #define MS_CURVE_H
 
-#include "ms_generator.h"
 #include "measure/ms_metrics.h"
+#include "ms_generator.h"
 
 MS_C_BEGIN
 

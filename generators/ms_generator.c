@@ -17,8 +17,8 @@ const ms_generator *ms_generator_find(const char *name, ms_error *err)
     return NULL;
 }
 
-ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
-                           const ms_run *run, ms_error *err)
+ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator, const ms_run *run,
+                           ms_error *err)
 {
     const ms_stop *stop = &run->stop;
     memset(clump, 0, sizeof *clump);

@@ -26,10 +26,10 @@ typedef struct ms_run {
 
 /** One method. */
 typedef struct ms_generator {
-    const char *name;    /* what --generator takes */
-    const char *summary; /* one line for `mskit generators` */
-    const char *source;  /* the paper: authors, year, DOI or arXiv number */
-    int nested;          /* nonzero: the first k spheres of a run are the clump of k spheres */
+    const char *name;         /* what --generator takes */
+    const char *summary;      /* one line for `mskit generators` */
+    const char *source;       /* the paper: authors, year, DOI or arXiv number */
+    int nested;               /* nonzero: the first k spheres of a run are the clump of k spheres */
     const ms_option *options; /* ends with a NULL name */
     /**
      * REQUIRED. Target in, ordered spheres out, in the unit and frame of the shape; the same
@@ -53,8 +53,8 @@ const ms_generator *ms_generator_find(const char *name, ms_error *err);
  * @return MS_OK with at least one sphere; MS_ERR_ARG if nothing ends the run (no stop rule);
  *         MS_ERR_SHAPE if no sphere could be placed (the message names what ended the run)
  */
-ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
-                           const ms_run *run, ms_error *err);
+ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator, const ms_run *run,
+                           ms_error *err);
 
 MS_C_END
 

@@ -7,9 +7,5 @@
 #include "variational/ms_variational.h"
 
 const ms_generator *const ms_generators[] = {
-    &ms_generator_mss,
-    &ms_generator_setcover,
-    &ms_generator_fcm,
-    &ms_generator_variational,
-    NULL,
+    &ms_generator_mss, &ms_generator_setcover, &ms_generator_fcm, &ms_generator_variational, NULL,
 };

@@ -4,13 +4,13 @@
 
 #include <stddef.h>
 
-#include "clump/ms_clump.h"
 #include "base/ms_error.h"
+#include "clump/ms_clump.h"
 
 MS_C_BEGIN
 
 typedef enum ms_option_type {
-    MS_OPTION_FLAG,   /* on or off */
+    MS_OPTION_FLAG, /* on or off */
     MS_OPTION_INTEGER,
     MS_OPTION_REAL,
     MS_OPTION_CHOICE, /* one of the words in `choices`; the value is its rank */
@@ -34,7 +34,7 @@ typedef struct ms_settings {
     double *value;
     size_t n_planes;
     double (*plane)[4]; /* (a, b, c) of unit length, d scaled with it: a x + b y + c z = d */
-    ms_clump clump; /* empty unless given */
+    ms_clump clump;     /* empty unless given */
 } ms_settings;
 
 /** All defaults. @param[out] settings the caller frees it @return MS_OK; MS_ERR_NOMEM */

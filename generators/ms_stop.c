@@ -36,8 +36,11 @@ ms_status ms_stop_set(ms_stop *stop, const char *measure, double value, ms_error
         const char *name;
         double *value, max;
     } measures[] = {
-        {"eta", &stop->eta, 1},         {"dice", &stop->dice, 1},          {"coverage", &stop->coverage, 1},
-        {"inertia", &stop->inertia, 1}, {"radius", &stop->radius, HUGE_VAL},
+        {"eta", &stop->eta, 1},
+        {"dice", &stop->dice, 1},
+        {"coverage", &stop->coverage, 1},
+        {"inertia", &stop->inertia, 1},
+        {"radius", &stop->radius, HUGE_VAL},
     };
     for (size_t m = 0; m < sizeof measures / sizeof *measures; m++) {
         if (strcmp(measure, measures[m].name) != 0) {

@@ -10,14 +10,14 @@
 MS_C_BEGIN
 
 /* Why a run ended; the names are those that --until takes, but for those that only a method can say. */
-#define MS_STOP_LIST(X)      \
-    X(MS_STOP_NOT, "not")    \
-    X(MS_STOP_SPHERES, "spheres")   \
-    X(MS_STOP_ETA, "eta")           \
-    X(MS_STOP_DICE, "dice")         \
-    X(MS_STOP_COVERAGE, "coverage") \
-    X(MS_STOP_INERTIA, "inertia")   \
-    X(MS_STOP_RADIUS, "radius")     \
+#define MS_STOP_LIST(X)                 \
+    X(MS_STOP_NOT, "not")               \
+    X(MS_STOP_SPHERES, "spheres")       \
+    X(MS_STOP_ETA, "eta")               \
+    X(MS_STOP_DICE, "dice")             \
+    X(MS_STOP_COVERAGE, "coverage")     \
+    X(MS_STOP_INERTIA, "inertia")       \
+    X(MS_STOP_RADIUS, "radius")         \
     X(MS_STOP_OFF_VOLUME, "off-volume") \
     X(MS_STOP_EXHAUSTED, "exhausted")
 

@@ -22,9 +22,10 @@ static ms_status read_all(ms_bytes *bytes, int fd, size_t size, const char *path
             return ms_fail(err, MS_ERR_IO, "%s: cannot be read at byte %zu: %s", path, bytes->size, strerror(errno));
         }
         if (got == 0) {
-            return ms_fail(err, MS_ERR_IO,
-                "%s: became shorter while it was read (%zu of %zu bytes); try again when it is no longer written",
-                path, bytes->size, size);
+            return ms_fail(
+                err, MS_ERR_IO,
+                "%s: became shorter while it was read (%zu of %zu bytes); try again when it is no longer written", path,
+                bytes->size, size);
         }
         bytes->size += (size_t)got;
     }
@@ -121,8 +122,9 @@ static ms_status open_temporary(ms_output *output, ms_error *err)
     if (output->stream) {
         return MS_OK;
     }
-    ms_status status = ms_fail(err, MS_ERR_IO,
-        "%s: cannot be written: %s; check that its folder exists and may be written to", output->path, strerror(errno));
+    ms_status status =
+        ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s; check that its folder exists and may be written to",
+                output->path, strerror(errno));
     if (fd >= 0) {
         close(fd);
         unlink(output->temporary);
@@ -210,7 +212,7 @@ ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err)
     }
     if (!status && !written) {
         status = ms_fail(err, MS_ERR_IO, "%s: could not be written: %s; is the disk full?",
-            output->path ? output->path : "standard output", why ? strerror(why) : "a write failed");
+                         output->path ? output->path : "standard output", why ? strerror(why) : "a write failed");
     }
     free_output(output);
     return status;

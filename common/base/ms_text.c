@@ -129,8 +129,8 @@ ms_status ms_text_fail(ms_error *err, const ms_text *text, const char *format, .
     va_start(args, format);
     vsnprintf(detail, sizeof detail, format, args);
     va_end(args);
-    return ms_fail(err, MS_ERR_FORMAT, "%s: line %zu: %s; correct the line or export the file again",
-        text->name, text->line, detail);
+    return ms_fail(err, MS_ERR_FORMAT, "%s: line %zu: %s; correct the line or export the file again", text->name,
+                   text->line, detail);
 }
 
 int ms_word_is(const ms_word *word, const char *lower)

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "voxel/ms_raster.h"
 #include "base/ms_vector.h"
+#include "voxel/ms_raster.h"
 
 _Static_assert((int)MS_CLUMP_MAX_SPHERES <= (int)MS_RASTER_MAX_BALLS, "every clump can be counted on a grid");
 

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_linear_program.h"
 #include "base/ms_vector.h"
+#include "ms_linear_program.h"
 
 /* Errors below this are rounding. */
 static const double EXACT = 1e-9;
@@ -259,8 +259,8 @@ ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_
     }
     if (status == MS_OK) {
         programme = make_programme(&e, least, most, options->input_frame, err);
-        status = programme ? solve(clump, report, &e, programme, particle, options->centre_tolerance, err)
-                           : MS_ERR_NOMEM;
+        status =
+            programme ? solve(clump, report, &e, programme, particle, options->centre_tolerance, err) : MS_ERR_NOMEM;
     }
     if (status != MS_OK) {
         memset(report, 0, sizeof *report);

@@ -23,8 +23,7 @@ static ms_status check(ms_particle *particle, ms_error *err)
     return MS_OK;
 }
 
-ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, double density, double scale,
-                                ms_error *err)
+ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, double density, double scale, ms_error *err)
 {
     *particle = (ms_particle){0};
     if (!is_positive(density) || !is_positive(scale) || !is_positive(body->volume)) {

@@ -2,8 +2,8 @@
 #ifndef MS_PARTICLE_H
 #define MS_PARTICLE_H
 
-#include "ms_clump.h"
 #include "mesh/ms_inertia.h"
+#include "ms_clump.h"
 
 MS_C_BEGIN
 

@@ -36,12 +36,13 @@ ms_status ms_inertia_compare(ms_inertia_error *error, const ms_body *body, const
 typedef struct ms_metrics {
     size_t spheres;
     ms_score score;
-    double protrusion_max, protrusion_rms; /* of exposed sphere surface outside the mesh; rms over all exposed surface */
-    double gap_max, gap_rms;               /* of mesh surface outside all spheres; rms over all mesh surface */
-    double smallest_radius_ratio;          /* smallest radius / radius of the ball of the target's volume */
-    size_t pieces;                         /* 1: connected */
-    ms_body body;                          /* the union, on the grid */
-    ms_inertia_error inertia;              /* of the union against the target */
+    double protrusion_max,
+        protrusion_rms;           /* of exposed sphere surface outside the mesh; rms over all exposed surface */
+    double gap_max, gap_rms;      /* of mesh surface outside all spheres; rms over all mesh surface */
+    double smallest_radius_ratio; /* smallest radius / radius of the ball of the target's volume */
+    size_t pieces;                /* 1: connected */
+    ms_body body;                 /* the union, on the grid */
+    ms_inertia_error inertia;     /* of the union against the target */
 } ms_metrics;
 
 /**

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 enum {
-    LEAF = 4,        /* triangles in a leaf, at most */
-    BINS = 16,       /* candidate cuts along an axis */
-    BALANCED = 48,   /* from this depth on nodes are halved: 48 + 31 levels at most */
+    LEAF = 4,      /* triangles in a leaf, at most */
+    BINS = 16,     /* candidate cuts along an axis */
+    BALANCED = 48, /* from this depth on nodes are halved: 48 + 31 levels at most */
 };
 
 typedef struct box {

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ms_bvh.h"
 #include "base/ms_vector.h"
+#include "ms_bvh.h"
 
 struct ms_closest {
     ms_bvh bvh;

@@ -13,8 +13,8 @@ MS_C_BEGIN
 typedef struct ms_mesh {
     size_t n_vertices;
     size_t n_triangles;
-    double (*vertex)[3];      /* n_vertices, in the file's unit of length */
-    uint32_t (*triangle)[3];  /* n_triangles, counter-clockwise seen from outside */
+    double (*vertex)[3];     /* n_vertices, in the file's unit of length */
+    uint32_t (*triangle)[3]; /* n_triangles, counter-clockwise seen from outside */
 } ms_mesh;
 
 /** What ms_mesh_repair found and what it changed. */

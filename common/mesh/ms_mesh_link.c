@@ -1,8 +1,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ms_mesh_orient.h"
 #include "base/ms_vector.h"
+#include "ms_mesh_orient.h"
 
 /* A side of a crowded edge, by the angle of its triangle around the edge. */
 typedef struct spoke {

@@ -1,18 +1,18 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/ms_vector.h"
 #include "ms_bvh.h"
 #include "ms_mesh_orient.h"
-#include "base/ms_vector.h"
 
 enum { SAMPLES = 32, DIRECTIONS = 8 };
 
 /* Oblique to the axes and to each other: a ray that grazes an edge along one passes clear of
    it along another. */
-static const double direction[DIRECTIONS][3] = {
-    {0.61803, 0.41421, 0.66811}, {-0.53172, 0.73205, 0.42603}, {0.35355, -0.80171, 0.48179},
-    {0.27183, 0.31416, -0.90963}, {-0.70711, -0.23607, 0.66657}, {0.81649, -0.35267, -0.45713},
-    {-0.44949, 0.64575, -0.61723}, {-0.57735, -0.60553, -0.54772}};
+static const double direction[DIRECTIONS][3] = {{0.61803, 0.41421, 0.66811},   {-0.53172, 0.73205, 0.42603},
+                                                {0.35355, -0.80171, 0.48179},  {0.27183, 0.31416, -0.90963},
+                                                {-0.70711, -0.23607, 0.66657}, {0.81649, -0.35267, -0.45713},
+                                                {-0.44949, 0.64575, -0.61723}, {-0.57735, -0.60553, -0.54772}};
 
 /* A ray's meeting with a shell other than its own. */
 typedef struct hit {
@@ -28,7 +28,7 @@ typedef struct ray {
     const double *along;
     hit *hits;
     size_t n_hits, capacity;
-    int grazes;     /* passes so close to an edge that the count is not to be trusted */
+    int grazes; /* passes so close to an edge that the count is not to be trusted */
     int out_of_memory;
 } ray;
 

@@ -30,9 +30,9 @@ static int is_inside_out(const ms_mesh *mesh)
 typedef struct walk {
     const ms_mesh *mesh;
     const uint32_t *across;
-    uint8_t *flip;   /* relative to the shell's first triangle, then to the input */
+    uint8_t *flip; /* relative to the shell's first triangle, then to the input */
     ms_shells shells;
-    uint32_t queued; /* in shells.order */
+    uint32_t queued;  /* in shells.order */
     uint32_t twisted; /* a triangle whose two ways round disagree */
     int is_twisted;
 } walk;

@@ -25,10 +25,10 @@ ms_status ms_mesh_link(uint32_t *across, const ms_mesh *mesh, const ms_edges *ed
 
 /** A piece of the surface that is joined by its edges. */
 typedef struct ms_shell {
-    uint32_t first, n;     /* its triangles in ms_shells.order */
-    double lo[3], hi[3];   /* box */
-    double volume;         /* enclosed; signed by the winding until the shell is settled */
-    size_t depth;          /* number of shells that it lies inside */
+    uint32_t first, n;   /* its triangles in ms_shells.order */
+    double lo[3], hi[3]; /* box */
+    double volume;       /* enclosed; signed by the winding until the shell is settled */
+    size_t depth;        /* number of shells that it lies inside */
 } ms_shell;
 
 typedef struct ms_shells {

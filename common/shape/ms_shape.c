@@ -8,11 +8,20 @@
 /* Small enough that no product of three overflows or vanishes. */
 #define LENGTH_MIN 1e-12
 #define LENGTH_MAX 1e12
-#define LENGTH(name, fallback, help) {name, fallback, LENGTH_MIN, LENGTH_MAX, help, 0}
-#define FINENESS(fallback, help) {"fineness", fallback, 2, 512, help, 1}
+#define LENGTH(name, fallback, help)                    \
+    {                                                   \
+        name, fallback, LENGTH_MIN, LENGTH_MAX, help, 0 \
+    }
+#define FINENESS(fallback, help)              \
+    {                                         \
+        "fineness", fallback, 2, 512, help, 1 \
+    }
 #define TURN "segments along a quarter turn"
 #define EDGE "segments along the longest edge"
-#define END {NULL, 0, 0, 0, NULL, 0}
+#define END                    \
+    {                          \
+        NULL, 0, 0, 0, NULL, 0 \
+    }
 
 static const ms_shape_parameter ball[] = {LENGTH("r", 1, "radius"), FINENESS(56, TURN), END};
 static const ms_shape_parameter ellipsoid[] = {LENGTH("a", 2, "semi-axis along x"), LENGTH("b", 1, "semi-axis along y"),
@@ -39,8 +48,8 @@ static const ms_shape_parameter box[] = {LENGTH("a", 3, "edge along x"), LENGTH(
 static const ms_shape_parameter plate[] = {LENGTH("a", 5, "edge along x"), LENGTH("b", 5, "edge along y"),
                                            LENGTH("c", 0.1, "thickness, along z"), FINENESS(50, EDGE), END};
 static const ms_shape_parameter tetrahedron[] = {LENGTH("a", 1, "edge"), FINENESS(16, EDGE), END};
-static const ms_shape_parameter octahedron[] = {LENGTH("a", 1, "from the centre to the vertices"),
-                                                FINENESS(16, EDGE), END};
+static const ms_shape_parameter octahedron[] = {LENGTH("a", 1, "from the centre to the vertices"), FINENESS(16, EDGE),
+                                                END};
 static const ms_shape_parameter grain[] = {
     LENGTH("r", 1, "radius of the ball of equal volume"),
     {"elongation", 1.3, 1, 100, "stretch along x", 0},

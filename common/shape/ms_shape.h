@@ -21,7 +21,7 @@ typedef struct ms_shape_parameter {
 typedef struct ms_shape_kind {
     const char *name;
     const char *summary;
-    const ms_shape_parameter *parameters; /* ends with a NULL name */
+    const ms_shape_parameter *parameters;                                 /* ends with a NULL name */
     ms_status (*make)(ms_mesh *mesh, const double *value, ms_error *err); /* one value per parameter */
     double (*volume)(const double *value); /* exact volume; NULL where there is no formula */
 } ms_shape_kind;

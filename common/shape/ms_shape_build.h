@@ -61,7 +61,7 @@ ms_status ms_shape_revolve(ms_mesh *mesh, const ms_profile *profile, int around,
 ms_status ms_shape_ring(ms_mesh *mesh, double ring, double tube, int around, ms_error *err);
 
 /* The makers and exact volumes of the kinds, for the table in ms_shape.c. */
-#define MS_SHAPE_MAKER(kind)                                                        \
+#define MS_SHAPE_MAKER(kind)                                                      \
     ms_status ms_shape_##kind(ms_mesh *mesh, const double *value, ms_error *err); \
     double ms_shape_##kind##_volume(const double *value);
 

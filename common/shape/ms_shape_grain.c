@@ -15,7 +15,7 @@ enum { DEGREE_MIN = 2, DEGREE_MAX = 64, COEFFICIENTS = (DEGREE_MAX + 1) * (DEGRE
 
 typedef struct field {
     int degree;
-    double coefficient[COEFFICIENTS];                          /* of degree l, order m: [l * l + l + m] */
+    double coefficient[COEFFICIENTS];                             /* of degree l, order m: [l * l + l + m] */
     double legendre[(DEGREE_MAX + 1) * (DEGREE_MAX + 4) / 2 + 2]; /* scratch */
 } field;
 

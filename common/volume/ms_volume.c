@@ -7,18 +7,14 @@
 
 typedef struct format {
     const char *ending;
-    ms_status (*parse)(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
-                                ms_error *err);
+    ms_status (*parse)(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels, ms_error *err);
 } format;
 
 static const format *find_format(const char *path)
 {
     static const format formats[] = {
-        {"npy", ms_volume_parse_npy},
-        {"mhd", ms_volume_parse_mhd},
-        {"mha", ms_volume_parse_mhd},
-        {"nrrd", ms_volume_parse_nrrd},
-        {"nhdr", ms_volume_parse_nrrd},
+        {"npy", ms_volume_parse_npy},   {"mhd", ms_volume_parse_mhd},   {"mha", ms_volume_parse_mhd},
+        {"nrrd", ms_volume_parse_nrrd}, {"nhdr", ms_volume_parse_nrrd},
     };
     char ending[16];
     ms_file_ending(ending, path);
@@ -41,7 +37,8 @@ ms_status ms_volume_parse(ms_volume *volume, const ms_bytes *bytes, const char *
     *volume = (ms_volume){0};
     if (!found) {
         return ms_fail(err, MS_ERR_FORMAT,
-            "%s: its ending names no volume format; volumes are read from .npy, .mhd, .mha, .nrrd and .nhdr", path);
+                       "%s: its ending names no volume format; volumes are read from .npy, .mhd, .mha, .nrrd and .nhdr",
+                       path);
     }
     if (bytes->size == 0) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: is empty (0 bytes); save the volume again", path);
@@ -100,7 +97,7 @@ ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_t
     ms_status status = ms_file_read(bytes, path, &inner);
     if (status) {
         ms_fail(err, status, "%s: line %zu: names a data file that cannot be used: %s", header->name, header->line,
-            inner.text);
+                inner.text);
     }
     free(path);
     return status;

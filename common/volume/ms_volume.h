@@ -12,10 +12,10 @@ MS_C_BEGIN
 
 /** Labels on a regular grid of cubic voxels; 0 is background. */
 typedef struct ms_volume {
-    int n[3];          /* extents x, y, z; x fastest in memory */
-    double spacing;    /* edge of a voxel; 1 where the file does not say */
-    double origin[3];  /* centre of voxel (0, 0, 0); 0 where the file does not say */
-    uint32_t *label;   /* n[0]*n[1]*n[2] */
+    int n[3];         /* extents x, y, z; x fastest in memory */
+    double spacing;   /* edge of a voxel; 1 where the file does not say */
+    double origin[3]; /* centre of voxel (0, 0, 0); 0 where the file does not say */
+    uint32_t *label;  /* n[0]*n[1]*n[2] */
 } ms_volume;
 
 /**

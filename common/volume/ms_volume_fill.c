@@ -23,17 +23,19 @@ ms_status ms_volume_data_size(size_t *size, const ms_volume_header *header, cons
     for (int axis = 0; axis < 3; axis++) {
         if (n[axis] < 1) {
             return ms_fail(err, MS_ERR_FORMAT, "%s: has no voxels: its extents are %lld x %lld x %lld; save it again",
-                path, (long long)n[0], (long long)n[1], (long long)n[2]);
+                           path, (long long)n[0], (long long)n[1], (long long)n[2]);
         }
         if (n[axis] > INT_MAX || product > limit / (size_t)n[axis]) {
             return ms_fail(err, MS_ERR_LIMIT, "%s: its header claims %lld x %lld x %lld voxels, too many; crop it",
-                path, (long long)n[0], (long long)n[1], (long long)n[2]);
+                           path, (long long)n[0], (long long)n[1], (long long)n[2]);
         }
         product *= (size_t)n[axis];
     }
     if (product > header->max_voxels) {
-        return ms_fail(err, MS_ERR_LIMIT, "%s: its %lld x %lld x %lld voxels are more than the %zu allowed; crop it, or "
-            "allow more memory", path, (long long)n[0], (long long)n[1], (long long)n[2], header->max_voxels);
+        return ms_fail(err, MS_ERR_LIMIT,
+                       "%s: its %lld x %lld x %lld voxels are more than the %zu allowed; crop it, or "
+                       "allow more memory",
+                       path, (long long)n[0], (long long)n[1], (long long)n[2], header->max_voxels);
     }
     *size = product * header->sample.size;
     return MS_OK;
@@ -45,15 +47,16 @@ static ms_status check_geometry(const ms_volume_header *header, const char *path
         double spacing = header->spacing[axis];
         /* The negations also catch nan. */
         if (!(spacing > 0.0) || !isfinite(spacing) || !isfinite(header->origin[axis])) {
-            return ms_fail(err, MS_ERR_FORMAT,
+            return ms_fail(
+                err, MS_ERR_FORMAT,
                 "%s: along axis %d it has the spacing %g and the origin %g; both must be finite and the spacing "
                 "positive",
                 path, axis, spacing, header->origin[axis]);
         }
         if (!(fabs(spacing - header->spacing[0]) <= CUBE_TOLERANCE * header->spacing[0])) {
             return ms_fail(err, MS_ERR_FORMAT,
-                "%s: its voxels are %g x %g x %g and not cubes; resample it to equal spacings", path,
-                header->spacing[0], header->spacing[1], header->spacing[2]);
+                           "%s: its voxels are %g x %g x %g and not cubes; resample it to equal spacings", path,
+                           header->spacing[0], header->spacing[1], header->spacing[2]);
         }
     }
     return MS_OK;
@@ -99,19 +102,19 @@ static int to_label(uint32_t *label, double value, double largest)
     return 1;
 }
 
-static ms_status fail_value(
-    double value, size_t voxel, const ms_volume_header *header, const char *path, ms_error *err)
+static ms_status fail_value(double value, size_t voxel, const ms_volume_header *header, const char *path, ms_error *err)
 {
     size_t nx = (size_t)header->n[0];
     size_t ny = (size_t)header->n[1];
-    return ms_fail(err, MS_ERR_FORMAT,
-        "%s: voxel (%zu, %zu, %zu) holds %.9g, which is no label (0, 1, 2, ...%s); segment the grey values first",
-        path, voxel % nx, voxel / nx % ny, voxel / nx / ny, value,
+    return ms_fail(
+        err, MS_ERR_FORMAT,
+        "%s: voxel (%zu, %zu, %zu) holds %.9g, which is no label (0, 1, 2, ...%s); segment the grey values first", path,
+        voxel % nx, voxel / nx % ny, voxel / nx / ny, value,
         header->sample.kind == MS_SAMPLE_BOOL ? " up to 1 for bool" : " up to 4294967295");
 }
 
 static ms_status fill_binary(ms_volume *volume, size_t count, const ms_volume_header *header, const uint8_t *data,
-    const char *path, ms_error *err)
+                             const char *path, ms_error *err)
 {
     ms_sample sample = header->sample;
     double largest = sample.kind == MS_SAMPLE_BOOL ? 1.0 : (double)UINT32_MAX;
@@ -130,7 +133,7 @@ static ms_status fill_binary(ms_volume *volume, size_t count, const ms_volume_he
 }
 
 static ms_status fill_text(ms_volume *volume, size_t count, const ms_volume_header *header, const ms_bytes *data,
-    const char *path, ms_error *err)
+                           const char *path, ms_error *err)
 {
     ms_text text;
     ms_word word;
@@ -139,12 +142,12 @@ static ms_status fill_text(ms_volume *volume, size_t count, const ms_volume_head
         double value;
         if (!ms_text_seek(&text)) {
             return ms_fail(err, MS_ERR_FORMAT, "%s: its data end after %zu of %zu values; save it again", path, i,
-                count);
+                           count);
         }
         ms_text_word(&word, &text);
         if (!ms_word_double(&value, &word)) {
             return ms_fail(err, MS_ERR_FORMAT, "%s: value %zu of its data is '%s' and no number; save it again", path,
-                i + 1, ms_word_quote(&word).text);
+                           i + 1, ms_word_quote(&word).text);
         }
         if (!to_label(&volume->label[i], value, (double)UINT32_MAX)) {
             return fail_value(value, i, header, path, err);
@@ -164,18 +167,19 @@ static ms_status check_labels(const ms_volume *volume, size_t count, const char 
         }
     }
     return ms_fail(err, MS_ERR_SHAPE, "%s: has no label: all %d x %d x %d voxels are 0, background; label the grains",
-        path, volume->n[0], volume->n[1], volume->n[2]);
+                   path, volume->n[0], volume->n[1], volume->n[2]);
 }
 
 /* The data are unpacked: as many as the header claims, or text. */
 static ms_status fill_unpacked(ms_volume *volume, const ms_volume_header *header, const ms_bytes *data,
-    size_t data_size, const char *path, ms_error *err)
+                               size_t data_size, const char *path, ms_error *err)
 {
     size_t count = data_size / header->sample.size;
     int is_text = header->coding == MS_CODING_TEXT;
     /* A value of text takes at least a digit and a blank. */
     if (is_text ? count > data->size / 2 + 1 : data->size != data_size) {
-        return ms_fail(err, MS_ERR_FORMAT,
+        return ms_fail(
+            err, MS_ERR_FORMAT,
             "%s: its header claims %lld x %lld x %lld voxels of %zu bytes (%zu) but there are %zu bytes of data; "
             "fetch or save it again",
             path, (long long)header->n[0], (long long)header->n[1], (long long)header->n[2], header->sample.size,
@@ -204,7 +208,7 @@ static ms_bytes borrow(const uint8_t *data, size_t size)
 }
 
 ms_status ms_volume_fill(ms_volume *volume, const ms_volume_header *header, const uint8_t *data, size_t size,
-    const char *path, ms_error *err)
+                         const char *path, ms_error *err)
 {
     size_t data_size = 0;
     ms_bytes unpacked = {0};

@@ -15,11 +15,11 @@
  * @return as ms_volume_read
  */
 ms_status ms_volume_parse_npy(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
-                                ms_error *err);
+                              ms_error *err);
 ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
-                                ms_error *err);
+                              ms_error *err);
 ms_status ms_volume_parse_nrrd(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
-                                ms_error *err);
+                               ms_error *err);
 
 typedef enum ms_sample_kind { MS_SAMPLE_BOOL, MS_SAMPLE_UNSIGNED, MS_SAMPLE_SIGNED, MS_SAMPLE_FLOAT } ms_sample_kind;
 
@@ -53,7 +53,7 @@ ms_volume_header ms_volume_header_start(size_t max_voxels);
  * @param      path   for messages
  */
 ms_status ms_volume_fill(ms_volume *volume, const ms_volume_header *header, const uint8_t *data, size_t size,
-    const char *path, ms_error *err);
+                         const char *path, ms_error *err);
 
 /** Bytes of all voxels unpacked. @return MS_OK; MS_ERR_FORMAT; MS_ERR_LIMIT */
 ms_status ms_volume_data_size(size_t *size, const ms_volume_header *header, const char *path, ms_error *err);
@@ -63,8 +63,8 @@ ms_status ms_volume_data_size(size_t *size, const ms_volume_header *header, cons
  *
  * @param[out] out the caller frees it; empty on failure
  */
-ms_status ms_volume_inflate(
-    ms_bytes *out, const uint8_t *data, size_t size, size_t expected, const char *path, ms_error *err);
+ms_status ms_volume_inflate(ms_bytes *out, const uint8_t *data, size_t size, size_t expected, const char *path,
+                            ms_error *err);
 
 /** The name of the one data file of a header, borrowed; lists and patterns of files are refused. */
 ms_status ms_volume_data_file(ms_word *file, ms_text *value, ms_error *err);

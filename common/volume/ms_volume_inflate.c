@@ -42,7 +42,7 @@ static int inflate_step(z_stream *stream, ms_bytes *out, size_t room, const uint
 }
 
 static ms_status inflate_all(ms_bytes *out, z_stream *stream, const uint8_t *data, size_t size, size_t expected,
-    const char *path, ms_error *err)
+                             const char *path, ms_error *err)
 {
     size_t room = 0;
     size_t used = 0;
@@ -55,26 +55,26 @@ static ms_status inflate_all(ms_bytes *out, z_stream *stream, const uint8_t *dat
         code = inflate_step(stream, out, room, data, size, &used);
         if (code != Z_OK && code != Z_STREAM_END) {
             return ms_fail(err, MS_ERR_FORMAT, "%s: its packed data are %s at byte %zu of %zu; fetch or save it again",
-                path, used == size ? "cut" : "damaged", used, size);
+                           path, used == size ? "cut" : "damaged", used, size);
         }
     }
     if (out->size != expected || used != size) {
         return ms_fail(err, MS_ERR_FORMAT,
-            "%s: its packed data hold %s bytes than the %zu that its header claims; fetch or save it again", path,
-            out->size < expected ? "fewer" : "more", expected);
+                       "%s: its packed data hold %s bytes than the %zu that its header claims; fetch or save it again",
+                       path, out->size < expected ? "fewer" : "more", expected);
     }
     return MS_OK;
 }
 
-ms_status ms_volume_inflate(
-    ms_bytes *out, const uint8_t *data, size_t size, size_t expected, const char *path, ms_error *err)
+ms_status ms_volume_inflate(ms_bytes *out, const uint8_t *data, size_t size, size_t expected, const char *path,
+                            ms_error *err)
 {
     z_stream stream = {0};
     *out = (ms_bytes){0};
     if (expected / DEFLATE_MAX_RATIO > size) {
         return ms_fail(err, MS_ERR_FORMAT,
-            "%s: its %zu packed bytes cannot hold the %zu that its header claims; fetch or save it again", path, size,
-            expected);
+                       "%s: its %zu packed bytes cannot hold the %zu that its header claims; fetch or save it again",
+                       path, size, expected);
     }
     /* 32 lets zlib tell its own header from that of gzip. */
     if (inflateInit2(&stream, 32 + MAX_WBITS) != Z_OK) {

@@ -86,12 +86,12 @@ static ms_status parse_type(mhd *image, ms_text *value, ms_error *err)
         const char *name;
         ms_sample sample;
     } types[] = {
-        {"met_char", {MS_SAMPLE_SIGNED, 1}}, {"met_uchar", {MS_SAMPLE_UNSIGNED, 1}},
-        {"met_short", {MS_SAMPLE_SIGNED, 2}}, {"met_ushort", {MS_SAMPLE_UNSIGNED, 2}},
-        {"met_int", {MS_SAMPLE_SIGNED, 4}}, {"met_uint", {MS_SAMPLE_UNSIGNED, 4}},
-        {"met_long", {MS_SAMPLE_SIGNED, 4}}, {"met_ulong", {MS_SAMPLE_UNSIGNED, 4}},
+        {"met_char", {MS_SAMPLE_SIGNED, 1}},      {"met_uchar", {MS_SAMPLE_UNSIGNED, 1}},
+        {"met_short", {MS_SAMPLE_SIGNED, 2}},     {"met_ushort", {MS_SAMPLE_UNSIGNED, 2}},
+        {"met_int", {MS_SAMPLE_SIGNED, 4}},       {"met_uint", {MS_SAMPLE_UNSIGNED, 4}},
+        {"met_long", {MS_SAMPLE_SIGNED, 4}},      {"met_ulong", {MS_SAMPLE_UNSIGNED, 4}},
         {"met_long_long", {MS_SAMPLE_SIGNED, 8}}, {"met_ulong_long", {MS_SAMPLE_UNSIGNED, 8}},
-        {"met_float", {MS_SAMPLE_FLOAT, 4}}, {"met_double", {MS_SAMPLE_FLOAT, 8}},
+        {"met_float", {MS_SAMPLE_FLOAT, 4}},      {"met_double", {MS_SAMPLE_FLOAT, 8}},
     };
     ms_word word = ms_text_rest(value);
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
@@ -101,7 +101,7 @@ static ms_status parse_type(mhd *image, ms_text *value, ms_error *err)
         }
     }
     return ms_text_fail(err, value, "the type '%s' is not read; save the labels as MET_USHORT or MET_UINT",
-        ms_word_quote(&word).text);
+                        ms_word_quote(&word).text);
 }
 
 static ms_status parse_bool(int *truth, ms_text *value, ms_error *err)
@@ -171,14 +171,25 @@ static field_parser *find_field(const ms_word *key)
         const char *key;
         field_parser *parse;
     } fields[] = {
-        {"objecttype", parse_object}, {"ndims", parse_dimensions}, {"dimsize", parse_size},
-        {"elementspacing", parse_spacing}, {"elementsize", parse_element_size},
-        {"offset", parse_origin}, {"position", parse_origin}, {"origin", parse_origin},
-        {"transformmatrix", parse_matrix}, {"orientation", parse_matrix}, {"rotation", parse_matrix},
-        {"elementtype", parse_type}, {"binarydata", parse_binary},
-        {"binarydatabyteordermsb", parse_byte_order}, {"elementbyteordermsb", parse_byte_order},
-        {"compresseddata", parse_compressed}, {"compresseddatasize", parse_packed_size},
-        {"elementnumberofchannels", parse_channels}, {"headersize", parse_skip},
+        {"objecttype", parse_object},
+        {"ndims", parse_dimensions},
+        {"dimsize", parse_size},
+        {"elementspacing", parse_spacing},
+        {"elementsize", parse_element_size},
+        {"offset", parse_origin},
+        {"position", parse_origin},
+        {"origin", parse_origin},
+        {"transformmatrix", parse_matrix},
+        {"orientation", parse_matrix},
+        {"rotation", parse_matrix},
+        {"elementtype", parse_type},
+        {"binarydata", parse_binary},
+        {"binarydatabyteordermsb", parse_byte_order},
+        {"elementbyteordermsb", parse_byte_order},
+        {"compresseddata", parse_compressed},
+        {"compresseddatasize", parse_packed_size},
+        {"elementnumberofchannels", parse_channels},
+        {"headersize", parse_skip},
         {"elementdatafile", parse_data_file},
     };
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
@@ -225,7 +236,7 @@ static ms_status parse_header(mhd *image, ms_text *text, ms_error *err)
 
 /* `data` begins with what the header may tell to skip. */
 static ms_status fill(ms_volume *volume, const mhd *image, const uint8_t *data, size_t size, const char *path,
-    ms_error *err)
+                      ms_error *err)
 {
     size_t voxels = 0;
     ms_status status = ms_volume_data_size(&voxels, &image->header, path, err);
@@ -233,11 +244,12 @@ static ms_status fill(ms_volume *volume, const mhd *image, const uint8_t *data, 
         return status;
     }
     size_t packed = image->header.coding == MS_CODING_RAW ? voxels
-        : image->packed_size >= 0                         ? (size_t)image->packed_size
+                    : image->packed_size >= 0             ? (size_t)image->packed_size
                                                           : size;
     size_t skip = image->skip >= 0 ? (size_t)image->skip : size > packed ? size - packed : 0;
     if (skip > size || size - skip != packed) {
-        return ms_fail(err, MS_ERR_FORMAT,
+        return ms_fail(
+            err, MS_ERR_FORMAT,
             "%s: its header claims %zu bytes of data behind %zu others but there are %zu; fetch or save it again", path,
             packed, skip, size);
     }
@@ -245,7 +257,7 @@ static ms_status fill(ms_volume *volume, const mhd *image, const uint8_t *data, 
 }
 
 ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
-                                ms_error *err)
+                              ms_error *err)
 {
     ms_text text;
     ms_bytes beside = {0};

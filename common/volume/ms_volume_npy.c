@@ -20,7 +20,7 @@ typedef struct dictionary {
 static ms_status fail_at(const dictionary *dict, const char *expected, ms_error *err)
 {
     return ms_fail(err, MS_ERR_FORMAT, "%s: byte %td of the header: %s belongs here; save the array with numpy.save",
-        dict->path, dict->at - dict->start, expected);
+                   dict->path, dict->at - dict->start, expected);
 }
 
 static void skip_blanks(dictionary *dict)
@@ -59,9 +59,8 @@ static ms_word parse_letters(dictionary *dict)
 {
     skip_blanks(dict);
     const char *start = dict->at;
-    while (dict->at < dict->end
-        && ((*dict->at >= 'a' && *dict->at <= 'z') || (*dict->at >= 'A' && *dict->at <= 'Z')
-            || (*dict->at >= '0' && *dict->at <= '9'))) {
+    while (dict->at < dict->end && ((*dict->at >= 'a' && *dict->at <= 'z') || (*dict->at >= 'A' && *dict->at <= 'Z') ||
+                                    (*dict->at >= '0' && *dict->at <= '9'))) {
         dict->at++;
     }
     return (ms_word){start, (size_t)(dict->at - start)};
@@ -74,12 +73,10 @@ static ms_status parse_type(dictionary *dict, ms_error *err)
         const char *name;
         ms_sample sample;
     } types[] = {
-        {"b1", {MS_SAMPLE_BOOL, 1}},
-        {"u1", {MS_SAMPLE_UNSIGNED, 1}}, {"u2", {MS_SAMPLE_UNSIGNED, 2}},
-        {"u4", {MS_SAMPLE_UNSIGNED, 4}}, {"u8", {MS_SAMPLE_UNSIGNED, 8}},
-        {"i1", {MS_SAMPLE_SIGNED, 1}}, {"i2", {MS_SAMPLE_SIGNED, 2}},
-        {"i4", {MS_SAMPLE_SIGNED, 4}}, {"i8", {MS_SAMPLE_SIGNED, 8}},
-        {"f4", {MS_SAMPLE_FLOAT, 4}}, {"f8", {MS_SAMPLE_FLOAT, 8}},
+        {"b1", {MS_SAMPLE_BOOL, 1}},     {"u1", {MS_SAMPLE_UNSIGNED, 1}}, {"u2", {MS_SAMPLE_UNSIGNED, 2}},
+        {"u4", {MS_SAMPLE_UNSIGNED, 4}}, {"u8", {MS_SAMPLE_UNSIGNED, 8}}, {"i1", {MS_SAMPLE_SIGNED, 1}},
+        {"i2", {MS_SAMPLE_SIGNED, 2}},   {"i4", {MS_SAMPLE_SIGNED, 4}},   {"i8", {MS_SAMPLE_SIGNED, 8}},
+        {"f4", {MS_SAMPLE_FLOAT, 4}},    {"f8", {MS_SAMPLE_FLOAT, 8}},
     };
     ms_word name;
     ms_status status = parse_string(&name, dict, err);
@@ -101,8 +98,8 @@ static ms_status parse_type(dictionary *dict, ms_error *err)
         }
     }
     return ms_fail(err, MS_ERR_FORMAT,
-        "%s: its values have the type '%s', which is not read; save the labels as uint8, uint16 or uint32", dict->path,
-        ms_word_quote(&name).text);
+                   "%s: its values have the type '%s', which is not read; save the labels as uint8, uint16 or uint32",
+                   dict->path, ms_word_quote(&name).text);
 }
 
 static ms_status parse_order(dictionary *dict, ms_error *err)
@@ -141,7 +138,7 @@ static ms_status parse_shape(dictionary *dict, ms_error *err)
     }
     if (n_axes != 3) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: its array has %d axes and a volume has 3; save it as [z][y][x]",
-            dict->path, n_axes);
+                       dict->path, n_axes);
     }
     dict->has_shape = 1;
     return MS_OK;
@@ -203,12 +200,12 @@ static ms_status find_header(size_t *start, size_t *end, const ms_bytes *bytes, 
     const uint8_t *data = bytes->data;
     if (bytes->size < MAGIC_SIZE + 4 || memcmp(data, MAGIC, MAGIC_SIZE) != 0) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: byte 0: does not begin as NumPy arrays do; save it with numpy.save",
-            path);
+                       path);
     }
     uint8_t version = data[MAGIC_SIZE];
     if (version < 1 || version > 3) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: byte %d: version %d of .npy is not read, only 1, 2 and 3 are", path,
-            MAGIC_SIZE, version);
+                       MAGIC_SIZE, version);
     }
     size_t length = (size_t)data[8] | (size_t)data[9] << 8;
     *start = 10;
@@ -219,7 +216,8 @@ static ms_status find_header(size_t *start, size_t *end, const ms_bytes *bytes, 
         }
     }
     if (bytes->size < *start || length > bytes->size - *start) {
-        return ms_fail(err, MS_ERR_FORMAT,
+        return ms_fail(
+            err, MS_ERR_FORMAT,
             "%s: byte %zu: a header of %zu bytes is claimed but the file ends before; fetch or save it again", path,
             *start, length);
     }
@@ -228,7 +226,7 @@ static ms_status find_header(size_t *start, size_t *end, const ms_bytes *bytes, 
 }
 
 ms_status ms_volume_parse_npy(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
-                                ms_error *err)
+                              ms_error *err)
 {
     size_t start = 0;
     size_t end = 0;

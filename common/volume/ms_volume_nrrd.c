@@ -47,7 +47,7 @@ static ms_status parse_type(nrrd *image, ms_text *value, ms_error *err)
         }
     }
     return ms_text_fail(err, value, "the type '%s' is not read; save the labels as uint16 or uint32",
-        ms_word_quote(&word).text);
+                        ms_word_quote(&word).text);
 }
 
 static ms_status parse_dimension(nrrd *image, ms_text *value, ms_error *err)
@@ -79,7 +79,7 @@ static ms_status parse_encoding(nrrd *image, ms_text *value, ms_error *err)
         image->header.coding = MS_CODING_TEXT;
     } else {
         return ms_text_fail(err, value, "the encoding '%s' is not read, only raw, gzip and text are",
-            ms_word_quote(&word).text);
+                            ms_word_quote(&word).text);
     }
     return MS_OK;
 }
@@ -173,8 +173,8 @@ static ms_status parse_kinds(nrrd *image, ms_text *value, ms_error *err)
     ms_word word;
     (void)image;
     while (ms_text_word(&word, value)) {
-        if (!ms_word_is(&word, "domain") && !ms_word_is(&word, "space") && !ms_word_is(&word, "none")
-            && !ms_word_is(&word, "???")) {
+        if (!ms_word_is(&word, "domain") && !ms_word_is(&word, "space") && !ms_word_is(&word, "none") &&
+            !ms_word_is(&word, "???")) {
             return ms_text_fail(err, value, "an axis of the kind '%s' is none of space", ms_word_quote(&word).text);
         }
     }
@@ -211,14 +211,25 @@ static field_parser *find_field(const ms_word *name)
         const char *name;
         field_parser *parse;
     } fields[] = {
-        {"type", parse_type}, {"dimension", parse_dimension}, {"sizes", parse_sizes}, {"encoding", parse_encoding},
-        {"endian", parse_endian}, {"spacings", parse_spacings}, {"space directions", parse_directions},
-        {"space origin", parse_origin}, {"kinds", parse_kinds},
-        {"data file", parse_data_file}, {"datafile", parse_data_file},
-        {"line skip", parse_line_skip}, {"lineskip", parse_line_skip},
-        {"byte skip", parse_byte_skip}, {"byteskip", parse_byte_skip},
-        {"axis mins", refuse_axis_mins}, {"axismins", refuse_axis_mins},
-        {"axis maxs", refuse_axis_mins}, {"axismaxs", refuse_axis_mins},
+        {"type", parse_type},
+        {"dimension", parse_dimension},
+        {"sizes", parse_sizes},
+        {"encoding", parse_encoding},
+        {"endian", parse_endian},
+        {"spacings", parse_spacings},
+        {"space directions", parse_directions},
+        {"space origin", parse_origin},
+        {"kinds", parse_kinds},
+        {"data file", parse_data_file},
+        {"datafile", parse_data_file},
+        {"line skip", parse_line_skip},
+        {"lineskip", parse_line_skip},
+        {"byte skip", parse_byte_skip},
+        {"byteskip", parse_byte_skip},
+        {"axis mins", refuse_axis_mins},
+        {"axismins", refuse_axis_mins},
+        {"axis maxs", refuse_axis_mins},
+        {"axismaxs", refuse_axis_mins},
     };
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
         if (ms_word_is(name, fields[i].name)) {
@@ -251,9 +262,9 @@ static ms_status parse_line(nrrd *image, const ms_word *line, ms_text *text, ms_
 static ms_status check_header(const nrrd *image, const ms_text *text, ms_error *err)
 {
     const char *missing = !image->header.sample.size ? "type"
-        : !image->has_dimension                      ? "dimension"
-        : !image->has_sizes                          ? "sizes"
-        : !image->has_encoding                       ? "encoding"
+                          : !image->has_dimension    ? "dimension"
+                          : !image->has_sizes        ? "sizes"
+                          : !image->has_encoding     ? "encoding"
                                                      : NULL;
     int has_order = image->has_endian || image->header.sample.size == 1 || image->header.coding == MS_CODING_TEXT;
     missing = missing || has_order ? missing : "endian";
@@ -292,7 +303,7 @@ static ms_status parse_header(nrrd *image, ms_text *text, ms_error *err)
 }
 
 static ms_status fill(ms_volume *volume, const nrrd *image, const uint8_t *data, size_t size, const char *path,
-    ms_error *err)
+                      ms_error *err)
 {
     size_t voxels = 0;
     size_t skip = 0;
@@ -308,7 +319,7 @@ static ms_status fill(ms_volume *volume, const nrrd *image, const uint8_t *data,
         skip = size > voxels ? size - voxels : 0;
     } else if ((uint64_t)image->skip_bytes > size - skip) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: %lld bytes are to be skipped and there are %zu; save it again", path,
-            (long long)image->skip_bytes, size - skip);
+                       (long long)image->skip_bytes, size - skip);
     } else {
         skip += (size_t)image->skip_bytes;
     }
@@ -316,7 +327,7 @@ static ms_status fill(ms_volume *volume, const nrrd *image, const uint8_t *data,
 }
 
 ms_status ms_volume_parse_nrrd(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
-                                ms_error *err)
+                               ms_error *err)
 {
     ms_text text;
     ms_bytes beside = {0};

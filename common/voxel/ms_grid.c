@@ -29,8 +29,8 @@ ms_status ms_grid_alloc(ms_grid *grid, const int n[3], double h, const double or
     return MS_OK;
 }
 
-ms_status ms_grid_enlarge(ms_grid *out, const ms_grid *grid, const double lo[3], const double hi[3],
-                          size_t max_voxels, ms_error *err)
+ms_status ms_grid_enlarge(ms_grid *out, const ms_grid *grid, const double lo[3], const double hi[3], size_t max_voxels,
+                          ms_error *err)
 {
     double before[3], total = 1;
     int n[3];

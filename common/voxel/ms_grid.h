@@ -50,8 +50,8 @@ ms_status ms_grid_alloc(ms_grid *grid, const int n[3], double h, const double or
  * @param[out] out  the caller frees it; empty on failure
  * @return as ms_grid_alloc
  */
-ms_status ms_grid_enlarge(ms_grid *out, const ms_grid *grid, const double lo[3], const double hi[3],
-                          size_t max_voxels, ms_error *err);
+ms_status ms_grid_enlarge(ms_grid *out, const ms_grid *grid, const double lo[3], const double hi[3], size_t max_voxels,
+                          ms_error *err);
 
 /** Number of voxels inside the shape. Cost: one pass. */
 size_t ms_grid_count(const ms_grid *grid);

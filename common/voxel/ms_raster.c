@@ -51,10 +51,10 @@ typedef struct neighbours {
 /* What one thread has to know and to count while it works through planes. */
 typedef struct worker {
     ms_raster *raster;
-    size_t from;                    /* the first new ball */
+    size_t from;                  /* the first new ball */
     const neighbours *neighbours; /* earlier balls whose border voxels each new one may share */
-    ms_tally *tally;                /* of the new balls */
-    int lo[3], hi[3];               /* box of what was covered */
+    ms_tally *tally;              /* of the new balls */
+    int lo[3], hi[3];             /* box of what was covered */
 } worker;
 
 /* Which of the voxel's sample points lie in the ball; (dx, dy, dz) from the ball's centre to
@@ -266,8 +266,10 @@ static ms_status append(ms_raster *raster, const ms_ball *balls, size_t count, m
         const double *c = balls[b].centre;
         const double r = balls[b].radius;
         if (!isfinite(c[0]) || !isfinite(c[1]) || !isfinite(c[2]) || !isfinite(r) || r < 0) {
-            return ms_fail(err, MS_ERR_ARG, "sphere %zu has the centre (%g, %g, %g) and the radius %g, in voxels; a "
-                           "centre must be finite and a radius not below 0", b + 1, c[0], c[1], c[2], r);
+            return ms_fail(err, MS_ERR_ARG,
+                           "sphere %zu has the centre (%g, %g, %g) and the radius %g, in voxels; a "
+                           "centre must be finite and a radius not below 0",
+                           b + 1, c[0], c[1], c[2], r);
         }
     }
     const size_t needed = raster->n_balls + count;
@@ -325,8 +327,11 @@ static ms_status cover(ms_raster *raster, size_t first_new, const neighbours *li
     }
 #pragma omp parallel reduction(| : out_of_memory)
     {
-        worker w = {.raster = raster, .from = first_new, .neighbours = list,
-                    .lo = {INT_MAX, INT_MAX, INT_MAX}, .hi = {INT_MIN, INT_MIN, INT_MIN}};
+        worker w = {.raster = raster,
+                    .from = first_new,
+                    .neighbours = list,
+                    .lo = {INT_MAX, INT_MAX, INT_MAX},
+                    .hi = {INT_MIN, INT_MIN, INT_MIN}};
         w.tally = calloc(raster->n_balls - first_new, sizeof *w.tally);
         out_of_memory = !w.tally;
 #pragma omp for schedule(dynamic, 1)

@@ -33,8 +33,8 @@ typedef struct ms_raster {
     uint16_t *first; /* one per voxel of the grid */
     size_t n_balls, capacity;
     ms_ball *ball;
-    uint8_t *buried; /* one per ball: 1 if it lies within an earlier one */
-    ms_tally *tally; /* one per ball: sums over the voxels that it is the first to cover */
+    uint8_t *buried;  /* one per ball: 1 if it lies within an earlier one */
+    ms_tally *tally;  /* one per ball: sums over the voxels that it is the first to cover */
     int lo[3], hi[3]; /* box lo <= (i,j,k) < hi of the voxels that the last ms_raster_add covered; empty: lo = hi */
 } ms_raster;
 

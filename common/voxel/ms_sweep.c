@@ -39,7 +39,7 @@ typedef struct crossing {
 
 /* What one thread needs for one plane. */
 typedef struct plane_work {
-    int32_t *lines; /* rows of voxels: what each is covered by, as steps along the row */
+    int32_t *lines;  /* rows of voxels: what each is covered by, as steps along the row */
     uint32_t *start; /* of each ray, into sorted; one more at the end */
     crossing *found, *sorted;
     size_t count, capacity;
@@ -184,8 +184,8 @@ static void add_crossing(plane_work *w, uint32_t ray, double x, int sign, int ne
         }
         w->capacity = capacity;
     }
-    w->found[w->count++] = (crossing){.ray = ray, .at = (int32_t)rint(x * ALONG), .sign = (int8_t)sign,
-                                      .near = (uint8_t)near};
+    w->found[w->count++] =
+        (crossing){.ray = ray, .at = (int32_t)rint(x * ALONG), .sign = (int8_t)sign, .near = (uint8_t)near};
 }
 
 /* By parity the row holds which voxel centres see the last of the near rays change sides. */
@@ -330,8 +330,8 @@ static void cross_row(plane_work *w, const sweep *s, const vertex *const v[3], i
             inside = 0;
         }
         if (inside) {
-            double x = v[0]->a +
-                       ((double)e[1] * (v[1]->a - v[0]->a) + (double)e[2] * (v[2]->a - v[0]->a)) / (double)area;
+            double x =
+                v[0]->a + ((double)e[1] * (v[1]->a - v[0]->a) + (double)e[2] * (v[2]->a - v[0]->a)) / (double)area;
             if (!s->parity) {
                 add_crossing(w, (uint32_t)(r + across * ray_c), x, sign, inside);
             } else if (inside & LAST_NEAR) { /* parities cannot be shared out: one of the four decides */
@@ -418,7 +418,12 @@ static ms_status sweep_planes(const sweep *s, ms_error *err)
 
 ms_status ms_sweep(ms_grid *grid, const ms_mesh *mesh, int axis, int rays, int parity, ms_error *err)
 {
-    sweep s = {.mesh = mesh, .grid = grid, .a = axis, .b = (axis + 1) % 3, .c = (axis + 2) % 3, .rays = rays,
+    sweep s = {.mesh = mesh,
+               .grid = grid,
+               .a = axis,
+               .b = (axis + 1) % 3,
+               .c = (axis + 2) % 3,
+               .rays = rays,
                .parity = parity};
     s.vertices = malloc(mesh->n_vertices * sizeof *s.vertices);
     s.plane_start = calloc((size_t)grid->n[s.c] + 1, sizeof *s.plane_start);

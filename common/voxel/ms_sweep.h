@@ -2,8 +2,8 @@
 #ifndef MS_SWEEP_H
 #define MS_SWEEP_H
 
-#include "ms_grid.h"
 #include "mesh/ms_mesh.h"
+#include "ms_grid.h"
 
 /**
  * Sends rays x rays parallel rays through each voxel and marks what they find inside.

@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-#include "ms_grid.h"
 #include "mesh/ms_inertia.h"
+#include "ms_grid.h"
 
 MS_C_BEGIN
 

@@ -143,9 +143,10 @@ static void copy_label(ms_grid *grid, const ms_volume *volume, uint32_t label, c
 {
     for (int k = lo[2]; k < hi[2]; k++) {
         for (int j = lo[1]; j < hi[1]; j++) {
-            const uint32_t *from = volume->label + (size_t)volume->n[0] * ((size_t)j + (size_t)volume->n[1] * (size_t)k);
-            uint8_t *to = grid->inside + ms_grid_index(grid, MS_GRID_HULL, j - lo[1] + MS_GRID_HULL,
-                                                       k - lo[2] + MS_GRID_HULL);
+            const uint32_t *from =
+                volume->label + (size_t)volume->n[0] * ((size_t)j + (size_t)volume->n[1] * (size_t)k);
+            uint8_t *to =
+                grid->inside + ms_grid_index(grid, MS_GRID_HULL, j - lo[1] + MS_GRID_HULL, k - lo[2] + MS_GRID_HULL);
             for (int i = lo[0]; i < hi[0]; i++) {
                 to[i - lo[0]] = label ? from[i] == label : from[i] != 0;
             }

@@ -3,12 +3,12 @@
 #define MS_TARGET_H
 
 #include "mesh/ms_closest.h"
-#include "ms_grid.h"
 #include "mesh/ms_inertia.h"
 #include "mesh/ms_mesh.h"
+#include "ms_grid.h"
 #include "ms_raster.h"
-#include "volume/ms_volume.h"
 #include "ms_voxelize.h"
+#include "volume/ms_volume.h"
 
 MS_C_BEGIN
 

@@ -2,8 +2,8 @@
 #ifndef MS_VOXELIZE_H
 #define MS_VOXELIZE_H
 
-#include "ms_grid.h"
 #include "mesh/ms_mesh.h"
+#include "ms_grid.h"
 
 MS_C_BEGIN
 

@@ -139,8 +139,7 @@ static int has_labels(const ms_chart_series *series)
 /* Colours that stay apart for the colour blind (Okabe and Ito 2008); dashes and points do it without. */
 static void put_series(FILE *stream, const ms_chart_series *series, int index, int look, const char *name)
 {
-    static const char *const COLOUR[] = {"#000000", "#d55e00", "#0072b2", "#009e73",
-                                         "#cc79a7", "#e69f00", "#56b4e9"};
+    static const char *const COLOUR[] = {"#000000", "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
     static const int POINT[] = {7, 4, 8, 10, 12, 5, 9, 6, 1, 2, 3};
     const char *colour = COLOUR[(size_t)look % (sizeof COLOUR / sizeof *COLOUR)];
     const int type = POINT[(size_t)look % (sizeof POINT / sizeof *POINT)];
@@ -155,9 +154,8 @@ static void put_series(FILE *stream, const ms_chart_series *series, int index, i
     fputs(" title ", stream);
     put_text(stream, series->name);
     if (has_labels(series)) {
-        fprintf(stream,
-                ", \\\n  '%s.dat' index %d using 1:2:3 with labels offset 0,0.8 font small tc rgb '%s' notitle", name,
-                index, colour);
+        fprintf(stream, ", \\\n  '%s.dat' index %d using 1:2:3 with labels offset 0,0.8 font small tc rgb '%s' notitle",
+                name, index, colour);
     }
 }
 

@@ -11,8 +11,11 @@
 ms_status ms_picture_alloc(ms_picture *picture, int width, int height, ms_error *err)
 {
     const size_t pixels = (size_t)width * (size_t)height;
-    *picture = (ms_picture){.width = width, .height = height, .grey = malloc(pixels),
-                            .depth = malloc(pixels * sizeof(float)), .part = calloc(pixels, sizeof(uint32_t))};
+    *picture = (ms_picture){.width = width,
+                            .height = height,
+                            .grey = malloc(pixels),
+                            .depth = malloc(pixels * sizeof(float)),
+                            .part = calloc(pixels, sizeof(uint32_t))};
     if (!picture->grey || !picture->depth || !picture->part) {
         ms_picture_free(picture);
         return ms_fail(err, MS_ERR_NOMEM, "no memory for a picture of %dx%d pixels", width, height);

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_generator.h"
 #include "base/ms_text.h"
+#include "ms_generator.h"
 
 /* Room for the flags of a command and the options of all generators. */
 enum { MAX_FLAGS = 128, HELP_COLUMN = 28 };
@@ -100,7 +100,7 @@ int ms_flags_parse(int *first_word, const ms_command *command, int generator_opt
     ms_error err;
     char name[64];
     snprintf(name, sizeof name, "mskit %s", command->name);
-    argv[0] = name; /* getopt's own messages begin with it */
+    argv[0] = name;              /* getopt's own messages begin with it */
     unsetenv("POSIXLY_CORRECT"); /* flags may stand anywhere */
     make_tables(&t, command, generator_options);
     while ((found = getopt_long(argc, argv, t.shorts, t.longs, &at)) != -1) {

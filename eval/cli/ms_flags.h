@@ -19,9 +19,9 @@ typedef struct ms_flag {
 /** One command. */
 typedef struct ms_command {
     const char *name;
-    const char *summary;   /* one line */
-    const char *usage;     /* what stands behind `mskit NAME` */
-    const char *example;   /* a whole command line */
+    const char *summary; /* one line */
+    const char *usage;   /* what stands behind `mskit NAME` */
+    const char *example; /* a whole command line */
     const ms_flag *flags;
     /** @return an exit code */
     int (*run)(const struct ms_command *command, int argc, char **argv);

@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "base/ms_file.h"
-#include "mesh/formats/ms_mesh_read.h"
 #include "base/ms_text.h"
+#include "mesh/formats/ms_mesh_read.h"
 
 static double machine_memory(void)
 {

@@ -2,10 +2,10 @@
 #ifndef MS_INPUT_H
 #define MS_INPUT_H
 
-#include "ms_flags.h"
 #include "mesh/ms_mesh.h"
-#include "voxel/ms_target.h"
+#include "ms_flags.h"
 #include "volume/ms_volume.h"
+#include "voxel/ms_target.h"
 
 /** Flags about the shape and its grid, common to several commands; see MS_INPUT_FLAGS. */
 typedef struct ms_input_flags {

@@ -113,8 +113,8 @@ void ms_mass_print(FILE *stream, const ms_mass *mass)
     if (r->centre > 0) {
         fprintf(stream, "  %-34s %.3g\n", "centre of mass / radius of gyration", r->centre);
     }
-    fprintf(stream, "  %-34s mass %.1e, centre %.1e, moments %.1e, products %.1e\n", "errors of the sums", r->error_mass,
-            r->error_centre, largest(r->error_moment), largest(r->error_product));
+    fprintf(stream, "  %-34s mass %.1e, centre %.1e, moments %.1e, products %.1e\n", "errors of the sums",
+            r->error_mass, r->error_centre, largest(r->error_moment), largest(r->error_product));
 }
 
 static json_t *vector(const double v[3])
@@ -125,8 +125,8 @@ static json_t *vector(const double v[3])
 json_t *ms_mass_json(const ms_mass *mass)
 {
     const ms_density_report *r = &mass->report;
-    return json_pack("{s:f,s:f,s:f,s:f,s:f,s:f,s:f,s:o,s:o,s:f}", "epsilon", r->epsilon, "products_epsilon", r->products,
-                     "centre_epsilon", r->centre, "least", r->least_mass, "most", r->most_mass, "error_mass",
-                     r->error_mass, "error_centre", r->error_centre, "error_moments", vector(r->error_moment),
-                     "error_products", vector(r->error_product), "seconds", mass->seconds);
+    return json_pack("{s:f,s:f,s:f,s:f,s:f,s:f,s:f,s:o,s:o,s:f}", "epsilon", r->epsilon, "products_epsilon",
+                     r->products, "centre_epsilon", r->centre, "least", r->least_mass, "most", r->most_mass,
+                     "error_mass", r->error_mass, "error_centre", r->error_centre, "error_moments",
+                     vector(r->error_moment), "error_products", vector(r->error_product), "seconds", mass->seconds);
 }

@@ -2,8 +2,8 @@
 #ifndef MS_OUTPUTS_H
 #define MS_OUTPUTS_H
 
-#include "ms_flags.h"
 #include "clump/formats/ms_write.h"
+#include "ms_flags.h"
 
 enum { MS_OUTPUTS_MAX = 16, MS_OUTPUTS_FORMATS = 16 };
 

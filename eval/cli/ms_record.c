@@ -31,8 +31,11 @@ static json_t *stop_json(const ms_stop *stop)
     const struct {
         const char *name;
         double value;
-    } asked[] = {{"eta", stop->eta},           {"dice", stop->dice},     {"coverage", stop->coverage},
-                 {"inertia", stop->inertia}, {"radius", stop->radius}};
+    } asked[] = {{"eta", stop->eta},
+                 {"dice", stop->dice},
+                 {"coverage", stop->coverage},
+                 {"inertia", stop->inertia},
+                 {"radius", stop->radius}};
     if (stop->spheres) {
         json_object_set_new(json, "spheres", json_integer((json_int_t)stop->spheres));
     }
@@ -55,10 +58,10 @@ json_t *ms_record_json(const ms_generator *generator, const ms_settings *setting
                                 input->target.voxelize_seconds, "distance", input->target.distance_seconds, "generate",
                                 r->generate_seconds, "score", r->score_seconds, "cpu", cpu);
     json_t *json = json_pack("{s:s,s:o,s:I,s:o,s:s,s:o,s:o,s:o,s:i,s:I}", "generator", generator->name, "options",
-                     ms_record_settings_json(settings), "seed", (json_int_t)seed, "until", stop_json(stop),
-                     "stopped_by", ms_stop_name(r->reason), "input", ms_report_input_json(input), "scores",
-                     ms_report_metrics_json(&r->metrics), "seconds", seconds, "threads", omp_get_max_threads(),
-                     "peak_memory_kb", (json_int_t)usage.ru_maxrss);
+                             ms_record_settings_json(settings), "seed", (json_int_t)seed, "until", stop_json(stop),
+                             "stopped_by", ms_stop_name(r->reason), "input", ms_report_input_json(input), "scores",
+                             ms_report_metrics_json(&r->metrics), "seconds", seconds, "threads", omp_get_max_threads(),
+                             "peak_memory_kb", (json_int_t)usage.ru_maxrss);
     if (json && r->mass.corrected) {
         json_object_set_new(json, "masses", ms_mass_json(&r->mass));
     }

@@ -4,10 +4,10 @@
 
 #include <jansson.h>
 
+#include "measure/ms_metrics.h"
 #include "ms_generator.h"
 #include "ms_input.h"
 #include "ms_mass.h"
-#include "measure/ms_metrics.h"
 
 /** All that a run gave. */
 typedef struct ms_result {

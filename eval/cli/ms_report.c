@@ -75,8 +75,8 @@ static json_t *inertia_json(const ms_metrics *m)
         return json_null();
     }
     return json_pack("{s:o,s:o,s:o,s:o}", "moments", vector(m->inertia.moment), "weighted_mean",
-                                ms_report_number(m->inertia.weighted), "axes_degrees",
-                                ms_report_number(m->inertia.angle), "centroid", ms_report_number(m->inertia.centre));
+                     ms_report_number(m->inertia.weighted), "axes_degrees", ms_report_number(m->inertia.angle),
+                     "centroid", ms_report_number(m->inertia.centre));
 }
 
 json_t *ms_report_metrics_json(const ms_metrics *m)
@@ -95,11 +95,10 @@ json_t *ms_report_input_json(const ms_input *input)
     char checksum[20];
     const ms_grid *grid = &input->target.grid;
     snprintf(checksum, sizeof checksum, "%016" PRIx64, input->checksum);
-    json_t *json = json_pack("{s:o,s:s,s:s,s:[i,i,i],s:f,s:o,s:I}", "path",
-                             ms_report_text(input->path), "fnv1a", checksum, "rule",
-                             input->target.rule == MS_VOXEL_HALF ? "half" : "centre", "grid", grid->n[0], grid->n[1],
-                             grid->n[2], "voxel_size", grid->h, "grid_origin", vector(grid->origin), "voxels",
-                             (json_int_t)input->target.voxels);
+    json_t *json = json_pack("{s:o,s:s,s:s,s:[i,i,i],s:f,s:o,s:I}", "path", ms_report_text(input->path), "fnv1a",
+                             checksum, "rule", input->target.rule == MS_VOXEL_HALF ? "half" : "centre", "grid",
+                             grid->n[0], grid->n[1], grid->n[2], "voxel_size", grid->h, "grid_origin",
+                             vector(grid->origin), "voxels", (json_int_t)input->target.voxels);
     if (input->mesh.n_triangles && json) {
         json_object_set_new(json, "triangles", json_integer((json_int_t)input->mesh.n_triangles));
         json_object_set_new(json, "closed", json_boolean(input->report.closed));

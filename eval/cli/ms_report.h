@@ -5,8 +5,8 @@
 #include <jansson.h>
 #include <stdio.h>
 
-#include "ms_input.h"
 #include "measure/ms_metrics.h"
+#include "ms_input.h"
 
 /** All measures of a clump, a line each. */
 void ms_report_metrics(FILE *stream, const ms_metrics *metrics, const ms_target *target);

@@ -5,10 +5,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "ms_commands.h"
+#include "cli/ms_outputs.h"
 #include "compare/ms_compare.h"
 #include "compare/ms_compare_walk.h"
-#include "cli/ms_outputs.h"
+#include "ms_commands.h"
 
 static const ms_flag FLAGS[] = {
     {"generator", 'g', "NAME[:OPTION=VALUE,...]",
@@ -121,8 +121,8 @@ static int work(const ms_command *command, const arguments *a)
     ms_error err;
     ms_csv csv;
     char *header = ms_compare_header();
-    ms_status status = header ? check_files(&a->comparison, &err)
-                              : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
+    ms_status status =
+        header ? check_files(&a->comparison, &err) : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
     if (status == MS_OK) {
         status = ms_csv_open(&csv, a->output, header, a->resume, &err);
         if (status == MS_OK) {

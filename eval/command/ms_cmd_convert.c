@@ -1,10 +1,10 @@
 /* mskit convert CLUMP -o FILE */
 #include <string.h>
 
-#include "ms_commands.h"
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
 #include "clump/formats/ms_read.h"
+#include "ms_commands.h"
 
 static const ms_flag FLAGS[] = {
     {"frame", 0, "FILE", "the STEM.frame.json beside a template: carries it back into the frame of the shape"},

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_commands.h"
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
+#include "cli/ms_report.h"
 #include "clump/formats/ms_particle_json.h"
 #include "clump/formats/ms_read.h"
-#include "cli/ms_report.h"
+#include "ms_commands.h"
 
 static const ms_flag FLAGS[] = {
     {"target", 't', "SHAPE", "the mesh or volume that the clump stands for; not with --properties union"},
@@ -84,10 +84,10 @@ static ms_status report(const arguments *a, const ms_clump *clump, const ms_mass
     ms_status status = ms_outputs_write(&a->outputs, &content, words, err);
     free(record);
     if (status == MS_OK && a->json) {
-        status = ms_report_print(stdout,
-                                 json_pack("{s:o,s:o}", "particle", ms_particle_to_json(&mass->particle), "masses",
-                                           ms_mass_json(mass)),
-                                 err);
+        status = ms_report_print(
+            stdout,
+            json_pack("{s:o,s:o}", "particle", ms_particle_to_json(&mass->particle), "masses", ms_mass_json(mass)),
+            err);
     }
     return status;
 }

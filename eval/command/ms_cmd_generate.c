@@ -4,8 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_commands.h"
-#include "ms_curve.h"
+#include "base/ms_text.h"
 #include "cli/ms_input.h"
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
@@ -13,7 +12,8 @@
 #include "cli/ms_recipe.h"
 #include "cli/ms_record.h"
 #include "cli/ms_report.h"
-#include "base/ms_text.h"
+#include "ms_commands.h"
+#include "ms_curve.h"
 
 enum { DEFAULT_SPHERES = 50 };
 
@@ -143,8 +143,8 @@ static ms_status try_outputs(const arguments *a, ms_error *err)
 /* What the generators are given; a line is shown on a terminal only. */
 static ms_run make_run(const arguments *a, const ms_input *input, ms_progress_line *line)
 {
-    ms_run run = {.target = &input->target, .stop = a->stop, .settings = &a->recipe.settings,
-                  .seed = (uint64_t)a->recipe.seed};
+    ms_run run = {
+        .target = &input->target, .stop = a->stop, .settings = &a->recipe.settings, .seed = (uint64_t)a->recipe.seed};
     ms_progress_show(&run, line);
     return run;
 }
@@ -165,13 +165,12 @@ static ms_status generate(ms_result *r, const arguments *a, const ms_input *inpu
                 name, r->clump.n_spheres, name);
     }
     if (status == MS_OK) {
-        status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump,
-                                    ms_input_max_voxels(&a->input), err);
+        status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump, ms_input_max_voxels(&a->input), err);
     }
     r->score_seconds = omp_get_wtime() - generated;
     if (status == MS_OK && a->correct) {
-        status = ms_mass_correct(&r->mass, &r->clump, &a->mass, &input->target.body, ms_input_max_voxels(&a->input),
-                                 err);
+        status =
+            ms_mass_correct(&r->mass, &r->clump, &a->mass, &input->target.body, ms_input_max_voxels(&a->input), err);
     }
     r->generate_seconds = generated - start;
     return status;
@@ -232,8 +231,7 @@ static ms_status write_outputs(const arguments *a, const ms_input *input, const 
 static ms_status report(const arguments *a, const ms_input *input, const ms_result *r, ms_error *err)
 {
     const ms_recipe *recipe = &a->recipe;
-    json_t *json =
-        ms_record_json(recipe->generator, &recipe->settings, &a->stop, (uint64_t)recipe->seed, input, r);
+    json_t *json = ms_record_json(recipe->generator, &recipe->settings, &a->stop, (uint64_t)recipe->seed, input, r);
     char *record = json ? json_dumps(json, JSON_COMPACT) : NULL;
     ms_status status;
     if (!record) {

@@ -2,9 +2,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/ms_report.h"
 #include "ms_commands.h"
 #include "ms_generator.h"
-#include "cli/ms_report.h"
 
 static const ms_flag NO_FLAGS[] = {{0}};
 static const ms_flag JSON_FLAGS[] = {{"json", 0, NULL, "as JSON"}, {0}};

@@ -3,9 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "ms_commands.h"
 #include "cli/ms_input.h"
 #include "cli/ms_report.h"
+#include "ms_commands.h"
 
 static const ms_flag FLAGS[] = {
     {"json", 0, NULL, "as JSON"},
@@ -134,18 +134,16 @@ static void print_facts(const facts *f)
 static json_t *facts_json(const facts *f)
 {
     const ms_mesh_report *r = &f->input->report;
-    json_t *json = json_pack("{s:o,s:[f,f,f],s:[f,f,f],s:o,s:o,s:o}", "path",
-                             ms_report_text(f->input->path), "box_lo", f->lo[0],
-                             f->lo[1], f->lo[2], "box_hi", f->hi[0], f->hi[1], f->hi[2], "area",
-                             ms_report_number(f->area), "equivalent_diameter",
-                             ms_report_number(equivalent_diameter(f)), "sphericity", ms_report_number(sphericity(f)));
+    json_t *json = json_pack("{s:o,s:[f,f,f],s:[f,f,f],s:o,s:o,s:o}", "path", ms_report_text(f->input->path), "box_lo",
+                             f->lo[0], f->lo[1], f->lo[2], "box_hi", f->hi[0], f->hi[1], f->hi[2], "area",
+                             ms_report_number(f->area), "equivalent_diameter", ms_report_number(equivalent_diameter(f)),
+                             "sphericity", ms_report_number(sphericity(f)));
     json_t *mesh = json_pack(
         "{s:I,s:I,s:b,s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:I}", "triangles", (json_int_t)f->input->mesh.n_triangles,
-        "vertices", (json_int_t)f->input->mesh.n_vertices, "closed", r->closed, "open_edges",
-        (json_int_t)r->open_edges, "nonmanifold_edges", (json_int_t)r->nonmanifold_edges, "shells",
-        (json_int_t)r->shells, "bodies", (json_int_t)r->bodies, "cavities", (json_int_t)r->cavities, "turned",
-        (json_int_t)r->flipped, "dropped_degenerate", (json_int_t)r->dropped_degenerate, "dropped_duplicate",
-        (json_int_t)r->dropped_duplicate);
+        "vertices", (json_int_t)f->input->mesh.n_vertices, "closed", r->closed, "open_edges", (json_int_t)r->open_edges,
+        "nonmanifold_edges", (json_int_t)r->nonmanifold_edges, "shells", (json_int_t)r->shells, "bodies",
+        (json_int_t)r->bodies, "cavities", (json_int_t)r->cavities, "turned", (json_int_t)r->flipped,
+        "dropped_degenerate", (json_int_t)r->dropped_degenerate, "dropped_duplicate", (json_int_t)r->dropped_duplicate);
     if (f->input->mesh.n_triangles) {
         json_object_update(json, mesh);
     } else {

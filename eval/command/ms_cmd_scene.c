@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_commands.h"
 #include "base/ms_file.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_record.h"
 #include "cli/ms_report.h"
+#include "ms_commands.h"
 #include "scene/ms_scene.h"
 
 enum { DEFAULT_MAX_SPHERES = 100 };
@@ -156,8 +156,7 @@ static ms_status settle_goal(ms_goal *goal, const ms_manifest *manifest, const c
                        source);
     }
     if (goal->kind != MS_GOAL_TOLERANCE && tolerances > 0) {
-        return ms_fail(err, MS_ERR_ARG, "the tolerances in %s go with --tolerance or alone; drop that column",
-                       source);
+        return ms_fail(err, MS_ERR_ARG, "the tolerances in %s go with --tolerance or alone; drop that column", source);
     }
     if (goal->kind == MS_GOAL_BUDGET && goal->value < particles) {
         return ms_fail(err, MS_ERR_LIMIT,
@@ -194,9 +193,9 @@ static ms_status plan_outputs(ms_outputs *outputs, const arguments *a, const ms_
         outputs[r] = (ms_outputs){.folder = a->folder, .file = {{path, path, a->format}}, .n_files = 1};
         for (size_t before = 0; before < r && status == MS_OK; before++) {
             if (strcmp(outputs[before].file[0].path, path) == 0) {
-                status = ms_fail(err, MS_ERR_ARG,
-                                 "the templates of %s and %s would both be %s; rename one of the shapes",
-                                 manifest->row[before].path, shape, path);
+                status =
+                    ms_fail(err, MS_ERR_ARG, "the templates of %s and %s would both be %s; rename one of the shapes",
+                            manifest->row[before].path, shape, path);
             }
         }
         if (status == MS_OK) {
@@ -327,8 +326,7 @@ static int run(const ms_command *command, int argc, char **argv)
     }
     a.source = argv[first];
     a.format = a.format ? a.format : ms_format_find("csv", &err);
-    code = ms_recipe_settle(&a.recipe, &err) == MS_OK ? read_and_work(command, &a)
-                                                      : ms_wrong_usage(command, err.text);
+    code = ms_recipe_settle(&a.recipe, &err) == MS_OK ? read_and_work(command, &a) : ms_wrong_usage(command, err.text);
     ms_recipe_free(&a.recipe);
     return code;
 }

@@ -3,11 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_commands.h"
 #include "cli/ms_input.h"
-#include "measure/ms_metrics.h"
-#include "clump/formats/ms_read.h"
 #include "cli/ms_report.h"
+#include "clump/formats/ms_read.h"
+#include "measure/ms_metrics.h"
+#include "ms_commands.h"
 
 static const ms_flag FLAGS[] = {
     {"target", 't', "SHAPE", "the mesh or volume that the clump stands for"},
@@ -50,10 +50,10 @@ static ms_status report(const arguments *a, const ms_input *input, const ms_clum
     if (status == MS_OK && a->curve) {
         ms_report_curve(stdout, curve, clump->n_spheres);
     } else if (status == MS_OK && a->json) {
-        status = ms_report_print(stdout,
-                                 json_pack("{s:o,s:o}", "target", ms_report_input_json(input), "scores",
-                                           ms_report_metrics_json(&metrics)),
-                                 err);
+        status = ms_report_print(
+            stdout,
+            json_pack("{s:o,s:o}", "target", ms_report_input_json(input), "scores", ms_report_metrics_json(&metrics)),
+            err);
     } else if (status == MS_OK) {
         ms_report_metrics(stdout, &metrics, &input->target);
     }

@@ -2,11 +2,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "ms_commands.h"
+#include "base/ms_text.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "mesh/formats/ms_mesh_write.h"
+#include "ms_commands.h"
 #include "shape/ms_shape.h"
-#include "base/ms_text.h"
 
 static const ms_flag FLAGS[] = {
     {"output", 'o', "FILE", "the mesh: .stl, .obj, .ply or .off; - for OFF on standard output"},
@@ -102,7 +102,8 @@ static int run(const ms_command *command, int argc, char **argv)
         return ms_wrong_usage(command, "takes a kind of shape and -o FILE; --list shows the kinds");
     }
     if (strcmp(a.output, "-") != 0 && !ms_mesh_is_mesh_path(a.output)) {
-        return ms_wrong_usage(command, "a mesh is written as .stl, .obj, .ply or .off; give -o FILE one of these endings");
+        return ms_wrong_usage(command,
+                              "a mesh is written as .stl, .obj, .ply or .off; give -o FILE one of these endings");
     }
     return make(command, a.output, argc - first, argv + first);
 }

@@ -6,14 +6,14 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "ms_commands.h"
-#include "compare/ms_compare_methods.h"
-#include "stability/ms_hard_shapes.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_report.h"
-#include "stability/ms_statistics.h"
+#include "compare/ms_compare_methods.h"
+#include "ms_commands.h"
+#include "stability/ms_hard_shapes.h"
 #include "stability/ms_stability.h"
 #include "stability/ms_stability_charts.h"
+#include "stability/ms_statistics.h"
 
 enum { DEFAULT_SPHERES = 20, DEFAULT_RUNS = 5, MOST_RUNS = 1000 };
 
@@ -205,9 +205,14 @@ static ms_status try_shape(progress *p, const arguments *a, const char *name, ms
     }
     input.path = name; /* outlives the input */
     for (size_t m = 0; m < a->methods.count && status == MS_OK; m++) {
-        const ms_stability s = {.input = &input, .method = &a->methods.method[m], .spheres = (size_t)a->spheres,
-                                .until_dice = a->until_dice, .seed = (uint64_t)a->seed, .runs = (int)a->runs,
-                                .threads = omp_get_max_threads(), .flags = &a->input};
+        const ms_stability s = {.input = &input,
+                                .method = &a->methods.method[m],
+                                .spheres = (size_t)a->spheres,
+                                .until_dice = a->until_dice,
+                                .seed = (uint64_t)a->seed,
+                                .runs = (int)a->runs,
+                                .threads = omp_get_max_threads(),
+                                .flags = &a->input};
         for (int c = 0; c < MS_CHANGES && status == MS_OK; c++) {
             const int runs = a->wanted[c] ? ms_change_runs((ms_change)c, s.runs) : 0;
             for (int number = 1; number <= runs && status == MS_OK; number++) {
@@ -301,8 +306,8 @@ static int work(const ms_command *command, const arguments *a)
 
 static int run(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {.spheres = DEFAULT_SPHERES, .runs = DEFAULT_RUNS, .seed = 1, .until_dice = -1,
-                   .output = "stability.csv"};
+    arguments a = {
+        .spheres = DEFAULT_SPHERES, .runs = DEFAULT_RUNS, .seed = 1, .until_dice = -1, .output = "stability.csv"};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_text.h"
 #include "chart/ms_chart.h"
 #include "ms_compare.h"
-#include "base/ms_text.h"
 
 /* One row, cut into its fields. */
 typedef struct record {
@@ -221,8 +221,14 @@ static ms_status draw(const records *all, const record *shape, const kind *k, ms
     snprintf(title, sizeof title, "%s: %s%s", name, k->what, isnan(fixed) ? "" : at);
     ms_status status = stem ? fill_draft(&d, all, shape, k, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for a chart");
     if (status == MS_OK) {
-        const ms_chart chart = {.title = title, .x_label = k->x_label, .y_label = k->y_label, .x_log = 1, .y_log = 1,
-                                .y_least = 1e-6, .n_series = d.n_series, .series = d.series};
+        const ms_chart chart = {.title = title,
+                                .x_label = k->x_label,
+                                .y_label = k->y_label,
+                                .x_log = 1,
+                                .y_log = 1,
+                                .y_least = 1e-6,
+                                .n_series = d.n_series,
+                                .series = d.series};
         snprintf(stem, room, "%s/%s-%s", all->folder, name, k->name);
         status = ms_chart_write(&chart, stem, err);
         if (status == MS_ERR_ARG) { /* every run failed: the rows say why */

@@ -119,8 +119,8 @@ ms_status ms_methods_check(ms_methods *methods, ms_error *err)
         for (size_t k = 0; k < m && status == MS_OK; k++) {
             const ms_method *a = &methods->method[k], *b = &methods->method[m];
             if (strcmp(a->name, b->name) == 0 && strcmp(a->options, b->options) == 0) {
-                status = ms_fail(err, MS_ERR_ARG, "%s%s%s is there twice", a->name, a->options[0] ? ":" : "",
-                                 a->options);
+                status =
+                    ms_fail(err, MS_ERR_ARG, "%s%s%s is there twice", a->name, a->options[0] ? ":" : "", a->options);
             }
         }
     }

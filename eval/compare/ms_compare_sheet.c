@@ -6,8 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "chart/ms_chart.h"
 #include "base/ms_file.h"
+#include "chart/ms_chart.h"
 #include "chart/ms_render.h"
 #include "clump/formats/ms_write.h"
 

@@ -19,13 +19,13 @@ typedef struct walk {
     size_t at, failed; /* rows */
     const char *shape;
     ms_input input;
-    double cells;      /* NAN for a volume */
+    double cells; /* NAN for a volume */
     int target_made;
-    ms_status status;  /* of the shape, then of the target */
+    ms_status status; /* of the shape, then of the target */
     ms_error cause;
     char checksum[20], label[20], name[256];
-    ms_sheet sheet;     /* of the shape, at its last resolution */
-    ms_status drawn;    /* of the first chart that failed; the comparison goes on */
+    ms_sheet sheet;  /* of the shape, at its last resolution */
+    ms_status drawn; /* of the first chart that failed; the comparison goes on */
     ms_error why_not;
 } walk;
 
@@ -156,8 +156,7 @@ static ms_status make_row(walk *w, const ms_method *method, double asked, const 
         put_input(&row, &w->input);
     }
     if (failure == MS_OK && method->generator) {
-        row.text[MS_COLUMN_STOPPED] =
-            ms_stop_name(asked <= (double)clump->n_spheres ? MS_STOP_SPHERES : trial->reason);
+        row.text[MS_COLUMN_STOPPED] = ms_stop_name(asked <= (double)clump->n_spheres ? MS_STOP_SPHERES : trial->reason);
         row.number[MS_COLUMN_GENERATE] = seconds;
         row.number[MS_COLUMN_MEMORY] = trial->memory;
     }
@@ -181,8 +180,13 @@ static ms_status make_rows(walk *w, const ms_method *method, const double *asked
     char title[256];
     ms_trial trial = {0};
     ms_error cause;
-    ms_trial_run run = {.generator = method->generator, .settings = &method->settings, .seed = (uint64_t)w->a->seed,
-                        .repeats = (int)w->a->repeats, .asked = n, .n_asked = count, .title = title};
+    ms_trial_run run = {.generator = method->generator,
+                        .settings = &method->settings,
+                        .seed = (uint64_t)w->a->seed,
+                        .repeats = (int)w->a->repeats,
+                        .asked = n,
+                        .n_asked = count,
+                        .title = title};
     for (size_t k = 0; k < count; k++) {
         n[k] = method->generator ? (size_t)asked[k] : 0;
     }
@@ -246,8 +250,11 @@ static ms_status compare_shape(walk *w, const char *shape, ms_error *err)
     ms_status status = MS_OK;
     w->shape = shape;
     ms_compare_name(w->name, sizeof w->name, shape, w->label);
-    w->sheet = (ms_sheet){.folder = w->a->charts, .shape = w->name, .methods = &w->a->methods,
-                          .asked = w->a->asked.value, .n_asked = w->a->asked.count};
+    w->sheet = (ms_sheet){.folder = w->a->charts,
+                          .shape = w->name,
+                          .methods = &w->a->methods,
+                          .asked = w->a->asked.value,
+                          .n_asked = w->a->asked.count};
     const ms_status read = ms_input_read(&w->input, shape, &w->a->input, &w->cause);
     snprintf(w->checksum, sizeof w->checksum, "%016llx", (unsigned long long)w->input.checksum);
     const int is_volume = w->input.volume.label != NULL;

@@ -2,9 +2,9 @@
 #ifndef MS_COMPARE_WALK_H
 #define MS_COMPARE_WALK_H
 
-#include "ms_compare_methods.h"
 #include "chart/ms_csv.h"
 #include "cli/ms_input.h"
+#include "ms_compare_methods.h"
 
 enum { MS_NUMBERS_MAX = 256 };
 

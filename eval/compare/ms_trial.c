@@ -77,8 +77,12 @@ static ms_status run_once(ms_trial *trial, double *seconds, const ms_trial_run *
                           ms_error *err)
 {
     watch w = {.run = run, .start = omp_get_wtime(), .seconds = seconds, .terminal = isatty(STDERR_FILENO)};
-    ms_run one = {.target = target, .stop = ms_stop_none(), .settings = run->settings, .seed = run->seed,
-                  .progress = look, .progress_context = &w};
+    ms_run one = {.target = target,
+                  .stop = ms_stop_none(),
+                  .settings = run->settings,
+                  .seed = run->seed,
+                  .progress = look,
+                  .progress_context = &w};
     one.stop.spheres = run->asked[run->n_asked - 1];
     ms_clump_free(&trial->clump);
     const ms_status status = ms_generator_run(&trial->clump, &trial->reason, run->generator, &one, err);

@@ -2,9 +2,9 @@
 #ifndef MS_TRIAL_H
 #define MS_TRIAL_H
 
+#include "cli/ms_input.h"
 #include "ms_compare.h"
 #include "ms_generator.h"
-#include "cli/ms_input.h"
 
 /** What is tried. */
 typedef struct ms_trial_run {

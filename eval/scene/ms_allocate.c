@@ -196,8 +196,8 @@ static ms_allocation spend(size_t *n, double *price, step *ahead, const ms_share
     return sum;
 }
 
-ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count,
-                             uint64_t budget, ms_error *err)
+ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count, uint64_t budget,
+                             ms_error *err)
 {
     double price = 0;
     step *ahead = begin(n, share, count, err);
@@ -252,8 +252,8 @@ static ms_status shrink_budget(size_t *n, ms_allocation *sum, double fewest, con
 
 /* Steps from one sphere each until the error is reached; in `price` the spheres for a unit of error at the last, in
  * `fewest` how many any allocation needs, by the hulls. */
-static ms_status reach(size_t *n, ms_allocation *sum, double *price, double *fewest, step *ahead,
-                       const ms_share *share, size_t count, double error, ms_error *err)
+static ms_status reach(size_t *n, ms_allocation *sum, double *price, double *fewest, step *ahead, const ms_share *share,
+                       size_t count, double error, ms_error *err)
 {
     *price = *fewest = 0;
     *sum = ms_allocate_sum(share, n, count);

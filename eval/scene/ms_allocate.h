@@ -49,8 +49,8 @@ double ms_allocate_gain(const ms_share *share, const size_t *n, size_t count);
  * Source: Fox 1966, Discrete optimization via marginal analysis (Management Science 13, 210).
  * Cost: O(shapes) for each step, and one pass over the rest of a curve for each of its steps; the search.
  */
-ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count,
-                             uint64_t budget, ms_error *err);
+ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count, uint64_t budget,
+                             ms_error *err);
 
 /**
  * The fewest spheres in the scene for a mean error: the same steps for budgets between what the hulls need at the least

@@ -23,8 +23,8 @@ typedef struct search {
     const ms_kind *kind;
     size_t count;
     double limit, price, aim; /* aim: to be better than this */
-    bound *rest;  /* of the kinds from i on */
-    state *all;   /* layer behind layer */
+    bound *rest;              /* of the kinds from i on */
+    state *all;               /* layer behind layer */
     size_t n_states, capacity, tries;
     size_t *begin; /* where the layer of i kinds begins */
 } search;

@@ -156,8 +156,8 @@ ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *er
 {
     ms_bytes bytes;
     *manifest = (ms_manifest){.row = calloc(MS_MANIFEST_MAX_SHAPES, sizeof *manifest->row)};
-    ms_status status = manifest->row ? ms_file_read(&bytes, path, err)
-                                     : ms_fail(err, MS_ERR_NOMEM, "no memory for the manifest");
+    ms_status status =
+        manifest->row ? ms_file_read(&bytes, path, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the manifest");
     if (status == MS_OK) {
         status = parse(manifest, &bytes, path, err);
         ms_bytes_free(&bytes);

@@ -5,13 +5,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_curve.h"
 #include "cli/ms_progress.h"
 #include "cli/ms_report.h"
+#include "ms_curve.h"
 
 static const ms_scene_measure MEASURES[] = {
-    {"dice", offsetof(ms_score, dice), 0},       {"eta", offsetof(ms_score, eta), 0},
-    {"coverage", offsetof(ms_score, coverage), 1}, {"inertia", offsetof(ms_score, inertia), 0},
+    {"dice", offsetof(ms_score, dice), 0},
+    {"eta", offsetof(ms_score, eta), 0},
+    {"coverage", offsetof(ms_score, coverage), 1},
+    {"inertia", offsetof(ms_score, inertia), 0},
     {0},
 };
 
@@ -135,8 +137,7 @@ static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const 
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu templates", count);
     }
     shape->most = count;
-    const ms_status status =
-        ms_curve_clumps(shape->score, shape->clump, clump, generator, run, max_voxels, err);
+    const ms_status status = ms_curve_clumps(shape->score, shape->clump, clump, generator, run, max_voxels, err);
     if (status == MS_OK) {
         settle_numbers(shape);
     }
@@ -151,7 +152,9 @@ static ms_status make_templates(ms_scene_shape *shape, const char *title, const 
     ms_stop_reason reason;
     ms_clump clump;
     ms_error cause;
-    ms_run run = {.target = &input->target, .stop = ms_stop_none(), .settings = &recipe->settings,
+    ms_run run = {.target = &input->target,
+                  .stop = ms_stop_none(),
+                  .settings = &recipe->settings,
                   .seed = (uint64_t)recipe->seed};
     run.stop.spheres = how->max_spheres;
     run.stop.radius = how->min_radius;

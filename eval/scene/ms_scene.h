@@ -5,11 +5,11 @@
 #include <jansson.h>
 #include <stdio.h>
 
-#include "ms_allocate.h"
 #include "cli/ms_input.h"
-#include "ms_manifest.h"
-#include "measure/ms_metrics.h"
 #include "cli/ms_recipe.h"
+#include "measure/ms_metrics.h"
+#include "ms_allocate.h"
+#include "ms_manifest.h"
 
 enum { MS_SCENE_MAX_SPHERES = 1000 };
 
@@ -41,12 +41,12 @@ typedef struct ms_goal {
 /** The templates of a shape. */
 typedef struct ms_scene_shape {
     const ms_manifest_row *row; /* borrowed */
-    size_t most;     /* spheres of the largest template */
-    ms_clump *clump; /* templates of 1 .. most spheres */
+    size_t most;                /* spheres of the largest template */
+    ms_clump *clump;            /* templates of 1 .. most spheres */
     ms_score *score;
-    double *dice;    /* D alone */
-    json_t *input;   /* as ms_report_input_json */
-    size_t chosen;   /* number of spheres, after ms_scene_settle */
+    double *dice;  /* D alone */
+    json_t *input; /* as ms_report_input_json */
+    size_t chosen; /* number of spheres, after ms_scene_settle */
 } ms_scene_shape;
 
 /** A zeroed struct is empty. */

@@ -93,8 +93,10 @@ json_t *ms_scene_scores_json(const ms_scene_shape *shape)
 
 static json_t *goal_json(const ms_goal *goal)
 {
-    static const char *const NAMES[] = {[MS_GOAL_BUDGET] = "budget", [MS_GOAL_MEAN] = "mean_dice",
-                                        [MS_GOAL_KNEE] = "knee", [MS_GOAL_TOLERANCE] = "tolerance"};
+    static const char *const NAMES[] = {[MS_GOAL_BUDGET] = "budget",
+                                        [MS_GOAL_MEAN] = "mean_dice",
+                                        [MS_GOAL_KNEE] = "knee",
+                                        [MS_GOAL_TOLERANCE] = "tolerance"};
     json_t *json = json_pack("{s:o}", NAMES[goal->kind], ms_report_number(goal->value));
     if (json && goal->kind == MS_GOAL_TOLERANCE) {
         json_object_set_new(json, "measure", json_string(goal->measure->name));
@@ -129,10 +131,11 @@ void ms_scene_add_json(json_t *json, const ms_scene *scene, const ms_goal *goal)
     json_object_set_new(json, "mean_dice", json_real(sum->error));
     json_object_set_new(json, "least_gain", json_real(scene->least_gain));
     json_object_set_new(json, "slack", together ? json_real(sum->slack) : json_null());
-    json_object_set_new(json, "even", json_pack("{s:I,s:I,s:f}", "each", (json_int_t)scene->even_each, "spheres",
-                                                (json_int_t)even->spheres, "mean_dice", even->error));
-    json_object_set_new(json, "smallest", json_pack("{s:f,s:o}", "radius",
-                                                    ms_clump_smallest_radius(ms_scene_clump(smallest)), "shape",
-                                                    ms_report_text(smallest->row->path)));
+    json_object_set_new(json, "even",
+                        json_pack("{s:I,s:I,s:f}", "each", (json_int_t)scene->even_each, "spheres",
+                                  (json_int_t)even->spheres, "mean_dice", even->error));
+    json_object_set_new(json, "smallest",
+                        json_pack("{s:f,s:o}", "radius", ms_clump_smallest_radius(ms_scene_clump(smallest)), "shape",
+                                  ms_report_text(smallest->row->path)));
     json_object_set_new(json, "shapes", shapes);
 }

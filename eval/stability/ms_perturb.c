@@ -192,9 +192,9 @@ ms_status ms_perturb_refine(ms_mesh *out, const ms_mesh *mesh, ms_error *err)
     }
     side *sides = malloc(n * sizeof *sides);
     uint32_t *middle = malloc(n * sizeof *middle);
-    ms_status status = sides && middle ? MS_OK
-                                       : ms_fail(err, MS_ERR_NOMEM, "no memory for the edges of %zu triangles",
-                                                 mesh->n_triangles);
+    ms_status status = sides && middle
+                           ? MS_OK
+                           : ms_fail(err, MS_ERR_NOMEM, "no memory for the edges of %zu triangles", mesh->n_triangles);
     if (status == MS_OK) {
         const size_t edges = number_edges(middle, sides, mesh);
         status = ms_mesh_alloc(out, mesh->n_vertices + edges, 4 * mesh->n_triangles, err);
@@ -260,9 +260,9 @@ ms_status ms_perturb_decimate(ms_mesh *out, ms_mesh_report *report, const ms_mes
     }
     place *places = malloc(mesh->n_vertices * sizeof *places);
     uint32_t *joined = malloc(mesh->n_vertices * sizeof *joined);
-    ms_status status = places && joined ? ms_perturb_copy(out, mesh, err)
-                                        : ms_fail(err, MS_ERR_NOMEM, "no memory for the cells of %zu vertices",
-                                                  mesh->n_vertices);
+    ms_status status = places && joined
+                           ? ms_perturb_copy(out, mesh, err)
+                           : ms_fail(err, MS_ERR_NOMEM, "no memory for the cells of %zu vertices", mesh->n_vertices);
     if (status == MS_OK) {
         join_vertices(out, joined, places, cell);
         for (size_t k = 0; k < 3 * out->n_triangles; k++) {

@@ -5,10 +5,10 @@
 #include <omp.h>
 #include <string.h>
 
-#include "chart/ms_csv.h"
 #include "base/ms_file.h"
-#include "ms_perturb.h"
 #include "base/ms_text.h"
+#include "chart/ms_csv.h"
+#include "ms_perturb.h"
 
 #define CHANGE_NAME(code, name, level) name,
 static const char *const CHANGES[] = {MS_CHANGE_LIST(CHANGE_NAME)};
@@ -192,8 +192,8 @@ static ms_status seek_number(ms_stability_run *run, ms_run job, const ms_stabili
     ms_clump clump;
     ms_stop_reason reason;
     job.stop = ms_stop_none();
-    job.stop.spheres = s->spheres < MS_CLUMP_MAX_SPHERES / UNTIL_FACTOR ? s->spheres * UNTIL_FACTOR
-                                                                       : MS_CLUMP_MAX_SPHERES;
+    job.stop.spheres =
+        s->spheres < MS_CLUMP_MAX_SPHERES / UNTIL_FACTOR ? s->spheres * UNTIL_FACTOR : MS_CLUMP_MAX_SPHERES;
     job.stop.dice = s->until_dice;
     ms_status status = ms_generator_run(&clump, &reason, s->method->generator, &job, err);
     run->spheres_until = status == MS_OK && reason == MS_STOP_DICE ? clump.n_spheres : 0;
@@ -272,7 +272,8 @@ const ms_stability_run *ms_stability_unchanged(const ms_stability_run *runs, con
 void ms_stability_header(FILE *stream)
 {
     fputs("shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,status,n,stopped_by,"
-          "eta,dice,coverage,overshoot,off_volume,inertia_error,smallest_radius_ratio,pieces,n_until,seconds,spheres_fnv1a,"
+          "eta,dice,coverage,overshoot,off_volume,inertia_error,smallest_radius_ratio,pieces,n_until,seconds,spheres_"
+          "fnv1a,"
           "cause\n",
           stream);
 }
@@ -286,9 +287,8 @@ static void put_number(FILE *stream, double value)
 static void put_results(FILE *stream, const ms_stability_run *run)
 {
     const ms_metrics *m = &run->metrics;
-    const double values[] = {m->score.eta,         m->score.dice,       m->score.coverage,
-                             m->score.overshoot,   m->score.off_volume, m->inertia.weighted,
-                             m->smallest_radius_ratio, (double)m->pieces};
+    const double values[] = {m->score.eta,        m->score.dice,       m->score.coverage,        m->score.overshoot,
+                             m->score.off_volume, m->inertia.weighted, m->smallest_radius_ratio, (double)m->pieces};
     fprintf(stream, ",%zu,%s", m->spheres, ms_stop_name(run->reason));
     for (size_t v = 0; v < sizeof values / sizeof *values; v++) {
         put_number(stream, values[v]);

@@ -4,13 +4,13 @@
 
 #include <stdio.h>
 
-#include "compare/ms_compare_methods.h"
 #include "cli/ms_input.h"
+#include "compare/ms_compare_methods.h"
 #include "measure/ms_metrics.h"
 
 /* Changes, and what says how large one is (its level). */
 #define MS_CHANGE_LIST(X)                                                            \
-    X(NONE, "none", "nothing is changed: what the others are compared with")        \
+    X(NONE, "none", "nothing is changed: what the others are compared with")         \
     X(AXES, "axes", "number of the rotation of the cube, 1 to 23")                   \
     X(ROTATION, "rotation", "seed of the random rotation")                           \
     X(SHIFT, "shift", "number of the shift by parts of a voxel")                     \
@@ -36,10 +36,10 @@ ms_status ms_change_find(ms_change *change, const char *name, ms_error *err);
 int ms_change_runs(ms_change change, int runs);
 
 /** How a run ended. */
-#define MS_OUTCOME_LIST(X)                                                 \
-    X(OK, "ok")             /* as many spheres as asked for */             \
+#define MS_OUTCOME_LIST(X)                                                  \
+    X(OK, "ok")             /* as many spheres as asked for */              \
     X(SHORT, "short")       /* fewer: the method found no place for more */ \
-    X(FAILED, "failed")     /* the method gave nothing */                  \
+    X(FAILED, "failed")     /* the method gave nothing */                   \
     X(UNUSABLE, "unusable") /* the changed shape is no body, or its grid too large: no word on the method */
 
 #define MS_OUTCOME_ENUM(code, name) MS_OUTCOME_##code,
@@ -73,11 +73,11 @@ typedef struct ms_stability_run {
     double until_dice; /* below 0: not asked for */
     ms_outcome outcome;
     ms_stop_reason reason;
-    ms_metrics metrics;    /* against the unchanged shape, of the spheres moved back */
-    size_t spheres_until;  /* number with which the method met the mismatch asked for; 0: not with 10 times `asked` */
-    double seconds;        /* of the method */
-    uint64_t checksum;     /* of the spheres, moved back */
-    ms_error cause;        /* "" unless failed or unusable */
+    ms_metrics metrics;   /* against the unchanged shape, of the spheres moved back */
+    size_t spheres_until; /* number with which the method met the mismatch asked for; 0: not with 10 times `asked` */
+    double seconds;       /* of the method */
+    uint64_t checksum;    /* of the spheres, moved back */
+    ms_error cause;       /* "" unless failed or unusable */
 } ms_stability_run;
 
 /**

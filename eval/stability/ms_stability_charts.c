@@ -13,7 +13,7 @@ typedef struct album {
     const ms_stability_run *runs; /* of all methods */
     size_t n_runs;
     const ms_method *method;
-    int number; /* of the method */
+    int number;            /* of the method */
     ms_chart_point *point; /* one for each run */
     ms_chart_series *series;
     size_t n_points, n_series;
@@ -76,8 +76,8 @@ static int is_of(const album *a, const ms_stability_run *run, ms_change change)
 
 static ms_status draw_all(album *a, ms_error *err)
 {
-    static const ms_chart chart = {.x_label = "D of the unchanged shape", .y_label = "D of the changed shape",
-                                   .x_log = 1, .y_log = 1};
+    static const ms_chart chart = {
+        .x_label = "D of the unchanged shape", .y_label = "D of the changed shape", .x_log = 1, .y_log = 1};
     a->n_points = a->n_series = 0;
     for (int c = 0; c < MS_CHANGES; c++) {
         begin_series(a, ms_change_name((ms_change)c), MS_CHART_POINTS);
@@ -134,11 +134,13 @@ static int is_known(const ms_stability_run *runs, size_t r)
 
 ms_status ms_stability_charts(const char *folder, const ms_stability_run *runs, size_t n_runs, ms_error *err)
 {
-    album a = {.folder = folder, .runs = runs, .n_runs = n_runs,
+    album a = {.folder = folder,
+               .runs = runs,
+               .n_runs = n_runs,
                .point = malloc((n_runs + 1) * sizeof *a.point),
                .series = malloc((n_runs + MS_CHANGES) * sizeof *a.series)};
-    ms_status status = a.point && a.series ? MS_OK
-                                           : ms_fail(err, MS_ERR_NOMEM, "no memory for charts of %zu runs", n_runs);
+    ms_status status =
+        a.point && a.series ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for charts of %zu runs", n_runs);
     for (size_t r = 0; r < n_runs && status == MS_OK; r++) {
         if (!is_known(runs, r)) {
             a.method = runs[r].method;

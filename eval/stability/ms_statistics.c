@@ -88,8 +88,8 @@ static size_t list_groups(ms_spread_group *groups, const ms_stability_run *runs,
 {
     size_t count = 0;
     for (size_t r = 0; r < n_runs; r++) {
-        const ms_spread_group next = {.shape = all_shapes ? NULL : runs[r].shape, .method = runs[r].method,
-                                      .change = runs[r].change};
+        const ms_spread_group next = {
+            .shape = all_shapes ? NULL : runs[r].shape, .method = runs[r].method, .change = runs[r].change};
         int known = 0;
         for (size_t g = count; g-- > 0 && !known;) {
             known = is_of(&groups[g], &runs[r]);
@@ -135,8 +135,8 @@ static void print_number(FILE *stream, int width, int digits, double value)
 
 static void print_head(FILE *stream, const ms_spread_group *g, int until)
 {
-    fprintf(stream, "%s\n  %-22s %-10s %4s %5s %6s %5s %8s %31s %17s%s\n", g->shape ? g->shape : "all shapes",
-            "method", "changed", "runs", "same", "failed", "short", "unusable",
+    fprintf(stream, "%s\n  %-22s %-10s %4s %5s %6s %5s %8s %31s %17s%s\n", g->shape ? g->shape : "all shapes", "method",
+            "changed", "runs", "same", "failed", "short", "unusable",
             g->shape ? "D least  median    most st.dev." : "D/D none least .. most   st.dev.", "inertia error %",
             until ? "    n at fixed D" : "");
 }
@@ -144,8 +144,8 @@ static void print_head(FILE *stream, const ms_spread_group *g, int until)
 static void print_group(FILE *stream, const ms_spread_group *g, int until)
 {
     const ms_spread *d = &g->dice;
-    fprintf(stream, "  %-22s %-10s %4zu %5zu %6zu %5zu %8zu", ms_stability_label(g->method).text, ms_change_name(g->change), g->runs,
-            g->identical, g->failed, g->shorter, g->unusable);
+    fprintf(stream, "  %-22s %-10s %4zu %5zu %6zu %5zu %8zu", ms_stability_label(g->method).text,
+            ms_change_name(g->change), g->runs, g->identical, g->failed, g->shorter, g->unusable);
     print_number(stream, 7, 4, d->least);
     print_number(stream, 7, 4, d->median);
     print_number(stream, 7, 4, d->most);
@@ -180,7 +180,8 @@ void ms_spread_print(FILE *stream, const ms_spread_group *groups, size_t count, 
         const ms_spread_group *at = &groups[g];
         if (at->shape && at->cause) {
             fprintf(stream, "%s, %s, %s: %zu failed, %zu unusable: %s\n", at->shape,
-                    ms_stability_label(at->method).text, ms_change_name(at->change), at->failed, at->unusable, at->cause->text);
+                    ms_stability_label(at->method).text, ms_change_name(at->change), at->failed, at->unusable,
+                    at->cause->text);
         }
     }
 }
@@ -195,13 +196,13 @@ static json_t *spread_json(const ms_spread *s)
 static json_t *group_json(const ms_spread_group *g)
 {
     return json_pack("{s:o,s:o,s:s,s:I,s:I,s:I,s:I,s:I,s:I,s:o,s:o,s:o,s:o,s:o}", "shape",
-                     g->shape ? ms_report_text(g->shape) : json_null(), "method", ms_report_text(ms_stability_label(g->method).text),
-                     "perturbation", ms_change_name(g->change), "runs", (json_int_t)g->runs, "identical",
-                     (json_int_t)g->identical, "failed", (json_int_t)g->failed, "short", (json_int_t)g->shorter,
-                     "unusable", (json_int_t)g->unusable,
-                     "not_reached", (json_int_t)g->not_reached, g->shape ? "dice" : "dice_ratio",
-                     spread_json(&g->dice), "inertia_error_spread", spread_json(&g->inertia), "n_until",
-                     spread_json(&g->until), "worst", g->worst ? ms_report_text(g->worst) : json_null(), "cause",
+                     g->shape ? ms_report_text(g->shape) : json_null(), "method",
+                     ms_report_text(ms_stability_label(g->method).text), "perturbation", ms_change_name(g->change),
+                     "runs", (json_int_t)g->runs, "identical", (json_int_t)g->identical, "failed",
+                     (json_int_t)g->failed, "short", (json_int_t)g->shorter, "unusable", (json_int_t)g->unusable,
+                     "not_reached", (json_int_t)g->not_reached, g->shape ? "dice" : "dice_ratio", spread_json(&g->dice),
+                     "inertia_error_spread", spread_json(&g->inertia), "n_until", spread_json(&g->until), "worst",
+                     g->worst ? ms_report_text(g->worst) : json_null(), "cause",
                      g->cause ? ms_report_text(g->cause->text) : json_null());
 }
 

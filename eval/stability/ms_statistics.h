@@ -19,7 +19,7 @@ ms_spread ms_spread_of(double *values, size_t count);
 
 /** The runs of one method with one change, on one shape or on all. */
 typedef struct ms_spread_group {
-    const char *shape; /* borrowed; NULL: all */
+    const char *shape;       /* borrowed; NULL: all */
     const ms_method *method; /* borrowed */
     ms_change change;
     size_t runs; /* without the unusable ones */

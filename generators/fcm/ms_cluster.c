@@ -30,9 +30,9 @@ typedef struct block {
 
 struct ms_cluster {
     size_t count, n_blocks;
-    block *blocks;     /* the last one is filled up with its last point */
-    double extent;     /* diagonal of the points' box */
-    double least;      /* squared distances below this count as this */
+    block *blocks; /* the last one is filled up with its last point */
+    double extent; /* diagonal of the points' box */
+    double least;  /* squared distances below this count as this */
 };
 
 /* What one part of the points adds up to. */
@@ -47,8 +47,8 @@ typedef struct share {
 typedef struct work {
     const ms_cluster *cluster;
     const ms_cluster_rule *rule;
-    size_t count;           /* of centres */
-    double (*sum)[TERMS];   /* PARTS times as many */
+    size_t count;            /* of centres */
+    double (*sum)[TERMS];    /* PARTS times as many */
     double (*weight)[LANES]; /* `count` for each thread */
     share parts[PARTS];
 } work;
@@ -142,8 +142,7 @@ static void measure(double (*square)[LANES], double nearest[LANES], const block 
 }
 
 /* Squared distances become w_i (d / d_i). @param[out] total W */
-static void weigh(double (*weight)[LANES], double total[LANES], const double nearest[LANES], size_t count,
-                  double power)
+static void weigh(double (*weight)[LANES], double total[LANES], const double nearest[LANES], size_t count, double power)
 {
     for (int l = 0; l < LANES; l++) {
         total[l] = 0;
@@ -288,7 +287,7 @@ static ms_cluster_result descend(double (*centre)[AXES], work *w)
     ms_cluster_result result = {.objective = HUGE_VAL};
     int going = 1;
     while (going && result.iterations < w->rule->iterations) {
-        pass(w, (const double (*)[AXES])centre);
+        pass(w, (const double(*)[AXES])centre);
         const double before = result.objective;
         result.objective = w->parts[0].objective;
         result.iterations++;
@@ -315,7 +314,7 @@ static size_t find_coincident(const double (*centre)[AXES], size_t count, double
 static void separate(ms_cluster_result *result, double (*centre)[AXES], double (*trial)[AXES], work *w)
 {
     for (size_t t = 0; t < w->count; t++) {
-        const size_t which = find_coincident((const double (*)[AXES])centre, w->count, w->cluster->extent);
+        const size_t which = find_coincident((const double(*)[AXES])centre, w->count, w->cluster->extent);
         if (which == w->count || w->parts[0].farthest <= w->cluster->least) {
             return;
         }
@@ -335,13 +334,15 @@ ms_status ms_cluster_run(ms_cluster_result *result, double (*centre)[4], size_t 
                          const ms_cluster_rule *rule, ms_error *err)
 {
     if (count == 0 || !(rule->fuzzifier >= 1)) {
-        return ms_fail(err, MS_ERR_ARG, "%zu clusters with the fuzzifier %g; there must be one at least, and it "
-                       "must be 1 or more", count, rule->fuzzifier);
+        return ms_fail(err, MS_ERR_ARG,
+                       "%zu clusters with the fuzzifier %g; there must be one at least, and it "
+                       "must be 1 or more",
+                       count, rule->fuzzifier);
     }
     work w = {.cluster = cluster, .rule = rule, .count = count};
     w.sum = malloc(PARTS * count * sizeof *w.sum);
     w.weight = malloc((size_t)omp_get_max_threads() * count * sizeof *w.weight);
-    double (*trial)[AXES] = malloc(count * sizeof *trial);
+    double(*trial)[AXES] = malloc(count * sizeof *trial);
     ms_status status = MS_OK;
     if (w.sum && w.weight && trial) {
         ms_cluster_result reached = descend(centre, &w);
@@ -411,7 +412,7 @@ ms_status ms_cluster_start(double (*centre)[4], size_t given, size_t wanted, con
 ms_status ms_cluster_memberships(double *u, const double (*centre)[4], size_t count, const ms_cluster *cluster,
                                  double fuzzifier, ms_error *err)
 {
-    double (*weight)[LANES] = malloc((count + 1) * sizeof *weight), nearest[LANES], total[LANES];
+    double(*weight)[LANES] = malloc((count + 1) * sizeof *weight), nearest[LANES], total[LANES];
     if (!weight) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu clusters", count);
     }

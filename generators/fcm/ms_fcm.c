@@ -9,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_cluster.h"
-#include "shared/ms_cover.h"
-#include "ms_random_spheres.h"
 #include "measure/ms_metrics.h"
+#include "ms_cluster.h"
+#include "ms_random_spheres.h"
 #include "shared/ms_bisect_count.h"
+#include "shared/ms_cover.h"
 
 enum {
     NODES_COVERED,
@@ -121,7 +121,7 @@ static void drop_small(ms_ball *ball, size_t *count, fcm *f)
 /* The points (x, y, z, r) that are clustered. */
 static ms_status make_points(fcm *f, const ms_ball *ball, size_t count, ms_error *err)
 {
-    double (*point)[4] = malloc((count + 1) * sizeof *point);
+    double(*point)[4] = malloc((count + 1) * sizeof *point);
     ms_status status = MS_OK;
     if (!point) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory to cluster %zu spheres; lower filling", count);
@@ -132,7 +132,7 @@ static ms_status make_points(fcm *f, const ms_ball *ball, size_t count, ms_error
     }
     f->filled = count;
     if (count > 0) {
-        status = ms_cluster_build(&f->cluster, (const double (*)[4])point, count, err);
+        status = ms_cluster_build(&f->cluster, (const double(*)[4])point, count, err);
     }
     free(point);
     return status;
@@ -165,7 +165,7 @@ static ms_status fill(fcm *f, ms_error *err)
 /* The best start for n clusters: the first one goes on from fewer. */
 static ms_status start(double (*centre)[4], size_t n, const ms_cluster_rule *rule, const fcm *f, ms_error *err)
 {
-    double (*trial)[4] = malloc(n * sizeof *trial), least = HUGE_VAL;
+    double(*trial)[4] = malloc(n * sizeof *trial), least = HUGE_VAL;
     ms_status status = trial ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu clusters", n);
     for (size_t r = 0; status == MS_OK && r < (size_t)option(f, RESTARTS); r++) {
         ms_cluster_result result;
@@ -173,8 +173,8 @@ static ms_status start(double (*centre)[4], size_t n, const ms_cluster_rule *rul
         if (given > 0) {
             memcpy(trial, f->few, given * sizeof *trial);
         }
-        status = ms_cluster_start(trial, given, n, f->cluster, (ms_cluster_spread)option(f, START), f->run->seed + r,
-                                  err);
+        status =
+            ms_cluster_start(trial, given, n, f->cluster, (ms_cluster_spread)option(f, START), f->run->seed + r, err);
         if (status == MS_OK) {
             status = ms_cluster_run(&result, trial, n, f->cluster, rule, err);
         }
@@ -305,7 +305,7 @@ static ms_status sweep(trials *t, const fcm *f, ms_error *err)
     for (size_t s = 0; status == MS_OK && s < values; s++) {
         status = cluster(t, given > 0 ? given : SWEEP[s], s == 0, f, err);
         if (status == MS_OK) {
-            make_spheres(&t->next, (const double (*)[4])t->centre, t->n, f);
+            make_spheres(&t->next, (const double(*)[4])t->centre, t->n, f);
             status = judge(&t->next, f, err);
         }
         if (status == MS_OK && (s == 0 || is_better(&t->next, &t->best))) {
@@ -350,7 +350,7 @@ static ms_status order(ms_clump *clump, const attempt *a, const ms_run *run, ms_
 /* Where more clusters start from. */
 static void remember(fcm *f, trials *t)
 {
-    double (*swap)[4] = f->few;
+    double(*swap)[4] = f->few;
     f->few = t->first;
     f->n_few = t->n;
     t->first = swap;

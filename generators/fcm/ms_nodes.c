@@ -132,7 +132,7 @@ ms_status ms_nodes_of_target(ms_nodes *nodes, const ms_target *target, ms_error 
 {
     const ms_mesh *mesh = target->mesh;
     const size_t count = mesh ? mesh->n_vertices : list_border(NULL, &target->grid);
-    double (*at)[3] = malloc((count + 1) * sizeof *at), unused;
+    double(*at)[3] = malloc((count + 1) * sizeof *at), unused;
     memset(nodes, 0, sizeof *nodes);
     if (!at) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu nodes", count);
@@ -143,7 +143,7 @@ ms_status ms_nodes_of_target(ms_nodes *nodes, const ms_target *target, ms_error 
     for (size_t v = 0; mesh && v < count; v++) {
         ms_target_to_voxels(at[v], &unused, &target->grid, mesh->vertex[v], 0);
     }
-    const ms_status status = ms_nodes_build(nodes, (const double (*)[3])at, count, err);
+    const ms_status status = ms_nodes_build(nodes, (const double(*)[3])at, count, err);
     free(at);
     return status;
 }
@@ -159,9 +159,8 @@ typedef struct finding {
 static void try_node(finding *best, const ms_nodes *nodes, size_t p)
 {
     const double *a = nodes->at[p], *b = best->place;
-    const double away = best->norm == MS_NORM_EUCLIDEAN
-                            ? ms_squared_distance(a, b)
-                            : fabs(a[0] - b[0]) + fabs(a[1] - b[1]) + fabs(a[2] - b[2]);
+    const double away = best->norm == MS_NORM_EUCLIDEAN ? ms_squared_distance(a, b)
+                                                        : fabs(a[0] - b[0]) + fabs(a[1] - b[1]) + fabs(a[2] - b[2]);
     if (away < best->away) {
         best->away = away;
         best->index = p;

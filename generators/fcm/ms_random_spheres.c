@@ -33,8 +33,7 @@ static void find_box(filling *f)
     }
 }
 
-static ms_status open_filling(filling *f, const ms_target *target, const ms_nodes *nodes, uint64_t seed,
-                              ms_error *err)
+static ms_status open_filling(filling *f, const ms_target *target, const ms_nodes *nodes, uint64_t seed, ms_error *err)
 {
     *f = (filling){.target = target, .nodes = nodes};
     find_box(f);
@@ -130,9 +129,10 @@ static void draw_batch(filling *f, size_t tries, const ms_fill_rule *rule)
 static ms_status out_of_tries(const filling *f, const ms_fill_rule *rule, ms_error *err)
 {
     const double share = 100 * (double)f->n_covered / (double)f->nodes->count;
-    return ms_fail(err, MS_ERR_LIMIT, "%zu random centres gave %zu spheres that touch %.1f %% of %zu nodes, not %g %%; "
-                   "lower nodes-covered, raise tries, or coarsen the mesh", rule->tries, f->count, share,
-                   f->nodes->count, 100 * rule->nodes_covered);
+    return ms_fail(err, MS_ERR_LIMIT,
+                   "%zu random centres gave %zu spheres that touch %.1f %% of %zu nodes, not %g %%; "
+                   "lower nodes-covered, raise tries, or coarsen the mesh",
+                   rule->tries, f->count, share, f->nodes->count, 100 * rule->nodes_covered);
 }
 
 ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,

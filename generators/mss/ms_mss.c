@@ -43,8 +43,8 @@ typedef struct mss {
     mss_candidate *candidates; /* maxima of E* where a sphere may be placed */
     size_t n_candidates, room;
     double spacing; /* delta_min, in voxels */
-    int too_small; /* a maximum was passed over because its sphere would be too small */
-    ms_tally sum;  /* of the spheres so far */
+    int too_small;  /* a maximum was passed over because its sphere would be too small */
+    ms_tally sum;   /* of the spheres so far */
 } mss;
 
 static double option(const mss *m, int which)
@@ -290,8 +290,7 @@ static ms_status step(ms_clump *clump, ms_stop_reason *reason, mss *m, ms_error 
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", limit);
     }
     const size_t taken = choose(chosen, limit, m);
-    ms_status status =
-        taken > 0 ? add_spheres(clump, reason, m, chosen, taken, err) : look_closer(reason, m, err);
+    ms_status status = taken > 0 ? add_spheres(clump, reason, m, chosen, taken, err) : look_closer(reason, m, err);
     free(chosen);
     return status;
 }

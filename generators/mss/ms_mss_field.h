@@ -8,14 +8,14 @@
 
 typedef struct mss_field {
     const ms_target *target;
-    const float *e;    /* E; with planes, no more than the distance to the nearest plane */
-    float *own_e;      /* where e is kept if it is not the target's own */
-    ms_raster raster;  /* the union of the spheres so far, S~ */
-    float weight;      /* w */
-    float *star;       /* E*, in voxels */
-    float deepest;     /* largest E */
+    const float *e;      /* E; with planes, no more than the distance to the nearest plane */
+    float *own_e;        /* where e is kept if it is not the target's own */
+    ms_raster raster;    /* the union of the spheres so far, S~ */
+    float weight;        /* w */
+    float *star;         /* E*, in voxels */
+    float deepest;       /* largest E */
     float deepest_union; /* largest E~ so far; E~ only grows */
-    int lo[3], hi[3];  /* box lo <= (i,j,k) < hi in which the last update changed E*; empty: lo = hi */
+    int lo[3], hi[3];    /* box lo <= (i,j,k) < hi in which the last update changed E*; empty: lo = hi */
 } mss_field;
 
 /**

@@ -82,8 +82,8 @@ typedef signed char direction[3];
 
 /* Of the squares only those with a voxel of higher index behind them. */
 static const direction SQUARE[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-static const direction EDGE[] = {{0, -1, -1}, {0, 1, -1}, {0, -1, 1}, {0, 1, 1}, {-1, 0, -1}, {1, 0, -1},
-                                 {-1, 0, 1},  {1, 0, 1},  {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}};
+static const direction EDGE[] = {{0, -1, -1}, {0, 1, -1}, {0, -1, 1},  {0, 1, 1},  {-1, 0, -1}, {1, 0, -1},
+                                 {-1, 0, 1},  {1, 0, 1},  {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0},  {1, 1, 0}};
 static const direction CORNER[] = {{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1},
                                    {-1, -1, 1},  {1, -1, 1},  {-1, 1, 1},  {1, 1, 1}};
 static const struct {

@@ -37,8 +37,8 @@ static place look(const ms_closest *closest, const place *start, const double u[
 
 /* Where the radius ceases to rise, between a place where it does and one where it does not:
  * the lines through both meet there, if no third face is nearer. */
-static place find_ridge(place rising, place falling, const ms_closest *closest, const place *start,
-                        const double u[3], double tolerance)
+static place find_ridge(place rising, place falling, const ms_closest *closest, const place *start, const double u[3],
+                        double tolerance)
 {
     for (int step = 0; step < MAX_STEPS && falling.s - rising.s > tolerance; step++) {
         const double s = (falling.radius - falling.slope * falling.s - rising.radius + rising.slope * rising.s) /

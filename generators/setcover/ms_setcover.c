@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "shared/ms_cover.h"
 #include "ms_setcover_candidates.h"
+#include "shared/ms_cover.h"
 
 enum { SKELETON, SKELETON_DEQ, CANDIDATES, ALIGN, CONNECTED };
 
@@ -47,8 +47,8 @@ static void drop_small(ms_ball *candidate, size_t *count, const ms_run *run)
 }
 
 /* Takes one sphere. */
-static ms_status accept(ms_clump *clump, ms_stop_reason *reason, ms_tally *sum, ms_raster *raster,
-                        const ms_ball *ball, const ms_run *run, ms_error *err)
+static ms_status accept(ms_clump *clump, ms_stop_reason *reason, ms_tally *sum, ms_raster *raster, const ms_ball *ball,
+                        const ms_run *run, ms_error *err)
 {
     ms_sphere sphere;
     ms_target_from_voxels(sphere.centre, &sphere.radius, &run->target->grid, ball->centre, ball->radius);

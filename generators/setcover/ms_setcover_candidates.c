@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_vector.h"
 #include "mesh/ms_inertia.h"
 #include "ms_medial.h"
-#include "base/ms_vector.h"
 #include "voxel/ms_voxelize.h"
 
 /* A skeleton's grid of this size is allowed whatever the target's. */
@@ -261,12 +261,12 @@ static double choose_step(const ms_target *target, const setcover_lattice *latti
     return lattice->align ? fmax(h, wanted) : h * fmax(1, floor(wanted / h));
 }
 
-ms_status setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target,
-                              const setcover_lattice *lattice, ms_error *err)
+ms_status setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target, const setcover_lattice *lattice,
+                              ms_error *err)
 {
     const double step = choose_step(target, lattice);
-    const int medial = is_by_mesh(target) && lattice->kind == MS_SKELETON_SURFACE &&
-                       lattice->centres == SETCOVER_MEDIAL;
+    const int medial =
+        is_by_mesh(target) && lattice->kind == MS_SKELETON_SURFACE && lattice->centres == SETCOVER_MEDIAL;
     ms_grid skeleton = {0};
     frame f;
     *ball = NULL;

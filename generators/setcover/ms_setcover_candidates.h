@@ -4,9 +4,9 @@
 
 #include <stddef.h>
 
+#include "ms_thinning.h"
 #include "voxel/ms_raster.h"
 #include "voxel/ms_target.h"
-#include "ms_thinning.h"
 
 /** Which voxels of the lattice become candidates. */
 typedef enum setcover_centres {
@@ -41,7 +41,7 @@ typedef struct setcover_lattice {
  * @return MS_OK; MS_ERR_LIMIT if the lattice would be larger than the target's grid and than
  *         16 million voxels; MS_ERR_SHAPE if no voxel of it is inside; MS_ERR_NOMEM
  */
-ms_status setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target,
-                              const setcover_lattice *lattice, ms_error *err);
+ms_status setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target, const setcover_lattice *lattice,
+                              ms_error *err);
 
 #endif

@@ -27,14 +27,14 @@ typedef struct thinning {
     uint8_t *inside; /* X */
     uint8_t *state;
     const int *n;
-    ptrdiff_t row[9];    /* where the rows of a neighbourhood begin, seen from its centre */
-    ptrdiff_t face[6];   /* the neighbours at the faces */
+    ptrdiff_t row[9];  /* where the rows of a neighbourhood begin, seen from its centre */
+    ptrdiff_t face[6]; /* the neighbours at the faces */
     ms_skeleton kind;
-    list layer;          /* voxels whose fate may have changed; none of them an END */
+    list layer; /* voxels whose fate may have changed; none of them an END */
     list next;
-    size_t room;         /* of what follows */
-    uint32_t *object;    /* neighbourhood of each voxel of the layer */
-    uint8_t *keep;       /* chosen to stay, by a critical clique of the rank at hand */
+    size_t room;      /* of what follows */
+    uint32_t *object; /* neighbourhood of each voxel of the layer */
+    uint8_t *keep;    /* chosen to stay, by a critical clique of the rank at hand */
 } thinning;
 
 static ms_status push(list *l, size_t voxel, ms_error *err)
@@ -100,9 +100,9 @@ static ms_status make_room(thinning *t, ms_error *err)
         t->object = malloc(t->room * sizeof *t->object);
         t->keep = malloc(t->room);
     }
-    return t->object && t->keep ? MS_OK
-                                : ms_fail(err, MS_ERR_NOMEM, "no memory to thin a layer of %zu voxels; use fewer cells",
-                                          t->room);
+    return t->object && t->keep
+               ? MS_OK
+               : ms_fail(err, MS_ERR_NOMEM, "no memory to thin a layer of %zu voxels; use fewer cells", t->room);
 }
 
 /* Finds the simple voxels of the layer, the critical 3-cliques being all others, and moves
@@ -136,8 +136,8 @@ static void keep_cliques(thinning *t, ptrdiff_t simple, int rank)
 #pragma omp parallel for schedule(static)
     for (ptrdiff_t i = 0; i < simple; i++) {
         const size_t voxel = t->layer.voxel[i];
-        t->keep[i] = (t->state[voxel] & FREE) &&
-                     ms_clique_keeps(t->object[i], neighbourhood(t, t->state, voxel, FREE), rank);
+        t->keep[i] =
+            (t->state[voxel] & FREE) && ms_clique_keeps(t->object[i], neighbourhood(t, t->state, voxel, FREE), rank);
     }
     for (ptrdiff_t i = 0; i < simple; i++) {
         if (t->keep[i]) {
@@ -249,8 +249,10 @@ static ms_status list_border(thinning *t, ms_error *err)
                     continue;
                 }
                 if (outermost(t->n, i, j, k)) {
-                    return ms_fail(err, MS_ERR_ARG, "voxel %d,%d,%d on the rim of the grid is inside; thinning needs "
-                                   "a layer of background around the shape", i, j, k);
+                    return ms_fail(err, MS_ERR_ARG,
+                                   "voxel %d,%d,%d on the rim of the grid is inside; thinning needs "
+                                   "a layer of background around the shape",
+                                   i, j, k);
                 }
                 status = is_interior(t, voxel) ? MS_OK : push(&t->layer, voxel, err);
             }
@@ -267,9 +269,9 @@ ms_status ms_thinning(uint8_t *inside, const int n[3], ms_skeleton kind, ms_erro
         t.row[r] = (r / 3 - 1) * plane + (r % 3 - 1) * row - 1;
     }
     t.state = calloc((size_t)plane * (size_t)n[2], 1);
-    ms_status status = t.state ? list_border(&t, err)
-                               : ms_fail(err, MS_ERR_NOMEM, "no memory to thin %dx%dx%d voxels; use fewer cells", n[0],
-                                         n[1], n[2]);
+    ms_status status =
+        t.state ? list_border(&t, err)
+                : ms_fail(err, MS_ERR_NOMEM, "no memory to thin %dx%dx%d voxels; use fewer cells", n[0], n[1], n[2]);
     size_t removed = 1;
     while (status == MS_OK && removed > 0 && t.layer.count > 0) {
         status = thin_layer(&removed, &t, err);

@@ -331,24 +331,31 @@ ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *can
 {
     *out = NULL;
     if (count > UINT32_MAX) {
-        return ms_fail(err, MS_ERR_LIMIT, "%zu candidates for spheres, and no more than %u can be compared; use fewer "
-                       "cells", count, (unsigned)UINT32_MAX);
+        return ms_fail(err, MS_ERR_LIMIT,
+                       "%zu candidates for spheres, and no more than %u can be compared; use fewer "
+                       "cells",
+                       count, (unsigned)UINT32_MAX);
     }
     const size_t words = ((size_t)grid->n[0] + WORD - 1) / WORD;
     const size_t total = words * (size_t)grid->n[1] * (size_t)grid->n[2] + 1;
     const size_t most_runs = MAX_RUNS / (count + 1024);
     ms_cover *cover = calloc(1, sizeof *cover);
     if (cover) {
-        *cover = (ms_cover){.n = {grid->n[0], grid->n[1], grid->n[2]}, .words = words, .candidate = candidate,
-                            .count = count, .connected = connected, .left = calloc(total, sizeof *cover->left),
+        *cover = (ms_cover){.n = {grid->n[0], grid->n[1], grid->n[2]},
+                            .words = words,
+                            .candidate = candidate,
+                            .count = count,
+                            .connected = connected,
+                            .left = calloc(total, sizeof *cover->left),
                             .entry = malloc((count + 1) * sizeof *cover->entry),
                             .remains = calloc(count + 1, sizeof *cover->remains),
-                            .most_runs = most_runs, .found = malloc((most_runs + 1) * sizeof *cover->found)};
+                            .most_runs = most_runs,
+                            .found = malloc((most_runs + 1) * sizeof *cover->found)};
     }
     if (!cover || !cover->left || !cover->entry || !cover->remains || !cover->found) {
         ms_cover_free(cover);
-        return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres on %zu voxels; use fewer cells",
-                       count, ms_grid_voxels(grid));
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres on %zu voxels; use fewer cells", count,
+                       ms_grid_voxels(grid));
     }
     fill(cover, grid);
     rank_all(cover, count);

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ms_variational_start.h"
 #include "base/ms_vector.h"
+#include "ms_variational_start.h"
 
 /* Counts all spheres and their images on the grid; `all` is how many there are. */
 static ms_status count_all(overlap *out, size_t *all, const ms_ball *ball, size_t count, const ms_grid *grid, int step,
@@ -115,9 +115,8 @@ ms_status drop_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_grid
     ms_ball *dropped = malloc((most + 1) * sizeof *dropped);
     int64_t *loss = malloc((*count + 1) * sizeof *loss);
     size_t n_dropped = 0, gone = 0, b;
-    ms_status status = dropped && loss
-                           ? find_losses(loss, ball, *count, grid, step, m, err)
-                           : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
+    ms_status status = dropped && loss ? find_losses(loss, ball, *count, grid, step, m, err)
+                                       : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
     while (status == MS_OK && gone < most &&
            (b = cheapest(ball, *count, loss, most - gone, m, dropped, n_dropped)) != SIZE_MAX) {
         dropped[n_dropped++] = ball[b];

@@ -2,8 +2,8 @@
 #ifndef MS_PRUNE_H
 #define MS_PRUNE_H
 
-#include "ms_mirror.h"
 #include "ms_coverage_count.h"
+#include "ms_mirror.h"
 
 /**
  * Drops the spheres whose loss raises |S xor U| least. Of those dropped at once no two overlap, as the loss of one

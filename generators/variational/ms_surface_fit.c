@@ -71,8 +71,7 @@ typedef struct workspace {
 static int compare_ends(const void *a, const void *b)
 {
     const end *p = a, *q = b;
-    return p->left != q->left ? (p->left > q->left) - (p->left < q->left)
-                              : (p->ball > q->ball) - (p->ball < q->ball);
+    return p->left != q->left ? (p->left > q->left) - (p->left < q->left) : (p->ball > q->ball) - (p->ball < q->ball);
 }
 
 static void sort_ends(sweep *s)

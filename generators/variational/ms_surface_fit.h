@@ -4,16 +4,16 @@
 
 #include <stdint.h>
 
-#include "ms_signed_distance.h"
 #include "ms_mirror.h"
+#include "ms_signed_distance.h"
 #include "shared/ms_planes.h"
 #include "voxel/ms_raster.h"
 
 /** What the spheres of a fit have to keep to; lengths in voxels. */
 typedef struct exposed_bounds {
-    double least;      /* no radius below this */
-    double protrusion; /* no sphere sticks out by more; HUGE_VAL: no bound */
-    int equal;         /* nonzero: one radius for all */
+    double least;              /* no radius below this */
+    double protrusion;         /* no sphere sticks out by more; HUGE_VAL: no bound */
+    int equal;                 /* nonzero: one radius for all */
     const ms_settings *planes; /* those that no sphere crosses; NULL: none */
 } exposed_bounds;
 
@@ -22,9 +22,9 @@ typedef struct exposed_fit {
     const ms_field *field; /* borrowed */
     exposed_bounds bounds;
     mirrors mirrors; /* each sphere stands for its images, too; zero: for itself */
-    int points;     /* per sphere */
-    uint64_t seed;  /* of the turns of the points */
-    uint64_t turns; /* made so far */
+    int points;      /* per sphere */
+    uint64_t seed;   /* of the turns of the points */
+    uint64_t turns;  /* made so far */
 } exposed_fit;
 
 /**

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "shared/ms_bisect_count.h"
 #include "ms_variational_solve.h"
+#include "shared/ms_bisect_count.h"
 
 enum { EFFORT, POINTS, PROTRUSION, EQUAL_RADIUS, SYMMETRY, PLANES, REFINE };
 

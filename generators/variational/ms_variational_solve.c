@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_prune.h"
+#include "base/ms_vector.h"
 #include "ms_coverage_count.h"
 #include "ms_pattern_search.h"
+#include "ms_prune.h"
 #include "ms_variational_start.h"
-#include "base/ms_vector.h"
 
 /* Spheres at the start: so many times those asked for, and some more. */
 static const double SURPLUS = 1.25;
@@ -296,10 +296,8 @@ static ms_status solver_begin(solver *s, const ms_run *run, const variational_se
     const ms_clump *given = settings->refine;
     const size_t most = n < run->target->voxels ? n : run->target->voxels; /* more would be alike */
     const size_t room = (size_t)ceil(SURPLUS * (double)most) + MORE;
-    *s = (solver){.run = run,
-                  .settings = settings,
-                  .wanted = n,
-                  .room = room > given->n_spheres ? room : given->n_spheres};
+    *s = (solver){
+        .run = run, .settings = settings, .wanted = n, .room = room > given->n_spheres ? room : given->n_spheres};
     s->ball = malloc(s->room * sizeof *s->ball);
     s->best = malloc(s->room * sizeof *s->best);
     s->all = malloc((s->room << (across[0] + across[1] + across[2])) * sizeof *s->all);

@@ -2,12 +2,12 @@
 #ifndef MS_VARIATIONAL_SOLVE_H
 #define MS_VARIATIONAL_SOLVE_H
 
-#include "ms_surface_fit.h"
 #include "ms_generator.h"
+#include "ms_surface_fit.h"
 
 typedef struct variational_settings {
-    int rounds; /* of adding spheres and dropping others after the fit */
-    int points; /* per sphere */
+    int rounds;            /* of adding spheres and dropping others after the fit */
+    int points;            /* per sphere */
     exposed_bounds bounds; /* `least` is found from the stop rule */
     mirrors mirrors;
     const ms_clump *refine; /* spheres to start from; empty: none */

@@ -242,8 +242,14 @@ static void checksums_are_fnv(void **state)
 
 static void endings_are_lower_case(void **state)
 {
-    static const char *const cases[][2] = {{"a.STL", "stl"}, {"x/b.tar.Gz", "gz"}, {"a.b/c", ""}, {"none", ""},
-        {"dot.", ""}, {"a.123456789012345", "123456789012345"}, {"a.1234567890123456", ""}, {"", ""}};
+    static const char *const cases[][2] = {{"a.STL", "stl"},
+                                           {"x/b.tar.Gz", "gz"},
+                                           {"a.b/c", ""},
+                                           {"none", ""},
+                                           {"dot.", ""},
+                                           {"a.123456789012345", "123456789012345"},
+                                           {"a.1234567890123456", ""},
+                                           {"", ""}};
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char ending[16];

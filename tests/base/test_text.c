@@ -14,11 +14,35 @@ static int parse(double *value, const char *text)
 /* strtod of the C library rounds correctly: it is the judge. */
 static void numbers_are_rounded_as_strtod_does(void **state)
 {
-    static const char *const texts[] = {"0", "-0", "+1", "1.", ".5", "-2.385", "1e22", "1e23", "1e-22", "1e-23",
-        "9007199254740992", "9007199254740993", "123456789012345678901234567890", "0.1", "0.30000000000000004",
-        "1.7976931348623157e308", "4.9e-324", "2.2250738585072011e-308", "1e-400", "0e999999999999",
-        "3.14159265358979",         "8.41e21", "0.000000000000000000000000123", "1.00000000000000011102230246251565", "999999944.719430",
-        "179769313486231580793728971405301e276", "0000000000000000000000000000001.5", "1E+5", "1e-5"};
+    static const char *const texts[] = {"0",
+                                        "-0",
+                                        "+1",
+                                        "1.",
+                                        ".5",
+                                        "-2.385",
+                                        "1e22",
+                                        "1e23",
+                                        "1e-22",
+                                        "1e-23",
+                                        "9007199254740992",
+                                        "9007199254740993",
+                                        "123456789012345678901234567890",
+                                        "0.1",
+                                        "0.30000000000000004",
+                                        "1.7976931348623157e308",
+                                        "4.9e-324",
+                                        "2.2250738585072011e-308",
+                                        "1e-400",
+                                        "0e999999999999",
+                                        "3.14159265358979",
+                                        "8.41e21",
+                                        "0.000000000000000000000000123",
+                                        "1.00000000000000011102230246251565",
+                                        "999999944.719430",
+                                        "179769313486231580793728971405301e276",
+                                        "0000000000000000000000000000001.5",
+                                        "1E+5",
+                                        "1e-5"};
     (void)state;
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         double value = 7.0;
@@ -58,8 +82,8 @@ static void special_numbers_are_read(void **state)
 
 static void what_is_no_number_is_refused(void **state)
 {
-    static const char *const texts[] = {"", "+", "-", ".", "e5", "1e", "1e+", "1,5", "0x10", "1.2.3", "--1", "1f",
-        "abc", "1e5.", "nanx", "in", "1_000", " 1", "1 "};
+    static const char *const texts[] = {"",    "+",  "-",   ".",    "e5",   "1e", "1e+",   "1,5", "0x10", "1.2.3",
+                                        "--1", "1f", "abc", "1e5.", "nanx", "in", "1_000", " 1",  "1 "};
     double value;
     (void)state;
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
@@ -103,7 +127,8 @@ static void integers_are_strict(void **state)
 
 static void lines_are_counted_over_comments_and_joints(void **state)
 {
-    const char *lines = "\xEF\xBB\xBF" "a # x\r\n\n b \\\n c\\\r\nd\n\te";
+    const char *lines = "\xEF\xBB\xBF"
+                        "a # x\r\n\n b \\\n c\\\r\nd\n\te";
     ms_bytes bytes = copy_bytes(lines, strlen(lines));
     ms_text text;
     ms_word word;

@@ -38,14 +38,14 @@ static ms_status time_clusters(double *seconds, size_t *iterations, const ms_bal
     const ms_cluster_rule rule = {.fuzzifier = m, .tolerance = 1e-3, .iterations = 500};
     ms_cluster *cluster = NULL;
     ms_cluster_result result = {0};
-    double (*point)[4] = malloc(filling * sizeof *point), centre[MOST][4];
+    double(*point)[4] = malloc(filling * sizeof *point), centre[MOST][4];
     ms_status status = point ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu points", filling);
     for (size_t b = 0; status == MS_OK && b < filling; b++) {
         memcpy(point[b], ball[b].centre, sizeof ball[b].centre);
         point[b][3] = ball[b].radius;
     }
     const double start = omp_get_wtime();
-    if (status == MS_OK && (status = ms_cluster_build(&cluster, (const double (*)[4])point, filling, err)) == MS_OK &&
+    if (status == MS_OK && (status = ms_cluster_build(&cluster, (const double(*)[4])point, filling, err)) == MS_OK &&
         (status = ms_cluster_start(centre, 0, n, cluster, MS_CLUSTER_FAR, 1, err)) == MS_OK) {
         status = ms_cluster_run(&result, centre, n, cluster, &rule, err);
     }
@@ -67,9 +67,9 @@ static ms_status compare(const ms_target *target, const ms_ball *ball, ms_error 
         if (status == MS_OK && (status = time_clusters(&more, &its_more, ball, 20000, 50, M[m], err)) == MS_OK &&
             (status = time_clusters(&wider, &its_wider, ball, 5000, 100, M[m], err)) == MS_OK) {
             printf("m %.1f: 5000 spheres into 50, %zu iterations, %.2f ns a pair; time / mss %.2f; per iteration "
-                   "20000 spheres / 5000: %.1f, 100 clusters / 50: %.1f\n", M[m], its,
-                   1e9 * base / (double)its / 5000 / 50, base / mss, more / (double)its_more / (base / (double)its),
-                   wider / (double)its_wider / (base / (double)its));
+                   "20000 spheres / 5000: %.1f, 100 clusters / 50: %.1f\n",
+                   M[m], its, 1e9 * base / (double)its / 5000 / 50, base / mss,
+                   more / (double)its_more / (base / (double)its), wider / (double)its_wider / (base / (double)its));
         }
     }
     return status;

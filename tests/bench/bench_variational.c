@@ -4,13 +4,13 @@
 #include <omp.h>
 #include <stdio.h>
 
+#include "base/ms_vector.h"
 #include "bench_support.h"
-#include "ms_generator.h"
 #include "measure/ms_metrics.h"
+#include "ms_generator.h"
 #include "mss/ms_mss.h"
 #include "setcover/ms_setcover.h"
 #include "variational/ms_variational.h"
-#include "base/ms_vector.h"
 
 enum { POINTS = 1000 };
 
@@ -81,9 +81,10 @@ static ms_status measure(double *seconds, const ms_target *target, const ms_gene
     }
     if (status == MS_OK) {
         const double h = target->grid.h;
-        printf("%zu spheres by %s: D %.4f, rms protrusion %.2f and gap %.2f voxels, rms angle of normals %.1f degrees\n",
-               spheres, generator->name, metrics.score.dice, metrics.protrusion_rms / h, metrics.gap_rms / h,
-               rms_angle(target, &clump));
+        printf(
+            "%zu spheres by %s: D %.4f, rms protrusion %.2f and gap %.2f voxels, rms angle of normals %.1f degrees\n",
+            spheres, generator->name, metrics.score.dice, metrics.protrusion_rms / h, metrics.gap_rms / h,
+            rms_angle(target, &clump));
     }
     ms_clump_free(&clump);
     ms_settings_free(&settings);
@@ -105,8 +106,9 @@ int main(void)
         (status = measure(&cover, &target, &ms_generator_setcover, 70, &err)) == MS_OK &&
         (status = measure(&few, &target, &ms_generator_variational, 70, &err)) == MS_OK &&
         (status = measure(&many, &target, &ms_generator_variational, 700, &err)) == MS_OK) {
-        printf("time, 70 spheres: variational / mss %.2f, / setcover %.2f; variational: 700 spheres / 70 spheres %.1f\n",
-               few / mss, few / cover, many / few);
+        printf(
+            "time, 70 spheres: variational / mss %.2f, / setcover %.2f; variational: 700 spheres / 70 spheres %.1f\n",
+            few / mss, few / cover, many / few);
     }
     if (status != MS_OK) {
         fprintf(stderr, "%s\n", err.text);

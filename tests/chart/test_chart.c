@@ -1,6 +1,6 @@
 /* Charts: the Pareto front against brute force, what the files hold. */
-#include "chart/ms_chart.h"
 #include "base/ms_file.h"
+#include "chart/ms_chart.h"
 #include "support/test_support.h"
 
 static int beats(const ms_chart_point *a, const ms_chart_point *b)
@@ -82,8 +82,14 @@ static void what_the_files_hold(void **state)
     const ms_chart_point first[] = {{1, 0, "a"}, {10, 0.25, "i\"t"}, {0, 0.5, "gone"}, {NAN, 1, "gone"}};
     const ms_chart_point none[] = {{-1, 1, "gone"}};
     const ms_chart_series series[] = {{"nothing", MS_CHART_CURVE, 1, none}, {"o'ne\n", MS_CHART_CURVE, 4, first}};
-    const ms_chart chart = {.title = "t", .x_label = "x", .y_label = "y", .x_log = 1, .y_log = 1, .y_least = 0.125,
-                            .n_series = 2, .series = series};
+    const ms_chart chart = {.title = "t",
+                            .x_label = "x",
+                            .y_label = "y",
+                            .x_log = 1,
+                            .y_log = 1,
+                            .y_least = 0.125,
+                            .n_series = 2,
+                            .series = series};
     assert_int_equal(ms_chart_write(&chart, "test-chart", &err), MS_OK);
     read_text(text, sizeof text, "test-chart.dat");
     assert_string_equal(text, "# x y label: 'o''ne?'\n1 0.125 \"a\"\n10 0.25 \"i?t\"\n\n\n");

@@ -100,7 +100,7 @@ static void pieces_by_hand(void **state)
     add_sphere(&clump, 2, 0, 0, 1); /* they touch: no overlap */
     assert_int_equal(ms_clump_pieces(&pieces, &clump, NULL), MS_OK);
     assert_int_equal(pieces, 2);
-    add_sphere(&clump, 1, 0, 0, 0.1); /* joins them */
+    add_sphere(&clump, 1, 0, 0, 0.1);  /* joins them */
     add_sphere(&clump, 0, 0, 0, 0.01); /* within the first */
     assert_int_equal(ms_clump_pieces(&pieces, &clump, NULL), MS_OK);
     assert_int_equal(pieces, 1);

@@ -1,7 +1,7 @@
 /* Masses by linear programme, against masses that are known and against brute force. */
+#include "clump/ms_density.h"
 #include "support/body_samples.h"
 #include "support/clump_samples.h"
-#include "clump/ms_density.h"
 
 static const ms_density_options DEFAULTS = {0};
 

@@ -3,16 +3,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/ms_text.h"
+#include "clump/formats/ms_read.h"
+#include "clump/formats/ms_write.h"
 #include "support/body_samples.h"
 #include "support/clump_samples.h"
-#include "clump/formats/ms_read.h"
-#include "base/ms_text.h"
-#include "clump/formats/ms_write.h"
 
 static const double SCALE = 1e-3, CENTRE[3] = {12.5, -3, 700};
 
 /* Axes of the particle in the frame of the shape: a turn about no axis in particular. */
-static const double AXIS[3][3] = {{2.0 / 3, 2.0 / 3, 1.0 / 3}, {-2.0 / 3, 1.0 / 3, 2.0 / 3}, {1.0 / 3, -2.0 / 3, 2.0 / 3}};
+static const double AXIS[3][3] = {
+    {2.0 / 3, 2.0 / 3, 1.0 / 3}, {-2.0 / 3, 1.0 / 3, 2.0 / 3}, {1.0 / 3, -2.0 / 3, 2.0 / 3}};
 static const double MOMENT[3] = {1.25e-9, 2.385e-9, 3e-9};
 
 /* Spheres of known places in the frame of the particle, in metres. */
@@ -376,7 +377,8 @@ static void bad_files_are_refused(void **state)
     expect_refused(folder, "a.lammps", "t\n2 atoms\n\nCoords\n\n1 0 0 0\n", "after 1 of 2");
     expect_refused(folder, "a.lammps", "t\n1 atoms\n\nCoords\n\n1 0 0 0\n", "Diameters");
     expect_refused(folder, "a.lammps", "t\n1 atoms\n\nCoords\n\n1 0 0 0\n\nDiameters\n\n1 0\n", "radii above 0");
-    expect_refused(folder, "a.lammps", "t\n1 atoms\ninf mass\n1 1 1 0 0 0 inertia\n\nCoords\n\n1 0 0 0\n\nDiameters\n\n1 1\n",
+    expect_refused(folder, "a.lammps",
+                   "t\n1 atoms\ninf mass\n1 1 1 0 0 0 inertia\n\nCoords\n\n1 0 0 0\n\nDiameters\n\n1 1\n",
                    "above 0 and finite");
     expect_refused(folder, "a.lammps", "t\n1 atoms\n1 mass\n\nCoords\n\n1 0 0 0\n\nDiameters\n\n1 1\n",
                    "above 0 and finite");

@@ -4,8 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "support/clump_samples.h"
 #include "clump/formats/ms_write.h"
+#include "support/clump_samples.h"
 
 /* Numbers that need all their digits, and the ends of the range. */
 static ms_clump awkward_clump(void)
@@ -292,12 +292,9 @@ static void a_grid_is_written_as_it_is(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_format_restores_the_spheres),
-        cmocka_unit_test(a_decimal_comma_changes_nothing),
-        cmocka_unit_test(the_ending_names_the_format),
-        cmocka_unit_test(a_failure_leaves_the_file_that_was_there),
-        cmocka_unit_test(what_cannot_be_written_is_said),
-        cmocka_unit_test(a_grid_is_written_as_it_is),
+        cmocka_unit_test(every_format_restores_the_spheres), cmocka_unit_test(a_decimal_comma_changes_nothing),
+        cmocka_unit_test(the_ending_names_the_format),       cmocka_unit_test(a_failure_leaves_the_file_that_was_there),
+        cmocka_unit_test(what_cannot_be_written_is_said),    cmocka_unit_test(a_grid_is_written_as_it_is),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

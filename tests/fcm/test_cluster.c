@@ -79,7 +79,7 @@ static double textbook_step(double (*centre)[4], size_t count, const double (*po
     for (size_t i = 0; i < count; i++) {
         double weight = 0, sum[4] = {0};
         for (size_t p = 0; p < points; p++) {
-            const double u = pow(textbook_u(point[p], (const double (*)[4])before, count, i, m), m);
+            const double u = pow(textbook_u(point[p], (const double(*)[4])before, count, i, m), m);
             objective += u * square_of(point[p], before[i]);
             weight += u;
             for (int k = 0; k < 4; k++) {
@@ -112,14 +112,14 @@ static void a_step_is_the_textbooks(void **state)
         const size_t points = 40 + (size_t)rand() % (MANY - 40), count = 1 + (size_t)rand() % MOST;
         double centre[MOST][4], expected[MOST][4];
         make_cloud(point, points);
-        ms_cluster *cluster = build((const double (*)[4])point, points);
+        ms_cluster *cluster = build((const double(*)[4])point, points);
         start(centre, count, cluster, (uint64_t)round);
         for (size_t i = 0; i < count; i++) {
             centre[i][0] += 0.1; /* not on a point, where the textbook divides by 0 */
         }
         for (int t = 0; t < 3; t++) {
             memcpy(expected, centre, sizeof centre);
-            const double objective = textbook_step(expected, count, (const double (*)[4])point, points, M[round % 7]);
+            const double objective = textbook_step(expected, count, (const double(*)[4])point, points, M[round % 7]);
             const ms_cluster_result result = run(centre, count, cluster, M[round % 7], 1);
             assert_close(result.objective, objective, 1e-7 * objective);
             for (size_t i = 0; i < count; i++) {
@@ -138,10 +138,10 @@ static void memberships_sum_to_one(void **state)
     double centre[MOST][4];
     srand(12);
     make_cloud(point, MANY);
-    ms_cluster *cluster = build((const double (*)[4])point, MANY);
+    ms_cluster *cluster = build((const double(*)[4])point, MANY);
     start(centre, MOST, cluster, 1); /* centres on points: the division by 0 */
     for (int m = 0; m < 6; m++) {
-        assert_int_equal(ms_cluster_memberships(u, (const double (*)[4])centre, MOST, cluster, M[m], NULL), MS_OK);
+        assert_int_equal(ms_cluster_memberships(u, (const double(*)[4])centre, MOST, cluster, M[m], NULL), MS_OK);
         for (size_t p = 0; p < MANY; p++) {
             double sum = 0;
             int on_centre = 0;
@@ -152,7 +152,7 @@ static void memberships_sum_to_one(void **state)
             }
             assert_close(sum, 1, 1e-7);
             for (size_t i = 0; i < MOST && !on_centre; i++) {
-                const double expected = textbook_u(point[p], (const double (*)[4])centre, MOST, i, M[m]);
+                const double expected = textbook_u(point[p], (const double(*)[4])centre, MOST, i, M[m]);
                 assert_close(u[p * MOST + i], expected, 1e-7);
             }
         }
@@ -170,7 +170,7 @@ static void the_objective_never_rises(void **state)
     for (int round = 0; round < 24; round++) {
         double centre[MOST][4], before = HUGE_VAL;
         make_cloud(point, MANY);
-        ms_cluster *cluster = build((const double (*)[4])point, MANY);
+        ms_cluster *cluster = build((const double(*)[4])point, MANY);
         for (size_t i = 0; i < MOST; i++) {
             memcpy(centre[i], i % 4 == 1 ? centre[i - 1] : point[i], sizeof centre[i]);
             centre[i][0] += i % 4 == 2 ? 1e4 : 0;
@@ -198,7 +198,7 @@ static void two_clouds_are_found(void **state)
             mean[p % 2][a] += point[p][a] / (MANY / 2);
         }
     }
-    ms_cluster *cluster = build((const double (*)[4])point, MANY);
+    ms_cluster *cluster = build((const double(*)[4])point, MANY);
     for (int m = 0; m < 4; m++) {
         for (uint64_t seed = 0; seed < 10; seed++) {
             double centre[2][4];
@@ -225,7 +225,7 @@ static void a_ring_is_shared(void **state)
         const double at[4] = {10 * cos(angle), 10 * sin(angle), 5, 2.385};
         memcpy(point[p], at, sizeof at);
     }
-    ms_cluster *cluster = build((const double (*)[4])point, 720);
+    ms_cluster *cluster = build((const double(*)[4])point, 720);
     for (int m = 1; m <= 2; m++) {
         start(centre, 3, cluster, 4);
         run(centre, 3, cluster, m, 5000);
@@ -254,7 +254,7 @@ static void m_near_one_tends_to_kmeans(void **state)
             point[p][a] = normal() + (p % 6 == (size_t)a ? 7 : 0) - (p % 6 == 5 ? 4 : 0);
         }
     }
-    ms_cluster *cluster = build((const double (*)[4])point, MANY);
+    ms_cluster *cluster = build((const double(*)[4])point, MANY);
     memcpy(hard, point, sizeof hard); /* one of each cloud */
     run(hard, 6, cluster, 1, 1000);
     for (int k = 0; k < 2; k++) {
@@ -277,7 +277,7 @@ static void duplicates_are_found(void **state)
         const double at[4] = {p % 3 * 2.0, p % 3, -p % 3, 1};
         memcpy(point[p], at, sizeof at);
     }
-    ms_cluster *cluster = build((const double (*)[4])point, 90);
+    ms_cluster *cluster = build((const double(*)[4])point, 90);
     for (int m = 1; m <= 3; m++) {
         start(centre, 5, cluster, 1);
         const ms_cluster_result result = run(centre, 5, cluster, m, 1000);
@@ -304,7 +304,7 @@ static void empty_clusters_are_filled(void **state)
             point[p][a] = normal() + (p % 2 ? 100 : 0);
         }
     }
-    ms_cluster *cluster = build((const double (*)[4])point, MANY);
+    ms_cluster *cluster = build((const double(*)[4])point, MANY);
     for (int m = 1; m <= 2; m++) {
         double centre[2][4] = {{0}};
         if (m == 1) {
@@ -327,7 +327,7 @@ static void starts_are_spread(void **state)
         const double at[4] = {100 * place, 0, 0, 0};
         memcpy(point[p], at, sizeof at);
     }
-    ms_cluster *cluster = build((const double (*)[4])point, MANY);
+    ms_cluster *cluster = build((const double(*)[4])point, MANY);
     for (int spread = MS_CLUSTER_FAR; spread <= MS_CLUSTER_RANDOM; spread++) {
         memcpy(centre[0], kept, sizeof kept);
         assert_int_equal(ms_cluster_start(centre, 1, 11, cluster, (ms_cluster_spread)spread, 5, NULL), MS_OK);
@@ -350,7 +350,7 @@ static void threads_do_not_matter(void **state)
     const int before = omp_get_max_threads();
     srand(17);
     make_cloud(point, MANY);
-    ms_cluster *cluster = build((const double (*)[4])point, MANY);
+    ms_cluster *cluster = build((const double(*)[4])point, MANY);
     for (int m = 1; m <= 3; m++) {
         double alone[MOST][4], team[MOST][4];
         omp_set_num_threads(1);
@@ -373,11 +373,11 @@ static void bad_arguments_are_refused(void **state)
     double point[2][4] = {{1, 2, 3, 4}, {5, 6, 7, (double)NAN}};
     ms_cluster *cluster;
     ms_error err;
-    assert_int_equal(ms_cluster_build(&cluster, (const double (*)[4])point, 0, &err), MS_ERR_ARG);
+    assert_int_equal(ms_cluster_build(&cluster, (const double(*)[4])point, 0, &err), MS_ERR_ARG);
     assert_null(cluster);
-    assert_int_equal(ms_cluster_build(&cluster, (const double (*)[4])point, 2, &err), MS_ERR_ARG);
+    assert_int_equal(ms_cluster_build(&cluster, (const double(*)[4])point, 2, &err), MS_ERR_ARG);
     assert_non_null(strstr(err.text, "coordinate 4 of point 2"));
-    cluster = build((const double (*)[4])point, 1);
+    cluster = build((const double(*)[4])point, 1);
     ms_cluster_rule rule = {.fuzzifier = 0.9, .iterations = 1};
     assert_int_equal(ms_cluster_run(NULL, point, 1, cluster, &rule, &err), MS_ERR_ARG);
     rule.fuzzifier = (double)NAN;
@@ -414,7 +414,7 @@ static void the_nearest_node_is_found(void **state)
                 at[n][a] = round % 2 ? rand() % 4 : uniform(0, 10);
             }
         }
-        assert_int_equal(ms_nodes_build(&nodes, (const double (*)[3])at, count, NULL), MS_OK);
+        assert_int_equal(ms_nodes_build(&nodes, (const double(*)[3])at, count, NULL), MS_OK);
         for (int t = 0; t < 100; t++) {
             const double place[3] = {uniform(-3, 13), uniform(-3, 13), uniform(-3, 13)};
             double least[2] = {HUGE_VAL, HUGE_VAL}, got;
@@ -433,18 +433,18 @@ static void the_nearest_node_is_found(void **state)
         ms_nodes_free(&nodes);
     }
     ms_nodes none;
-    assert_int_equal(ms_nodes_build(&none, (const double (*)[3])at, 0, NULL), MS_ERR_ARG);
+    assert_int_equal(ms_nodes_build(&none, (const double(*)[3])at, 0, NULL), MS_ERR_ARG);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_step_is_the_textbooks),     cmocka_unit_test(memberships_sum_to_one),
-        cmocka_unit_test(the_objective_never_rises),   cmocka_unit_test(two_clouds_are_found),
-        cmocka_unit_test(a_ring_is_shared),            cmocka_unit_test(m_near_one_tends_to_kmeans),
-        cmocka_unit_test(duplicates_are_found),        cmocka_unit_test(empty_clusters_are_filled),
-        cmocka_unit_test(starts_are_spread),           cmocka_unit_test(threads_do_not_matter),
-        cmocka_unit_test(bad_arguments_are_refused),   cmocka_unit_test(powers_are_those_of_the_library),
+        cmocka_unit_test(a_step_is_the_textbooks),   cmocka_unit_test(memberships_sum_to_one),
+        cmocka_unit_test(the_objective_never_rises), cmocka_unit_test(two_clouds_are_found),
+        cmocka_unit_test(a_ring_is_shared),          cmocka_unit_test(m_near_one_tends_to_kmeans),
+        cmocka_unit_test(duplicates_are_found),      cmocka_unit_test(empty_clusters_are_filled),
+        cmocka_unit_test(starts_are_spread),         cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(bad_arguments_are_refused), cmocka_unit_test(powers_are_those_of_the_library),
         cmocka_unit_test(the_nearest_node_is_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -72,8 +72,8 @@ static void check_filling(const ms_target *target, const ms_fill_rule *rule, dou
     for (size_t b = 0; b < count; b++) {
         const double *c = ball[b].centre;
         size_t nearest = 0;
-        assert_true(target->grid.inside[ms_grid_index(&target->grid, (int)rint(c[0]), (int)rint(c[1]),
-                                                      (int)rint(c[2]))]);
+        assert_true(
+            target->grid.inside[ms_grid_index(&target->grid, (int)rint(c[0]), (int)rint(c[1]), (int)rint(c[2]))]);
         for (size_t n = 1; n < nodes.count; n++) {
             if (away(nodes.at[n], c, rule->norm) < away(nodes.at[nearest], c, rule->norm)) {
                 nearest = n;
@@ -226,7 +226,8 @@ static void the_stone_of_the_paper(void **state)
         ms_clump clump;
         ms_stop_reason reason;
         assert_int_equal(try_fcm(&clump, &reason, &target, stop,
-                                 "norm=sum radius=mean filling=0 nodes-covered=0.9 off-volume=0.9", seed, &err), MS_OK);
+                                 "norm=sum radius=mean filling=0 nodes-covered=0.9 off-volume=0.9", seed, &err),
+                         MS_OK);
         assert_int_equal(reason, MS_STOP_OFF_VOLUME);
         assert_true(score_of(&clump, &target).off_volume >= 0.9);
         assert_in_range(clump.n_spheres, 30, 44);

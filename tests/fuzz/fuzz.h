@@ -9,11 +9,11 @@
 #include "base/ms_file.h"
 
 /* Ends the run with a stack trace in any build. */
-#define FUZZ_REQUIRE(condition)  \
-    do {                         \
-        if (!(condition)) {      \
-            __builtin_trap();    \
-        }                        \
+#define FUZZ_REQUIRE(condition) \
+    do {                        \
+        if (!(condition)) {     \
+            __builtin_trap();   \
+        }                       \
     } while (0)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

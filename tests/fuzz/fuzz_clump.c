@@ -1,6 +1,6 @@
 /** A fuzz target of the reader of clump files. */
-#include "fuzz.h"
 #include "clump/formats/ms_clump_parse.h"
+#include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

@@ -2,8 +2,8 @@
 #ifndef FUZZ_CLUMP_READ_H
 #define FUZZ_CLUMP_READ_H
 
-#include "fuzz.h"
 #include "clump/formats/ms_read_formats.h"
+#include "fuzz.h"
 
 static inline int fuzz_clump_read(const uint8_t *data, size_t size,
                                   ms_status parse(ms_clump *, ms_particle *, ms_bytes *, const char *, ms_error *))

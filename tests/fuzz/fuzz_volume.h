@@ -6,7 +6,7 @@
 #include "volume/ms_volume_formats.h"
 
 typedef ms_status fuzz_volume_parser(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
-                                ms_error *err);
+                                     ms_error *err);
 
 static inline void fuzz_check_volume(const ms_volume *volume)
 {

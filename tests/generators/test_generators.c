@@ -5,8 +5,8 @@
 #include <omp.h>
 #include <stdlib.h>
 
-#include "ms_generator.h"
 #include "measure/ms_metrics.h"
+#include "ms_generator.h"
 
 static const char *const CONTRACTED[] = {"mss", "setcover", "fcm", "variational"};
 
@@ -214,8 +214,8 @@ static void frame_follows_the_mesh(void **state)
         outcome there = run_spheres(*g, &target, 12);
         for (size_t s = 0; s < 12; s++) {
             for (int a = 0; a < 3; a++) {
-                assert_close(there.clump.sphere[s].centre[a],
-                                    8 * here.clump.sphere[s].centre[a] + 1024 * (a + 1), 1e-6);
+                assert_close(there.clump.sphere[s].centre[a], 8 * here.clump.sphere[s].centre[a] + 1024 * (a + 1),
+                             1e-6);
             }
             assert_close(there.clump.sphere[s].radius, 8 * here.clump.sphere[s].radius, 1e-6);
         }

@@ -1,11 +1,11 @@
 /* The stop rule, and the comparison of inertia that it rests on. */
-#include "support/clump_samples.h"
 #include "ms_stop.h"
+#include "support/clump_samples.h"
 
 static void reasons_have_names(void **state)
 {
     (void)state;
-    static const char *const names[] = {"not",     "spheres", "eta",        "dice",    "coverage",
+    static const char *const names[] = {"not",     "spheres", "eta",        "dice",     "coverage",
                                         "inertia", "radius",  "off-volume", "exhausted"};
     for (int reason = 0; reason < 9; reason++) {
         assert_string_equal(ms_stop_name((ms_stop_reason)reason), names[reason]);

@@ -1,6 +1,6 @@
 /* Nearest points against brute force, by formulas other than the library's. */
-#include "support/body_samples.h"
 #include "mesh/ms_closest.h"
+#include "support/body_samples.h"
 
 typedef double vec[3];
 
@@ -194,14 +194,10 @@ typedef struct side_case {
 
 /* Sharp edges and corners, hollows, saddles, thin walls. */
 static const side_case side_cases[] = {
-    {"tetrahedron", {1.3, 2}},
-    {"octahedron", {1, 2}},
-    {"plate", {2, 2, 0.04, 6}},
-    {"cone", {1, 0.2, 3}},
-    {"torus", {1, 0.4, 4}},
-    {"hollow", {1, 0.9, 4}},
-    {"dumbbell", {0.7, 1.5, 0.1, 6}},
-    {"grain", {1, 1.5, 1.4, 0.5, 12, 1, 5, 10}},
+    {"tetrahedron", {1.3, 2}},        {"octahedron", {1, 2}},
+    {"plate", {2, 2, 0.04, 6}},       {"cone", {1, 0.2, 3}},
+    {"torus", {1, 0.4, 4}},           {"hollow", {1, 0.9, 4}},
+    {"dumbbell", {0.7, 1.5, 0.1, 6}}, {"grain", {1, 1.5, 1.4, 0.5, 12, 1, 5, 10}},
 };
 
 static void expect_sides(const ms_mesh *mesh, uint64_t *random)

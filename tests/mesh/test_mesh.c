@@ -1,6 +1,6 @@
 /* Repair: what is dropped, what is turned, what is counted. */
-#include "support/body_samples.h"
 #include "mesh/formats/ms_mesh_read.h"
+#include "support/body_samples.h"
 
 static const double small_ball[] = {1, 4};
 

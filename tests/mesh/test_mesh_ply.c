@@ -69,18 +69,18 @@ static void put_others(sample *to, encoding as)
     }
 }
 
-static sample tetrahedron(
-    const char *type, const char *count_type, const char *index_type, encoding as, int faces_first)
+static sample tetrahedron(const char *type, const char *count_type, const char *index_type, encoding as,
+                          int faces_first)
 {
     char vertex[256];
     char faces[256];
     sample made = {.size = 0};
     snprintf(vertex, sizeof vertex,
-        "element vertex 4\nproperty uchar red\nproperty %s x\nproperty %s y\nproperty %s z\n"
-        "property list uint8 double w\n",
-        type, type, type);
+             "element vertex 4\nproperty uchar red\nproperty %s x\nproperty %s y\nproperty %s z\n"
+             "property list uint8 double w\n",
+             type, type, type);
     snprintf(faces, sizeof faces, "element face 4\nproperty list %s %s %s\nproperty short flag\n", count_type,
-        index_type, faces_first ? "vertex_index" : "vertex_indices");
+             index_type, faces_first ? "vertex_index" : "vertex_indices");
     put_text(&made, "ply\nformat ");
     put_text(&made, encoding_name[as]);
     put_text(&made, " 1.0\ncomment made by hand\nobj_info x\n");
@@ -105,8 +105,8 @@ static sample tetrahedron(
 static void every_encoding_and_type_is_read(void **state)
 {
     static const char *const reals[] = {"float", "double", "float32", "float64"};
-    static const char *const integers[] = {"char", "uchar", "short", "ushort", "int", "uint", "int8", "uint8", "int16",
-        "uint16", "int32", "uint32"};
+    static const char *const integers[] = {"char", "uchar", "short", "ushort", "int",   "uint",
+                                           "int8", "uint8", "int16", "uint16", "int32", "uint32"};
     (void)state;
     for (encoding as = ASCII; as <= BIG; as++) {
         for (int i = 0; i < 12; i++) {
@@ -118,7 +118,7 @@ static void every_encoding_and_type_is_read(void **state)
     }
 }
 
-#define HEAD(format)                                                                   \
+#define HEAD(format) \
     "ply\r\nformat " format " 1.0\r\nelement vertex 3\r\nproperty short x\r\nproperty short y\r\nproperty short z\r\n"
 #define FACE "element face 1\r\nproperty list uchar uchar vertex_indices\r\nend_header\r\n"
 
@@ -210,7 +210,7 @@ static void malformed_headers_are_refused_with_their_line(void **state)
         {P "element vertex 3\nproperty float x\nproperty float y\n" F1 END, "the header lacks x, y, z"},
         {P XYZ "element face 1\nproperty list uchar int edges\n" END, "or the list 'vertex_indices'"},
         {P XYZ "element face 999999999999\nproperty list uchar int vertex_indices\n" END ROWS,
-            "line 7: 999999999999 rows of at least 2 bytes are claimed but only 1"},
+         "line 7: 999999999999 rows of at least 2 bytes are claimed but only 1"},
         {P XYZ "element other 9999999999\n" F1 END ROWS, "line 7: an element has 9999999999 rows and no property"},
     };
     (void)state;
@@ -231,9 +231,9 @@ static void headers_beyond_the_limits_are_refused(void **state)
         put_text(&properties, "property int q\n");
     }
     expect_mesh_refused(ms_mesh_parse_ply, elements.data, elements.size, MS_ERR_FORMAT,
-        "line 35: more than 32 elements are not read");
+                        "line 35: more than 32 elements are not read");
     expect_mesh_refused(ms_mesh_parse_ply, properties.data, properties.size, MS_ERR_FORMAT,
-        "line 516: more than 512 properties are not read");
+                        "line 516: more than 512 properties are not read");
 }
 
 static void malformed_rows_are_refused_with_their_line(void **state)

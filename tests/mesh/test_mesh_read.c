@@ -61,13 +61,23 @@ typedef struct known_mesh {
 
 static void shared_meshes_are_read(void **state)
 {
-    static const known_mesh known[] = {{"asteroid_castalia.obj", 4092, 2048}, {"boulder_SP2B.stl", 1128, 566},
-        {"bunny.ply", 6966, 3485}, {"ellipsoid_2_1_1.stl", 20480, 10242}, {"human_femur.stl", 13752, 6878},
-        {"lithic_flake2.ply", 172814, 86409}, {"octahedron.stl", 2048, 1026}, {"pear.stl", 1496, 750},
-        {"powder_ma165_03636.stl", 20480, 10242}, {"sand_grain.stl", 4000, 2002}, {"torus.stl", 57600, 28800},
-        {"bad/09_degenerate_duplicate_tris.stl", 1450, 0}, {"bad/10_inverted_normals.stl", 1000, 0},
-        {"bad/12_open_mesh.stl", 800, 0}, {"bad/15_two_disjoint_bodies.stl", 2000, 0},
-        {"bad/17_offset_1e9_double.obj", 1000, 0}, {"bad/24_binary_starting_with_solid.stl", 1000, 0}};
+    static const known_mesh known[] = {{"asteroid_castalia.obj", 4092, 2048},
+                                       {"boulder_SP2B.stl", 1128, 566},
+                                       {"bunny.ply", 6966, 3485},
+                                       {"ellipsoid_2_1_1.stl", 20480, 10242},
+                                       {"human_femur.stl", 13752, 6878},
+                                       {"lithic_flake2.ply", 172814, 86409},
+                                       {"octahedron.stl", 2048, 1026},
+                                       {"pear.stl", 1496, 750},
+                                       {"powder_ma165_03636.stl", 20480, 10242},
+                                       {"sand_grain.stl", 4000, 2002},
+                                       {"torus.stl", 57600, 28800},
+                                       {"bad/09_degenerate_duplicate_tris.stl", 1450, 0},
+                                       {"bad/10_inverted_normals.stl", 1000, 0},
+                                       {"bad/12_open_mesh.stl", 800, 0},
+                                       {"bad/15_two_disjoint_bodies.stl", 2000, 0},
+                                       {"bad/17_offset_1e9_double.obj", 1000, 0},
+                                       {"bad/24_binary_starting_with_solid.stl", 1000, 0}};
     (void)state;
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         char path[512];

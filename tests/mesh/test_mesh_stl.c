@@ -89,13 +89,13 @@ static void binary_of_a_wrong_size_is_refused(void **state)
     sample huge = {.size = 0};
     (void)state;
     expect_mesh_refused(ms_mesh_parse_stl, made.data, made.size - 1, MS_ERR_FORMAT,
-        "cut after 3 of 4 triangles: its header claims 284 bytes and the file has 283");
+                        "cut after 3 of 4 triangles: its header claims 284 bytes and the file has 283");
     put_integer(&made, 0, 1, 0);
     expect_mesh_refused(ms_mesh_parse_stl, made.data, made.size, MS_ERR_FORMAT,
-        "claims 4 triangles (284 bytes) has 1 bytes more behind byte 284");
+                        "claims 4 triangles (284 bytes) has 1 bytes more behind byte 284");
     put_header(&huge, "", UINT32_MAX);
     expect_mesh_refused(ms_mesh_parse_stl, huge.data, huge.size, MS_ERR_FORMAT,
-        "cut after 0 of 4294967295 triangles: its header claims 214748364834 bytes");
+                        "cut after 0 of 4294967295 triangles: its header claims 214748364834 bytes");
     expect_mesh_refused(ms_mesh_parse_stl, huge.data, 83, MS_ERR_FORMAT, "is no STL");
 }
 
@@ -117,7 +117,7 @@ static void binary_that_is_not_finite_is_refused(void **state)
     memcpy(made.data + 84 + 50 + 12 + 12 + 8, infinite.data, 4);
     memcpy(made.data + 84 + 150 + 12 + 12, infinite.data, 4);
     expect_mesh_refused(ms_mesh_parse_stl, made.data, made.size, MS_ERR_FORMAT,
-        "2 of 4 triangles have a corner that is not finite (inf or nan), byte 158 is the first");
+                        "2 of 4 triangles have a corner that is not finite (inf or nan), byte 158 is the first");
 }
 
 #define OPEN "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
@@ -127,15 +127,15 @@ static void malformed_ascii_is_refused_with_its_line(void **state)
 {
     static const refused_text cases[] = {
         {"solid s\nfacet normal 0 0 1\nouter loop\nvertex 12.5 abc 7\n",
-            "line 4: a vertex has 'abc' where a number belongs"},
+         "line 4: a vertex has 'abc' where a number belongs"},
         {"solid s\nfacet normal 0 0 1\nouter loop\nvertex 12.5 7,3 7\n", "line 4: a vertex has '7,3'"},
         {"solid s\nfacet normal 0 0 1\nouter loop\nvertex 1.0 2.0\nvertex 1 2 3\n",
-            "line 4: a vertex needs 3 numbers but the line has 2"},
+         "line 4: a vertex needs 3 numbers but the line has 2"},
         {"solid s\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3 4\n", "line 4: '4' stands where 'vertex' belongs"},
         {"solid s\nfacet normal 0 0\nouter loop\n", "line 2: a normal needs 3 numbers but the line has 2"},
         {"solid s\nfacet 0 0 1\n", "line 2: '0' stands where 'normal' belongs"},
         {"solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n",
-            "line 6: 'endloop' stands where 'vertex' belongs"},
+         "line 6: 'endloop' stands where 'vertex' belongs"},
         {OPEN "vertex 1 1 1\nendloop\nendfacet\nendsolid\n", "line 7: 'vertex' stands where 'endloop' belongs"},
         {OPEN "endloop\n", "line 8: the file ends where 'endfacet' belongs"},
         {FACET, "line 9: the file ends without 'endsolid' after 1 triangles"},
@@ -146,7 +146,7 @@ static void malformed_ascii_is_refused_with_its_line(void **state)
         {"solid", "line 1: the file ends without 'endsolid'"},
         {"solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 inf 0\nvertex 0 1 1e999\nendloop\nendfacet\n"
          "endsolid",
-            "1 of 1 triangles have a corner that is not finite (inf or nan), line 5 is the first"},
+         "1 of 1 triangles have a corner that is not finite (inf or nan), line 5 is the first"},
         {"solidity s\nendsolid s\n", "is no STL"},
         {"<html>", "is no STL"},
         {"\n", "is no STL"},

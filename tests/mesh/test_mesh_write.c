@@ -1,9 +1,9 @@
 /* Meshes written, read back, and not written. */
 #include <unistd.h>
 
-#include "support/body_samples.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "mesh/formats/ms_mesh_write.h"
+#include "support/body_samples.h"
 
 static void expect_read_back(const ms_mesh *mesh, const char *path, int single)
 {

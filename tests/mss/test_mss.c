@@ -4,12 +4,12 @@
 
 #include <stdlib.h>
 
-#include "voxel/ms_distance.h"
-#include "ms_generator.h"
-#include "mesh/formats/ms_mesh_read.h"
 #include "measure/ms_metrics.h"
+#include "mesh/formats/ms_mesh_read.h"
+#include "ms_generator.h"
 #include "mss/ms_mss.h"
 #include "mss/ms_mss_field.h"
+#include "voxel/ms_distance.h"
 
 typedef struct outcome {
     ms_clump clump;
@@ -334,16 +334,11 @@ static void femur_of_the_paper(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(field_equals_recomputation),
-        cmocka_unit_test(symmetric_targets_give_symmetric_clumps),
-        cmocka_unit_test(two_balls_are_found),
-        cmocka_unit_test(gaps_do_not_swallow_spheres),
-        cmocka_unit_test(offset_reaches_every_sphere),
-        cmocka_unit_test(confined_spheres_stay_inside),
-        cmocka_unit_test(planes_are_not_crossed),
-        cmocka_unit_test(spacing_is_kept),
-        cmocka_unit_test(ellipsoid_of_the_paper),
-        cmocka_unit_test(femur_of_the_paper),
+        cmocka_unit_test(field_equals_recomputation),  cmocka_unit_test(symmetric_targets_give_symmetric_clumps),
+        cmocka_unit_test(two_balls_are_found),         cmocka_unit_test(gaps_do_not_swallow_spheres),
+        cmocka_unit_test(offset_reaches_every_sphere), cmocka_unit_test(confined_spheres_stay_inside),
+        cmocka_unit_test(planes_are_not_crossed),      cmocka_unit_test(spacing_is_kept),
+        cmocka_unit_test(ellipsoid_of_the_paper),      cmocka_unit_test(femur_of_the_paper),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 /* Local maxima: found by brute force, refined on fields whose maximum is known. */
-#include "support/grid_samples.h"
 #include "mss/ms_peaks.h"
+#include "support/grid_samples.h"
 
 enum { SIZE = 11, MIDDLE = 5, VOXELS = SIZE * SIZE * SIZE };
 

@@ -1,6 +1,6 @@
 /* Simple voxels and cliques against brute force from their definitions. */
-#include "support/topology_samples.h"
 #include "setcover/ms_clique.h"
+#include "support/topology_samples.h"
 
 enum { ALL = 0777777777, CENTRE = 1 << MS_CLIQUE_CENTRE };
 
@@ -49,10 +49,10 @@ static void known_neighbourhoods(void **state)
     assert_false(ms_clique_is_simple(ALL));
     assert_false(ms_clique_is_simple(0777757777));
     assert_true(ms_clique_is_simple(below));
-    assert_true(ms_clique_is_simple(1)); /* the tip of a curve */
-    assert_false(ms_clique_is_simple(0400000001)); /* the middle of a curve */
-    assert_false(ms_clique_is_simple(0000777000)); /* the middle of a surface */
-    assert_true(ms_clique_is_simple(ALL & ~0000000020)); /* one face bare */
+    assert_true(ms_clique_is_simple(1));                  /* the tip of a curve */
+    assert_false(ms_clique_is_simple(0400000001));        /* the middle of a curve */
+    assert_false(ms_clique_is_simple(0000777000));        /* the middle of a surface */
+    assert_true(ms_clique_is_simple(ALL & ~0000000020));  /* one face bare */
     assert_false(ms_clique_is_simple(ALL & ~0020000020)); /* two opposite ones: a tunnel would open */
     assert_false(ms_clique_is_simple(ALL & ~0000000001)); /* a corner bare: the voxel is interior */
 }

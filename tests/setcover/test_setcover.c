@@ -1,9 +1,9 @@
 /* Set cover: spheres inside the mesh, on the medial surface, the paper's figures. */
 #include "support/test_support.h"
 
+#include "measure/ms_metrics.h"
 #include "ms_generator.h"
 #include "setcover/ms_medial.h"
-#include "measure/ms_metrics.h"
 #include "setcover/ms_setcover.h"
 
 /* Options as "name=value name=value". */
@@ -55,8 +55,8 @@ static void spheres_are_inscribed(void **state)
     (void)state;
     static const char *const KINDS[] = {"ellipsoid", "hollow", "tablet",      "torus", "needle", "cone",
                                         "dumbbell",  "cube",   "tetrahedron", "plate", "grain"};
-    static const char *const OPTIONS[] = {"", "candidates=skeleton", "candidates=all skeleton-deq=20",
-                                          "skeleton=curve", "align connected"};
+    static const char *const OPTIONS[] = {"", "candidates=skeleton", "candidates=all skeleton-deq=20", "skeleton=curve",
+                                          "align connected"};
     for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) {
         ms_mesh mesh;
         ms_target target;
@@ -254,9 +254,12 @@ static void huge_lattices_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spheres_are_inscribed),       cmocka_unit_test(volumes_have_inscribed_spheres),
-        cmocka_unit_test(medial_spheres_are_maximal),  cmocka_unit_test(shapes_of_the_paper),
-        cmocka_unit_test(connected_prefixes_are_one_piece), cmocka_unit_test(aligned_boxes_agree),
+        cmocka_unit_test(spheres_are_inscribed),
+        cmocka_unit_test(volumes_have_inscribed_spheres),
+        cmocka_unit_test(medial_spheres_are_maximal),
+        cmocka_unit_test(shapes_of_the_paper),
+        cmocka_unit_test(connected_prefixes_are_one_piece),
+        cmocka_unit_test(aligned_boxes_agree),
         cmocka_unit_test(huge_lattices_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,7 +1,7 @@
 /* Thinning: topology by brute force, algorithm 1 on whole grids, places by analysis. */
-#include "support/topology_samples.h"
 #include "setcover/ms_clique.h"
 #include "setcover/ms_thinning.h"
+#include "support/topology_samples.h"
 
 static const ms_skeleton both_kinds[] = {MS_SKELETON_SURFACE, MS_SKELETON_CURVE};
 
@@ -73,11 +73,11 @@ static void known_bodies_keep_their_topology(void **state)
         double value[3];
         topology expected;
     } bodies[] = {
-        {ellipsoid, {9.6, 9.6, 9.6}, {1, 0, 0}},  {ellipsoid, {13.3, 9.1, 4.7}, {1, 0, 0}},
-        {torus, {9.2, 3.7}, {1, 0, 1}},           {torus, {9.2, 1.1}, {1, 0, 1}},
-        {joined_tori, {6.1, 2.6}, {1, 0, 2}},     {linked_rings, {8.2, 2.3}, {2, 0, 2}},
-        {shell, {12.7, 6.2}, {1, 1, 0}},          {shell, {12.7, 10.4}, {1, 1, 0}},
-        {cylinder, {11.2, 6.3, 1}, {1, 0, 0}},    {cuboid_level, {12.2, 8.6, 3.1}, {1, 0, 0}},
+        {ellipsoid, {9.6, 9.6, 9.6}, {1, 0, 0}}, {ellipsoid, {13.3, 9.1, 4.7}, {1, 0, 0}},
+        {torus, {9.2, 3.7}, {1, 0, 1}},          {torus, {9.2, 1.1}, {1, 0, 1}},
+        {joined_tori, {6.1, 2.6}, {1, 0, 2}},    {linked_rings, {8.2, 2.3}, {2, 0, 2}},
+        {shell, {12.7, 6.2}, {1, 1, 0}},         {shell, {12.7, 10.4}, {1, 1, 0}},
+        {cylinder, {11.2, 6.3, 1}, {1, 0, 0}},   {cuboid_level, {12.2, 8.6, 3.1}, {1, 0, 0}},
     };
     for (size_t b = 0; b < sizeof bodies / sizeof *bodies; b++) {
         for (int odd = 0; odd < 2; odd++) {
@@ -114,8 +114,8 @@ static void noise_keeps_its_topology(void **state)
     uint64_t seed = 42;
     for (int run = 0; run < 120; run++) {
         const int percent[] = {2, 10, 20, 35, 50, 65, 80, 90, 95, 98};
-        ms_grid grid = noise(10 + pick(&seed, 8), 10 + pick(&seed, 8), 10 + pick(&seed, 8), percent[run % 10] / 100.0,
-                             &seed);
+        ms_grid grid =
+            noise(10 + pick(&seed, 8), 10 + pick(&seed, 8), 10 + pick(&seed, 8), percent[run % 10] / 100.0, &seed);
         expect_skeletons(&grid);
         ms_grid_free(&grid);
     }
@@ -132,9 +132,9 @@ static void choose(uint8_t *is_free, const ms_grid *x, int rank)
             int at[3];
             place_of(at, x, v);
             const uint32_t object = neighbours_at(x, x->inside, at[0], at[1], at[2]);
-            chosen[v] = (uint8_t)(rank == 3 ? !brute_is_simple(object)
-                                            : ms_clique_keeps(object, neighbours_at(x, is_free, at[0], at[1], at[2]),
-                                                              rank));
+            chosen[v] =
+                (uint8_t)(rank == 3 ? !brute_is_simple(object)
+                                    : ms_clique_keeps(object, neighbours_at(x, is_free, at[0], at[1], at[2]), rank));
         }
     }
     for (size_t v = 0; v < voxels; v++) {

@@ -1,7 +1,6 @@
 /* Greedy set cover against brute force. */
 #include "support/test_support.h"
 
-
 #include "shared/ms_cover.h"
 
 enum { MAX_BALLS = 40 };

@@ -81,7 +81,7 @@ static void random_turns_are_uniform(void **state)
         }
     }
     for (int e = 0; e < 9; e++) {
-        expect_close(mean[e], 0, 5 * sqrt(1.0 / 3 / TURNS));         /* five standard deviations */
+        expect_close(mean[e], 0, 5 * sqrt(1.0 / 3 / TURNS));          /* five standard deviations */
         expect_close(square[e], 1.0 / 3, 5 * sqrt(4.0 / 45 / TURNS)); /* u^2 of a uniform u: variance 4/45 */
     }
 }

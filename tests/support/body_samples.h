@@ -6,8 +6,8 @@
 
 #include "mesh/ms_inertia.h"
 #include "mesh/ms_mesh.h"
-#include "shape/ms_shape.h"
 #include "reader_samples.h"
+#include "shape/ms_shape.h"
 
 static const double pi = 3.14159265358979323846;
 

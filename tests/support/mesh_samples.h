@@ -11,8 +11,7 @@ static const int face[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
 
 typedef ms_status mesh_parser(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
 
-static inline ms_status parse_sample(
-    ms_mesh *mesh, mesh_parser *parse, const void *data, size_t size, ms_error *err)
+static inline ms_status parse_sample(ms_mesh *mesh, mesh_parser *parse, const void *data, size_t size, ms_error *err)
 {
     ms_bytes bytes = copy_bytes(data, size);
     ms_status status = parse(mesh, &bytes, "sample", err);
@@ -20,8 +19,8 @@ static inline ms_status parse_sample(
     return status;
 }
 
-static inline void expect_mesh_refused(
-    mesh_parser *parse, const void *data, size_t size, ms_status status, const char *message)
+static inline void expect_mesh_refused(mesh_parser *parse, const void *data, size_t size, ms_status status,
+                                       const char *message)
 {
     ms_mesh mesh;
     ms_error err = {{0}};

@@ -18,12 +18,12 @@
 #include "voxel/ms_target.h"
 
 /* cmocka 1.1.5 compares floats only. */
-#define assert_close(a, b, tolerance)                                                               \
-    do {                                                                                            \
-        const double close_a = (a), close_b = (b);                                                  \
-        if (!(fabs(close_a - close_b) <= (tolerance))) {                                            \
-            fail_msg("%s is %.17g, not %.17g +- %g", #a, close_a, close_b, (double)(tolerance));    \
-        }                                                                                           \
+#define assert_close(a, b, tolerance)                                                            \
+    do {                                                                                         \
+        const double close_a = (a), close_b = (b);                                               \
+        if (!(fabs(close_a - close_b) <= (tolerance))) {                                         \
+            fail_msg("%s is %.17g, not %.17g +- %g", #a, close_a, close_b, (double)(tolerance)); \
+        }                                                                                        \
     } while (0)
 
 /** A mesh of a kind; parameters not named in "name=value name=value" keep their defaults. */

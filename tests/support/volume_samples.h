@@ -31,8 +31,8 @@ static inline void put_voxels(sample *to, char kind, size_t size, int big_endian
     }
 }
 
-static inline ms_status parse_volume(
-    ms_volume *volume, volume_parser *parse, const sample *from, const char *path, ms_error *err)
+static inline ms_status parse_volume(ms_volume *volume, volume_parser *parse, const sample *from, const char *path,
+                                     ms_error *err)
 {
     ms_bytes bytes = copy_bytes(from->data, from->size);
     ms_status status = parse(volume, &bytes, path, SIZE_MAX, err);
@@ -55,8 +55,8 @@ static inline void expect_volume(volume_parser *parse, const sample *from, const
     assert_null(volume.label);
 }
 
-static inline void expect_volume_refused(
-    volume_parser *parse, const sample *from, ms_status status, const char *message)
+static inline void expect_volume_refused(volume_parser *parse, const sample *from, ms_status status,
+                                         const char *message)
 {
     ms_volume volume;
     ms_error err = {{0}};

@@ -4,13 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "variational/ms_prune.h"
-#include "variational/ms_surface_fit.h"
+#include "base/ms_vector.h"
 #include "mss/ms_mss.h"
 #include "variational/ms_coverage_count.h"
 #include "variational/ms_pattern_search.h"
+#include "variational/ms_prune.h"
+#include "variational/ms_surface_fit.h"
 #include "variational/ms_variational.h"
-#include "base/ms_vector.h"
 
 static double uniform(double from, double to)
 {
@@ -486,12 +486,12 @@ static int tear_down(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(field_is_the_distance),    cmocka_unit_test(losses_are_those_of_brute_force),
-        cmocka_unit_test(step_lowers_the_mismatch), cmocka_unit_test(search_never_raises_the_mismatch),
-        cmocka_unit_test(unions_are_recovered),     cmocka_unit_test(protrusion_is_kept),
-        cmocka_unit_test(equal_radii_are_equal),    cmocka_unit_test(effort_does_not_hurt),
-        cmocka_unit_test(refining_improves),        cmocka_unit_test(symmetry_is_kept),
-        cmocka_unit_test(planes_are_not_crossed),   cmocka_unit_test(spheres_are_dropped_by_their_loss),
+        cmocka_unit_test(field_is_the_distance),      cmocka_unit_test(losses_are_those_of_brute_force),
+        cmocka_unit_test(step_lowers_the_mismatch),   cmocka_unit_test(search_never_raises_the_mismatch),
+        cmocka_unit_test(unions_are_recovered),       cmocka_unit_test(protrusion_is_kept),
+        cmocka_unit_test(equal_radii_are_equal),      cmocka_unit_test(effort_does_not_hurt),
+        cmocka_unit_test(refining_improves),          cmocka_unit_test(symmetry_is_kept),
+        cmocka_unit_test(planes_are_not_crossed),     cmocka_unit_test(spheres_are_dropped_by_their_loss),
         cmocka_unit_test(idle_spheres_are_not_given),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,8 +1,8 @@
 /* Volume files by their paths: the shared volumes, the broken inputs, and data files beside a header. */
 #include <unistd.h>
 
-#include "volume/ms_volume.h"
 #include "support/volume_samples.h"
+#include "volume/ms_volume.h"
 
 static void expect_refused(const char *path, ms_status status, const char *message)
 {

@@ -27,9 +27,9 @@ static void every_type_of_mhd_is_read(void **state)
         const char *name;
         char kind;
         size_t size;
-    } types[] = {{"CHAR", 'i', 1}, {"UCHAR", 'u', 1}, {"SHORT", 'i', 2}, {"USHORT", 'u', 2}, {"INT", 'i', 4},
-        {"UINT", 'u', 4}, {"LONG", 'i', 4}, {"ULONG", 'u', 4}, {"LONG_LONG", 'i', 8}, {"ULONG_LONG", 'u', 8},
-        {"FLOAT", 'f', 4}, {"DOUBLE", 'f', 8}};
+    } types[] = {{"CHAR", 'i', 1},      {"UCHAR", 'u', 1},      {"SHORT", 'i', 2}, {"USHORT", 'u', 2},
+                 {"INT", 'i', 4},       {"UINT", 'u', 4},       {"LONG", 'i', 4},  {"ULONG", 'u', 4},
+                 {"LONG_LONG", 'i', 8}, {"ULONG_LONG", 'u', 8}, {"FLOAT", 'f', 4}, {"DOUBLE", 'f', 8}};
     (void)state;
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
         for (int big = 0; big < 2; big++) {
@@ -71,8 +71,8 @@ static void packed_mhd_is_read(void **state)
     (void)state;
     put_packed(&packed, 15);
     snprintf(text, sizeof text,
-        MHD "CompressedData = True\nCompressedDataSize = %zu\nElementType = MET_USHORT\nElementDataFile = LOCAL\n",
-        packed.size);
+             MHD "CompressedData = True\nCompressedDataSize = %zu\nElementType = MET_USHORT\nElementDataFile = LOCAL\n",
+             packed.size);
     put_text(&made, text);
     put_bytes(&made, packed.data, packed.size);
     expect_volume(ms_volume_parse_mhd, &made, "sample", 100);
@@ -115,7 +115,7 @@ static void malformed_mhd_is_refused_with_its_line(void **state)
         {"DimSize = 2 0 4\n" MHD_END, "its extents are 2 x 0 x 4"},
         {"DimSize = 2 -3 4\n" MHD_END, "its extents are 2 x -3 x 4"},
         {"DimSize = 2000 2000 2000\nCompressedData = True\n" MHD_END "x",
-            "its 1 packed bytes cannot hold the 8000000000"},
+         "its 1 packed bytes cannot hold the 8000000000"},
         {MHD "ElementSpacing = 1 1 2\n" MHD_END "123456789012345678901234", "its voxels are 1 x 1 x 2 and not cubes"},
         {MHD "ElementSpacing = 0 0 0\n" MHD_END "123456789012345678901234", "along axis 0 it has the spacing 0"},
         {MHD "ElementSpacing = 1 nan 1\n" MHD_END "123456789012345678901234", "along axis 1 it has the spacing"},
@@ -133,9 +133,10 @@ static void every_type_of_nrrd_is_read(void **state)
         const char *name;
         char kind;
         size_t size;
-    } types[] = {{"signed char", 'i', 1}, {"uint8_t", 'u', 1}, {"short int", 'i', 2}, {"unsigned short", 'u', 2},
-        {"int", 'i', 4}, {"uint32", 'u', 4}, {"long long int", 'i', 8}, {"signed long long int", 'i', 8},
-        {"ulonglong", 'u', 8}, {"float", 'f', 4}, {"double", 'f', 8}};
+    } types[] = {
+        {"signed char", 'i', 1}, {"uint8_t", 'u', 1}, {"short int", 'i', 2},     {"unsigned short", 'u', 2},
+        {"int", 'i', 4},         {"uint32", 'u', 4},  {"long long int", 'i', 8}, {"signed long long int", 'i', 8},
+        {"ulonglong", 'u', 8},   {"float", 'f', 4},   {"double", 'f', 8}};
     (void)state;
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
         for (int big = 0; big < 2; big++) {
@@ -245,11 +246,11 @@ static void bad_data_of_nrrd_are_refused(void **state)
         {NRRD "type: uchar\nencoding: text\n\n1 2 3", "(24) but there are 5 bytes of data"},
         {NRRD "type: uchar\nencoding: text\n\n100000000000000000000 1 1 1 1 1 1 1 1 1 1 1 1 1", "which is no label"},
         {NRRD "type: uchar\nencoding: text\n\n1000000000 1000000000 1000000000 100000000000000",
-            "voxel (1, 1, 0) holds 1e+14, which is no label"},
+         "voxel (1, 1, 0) holds 1e+14, which is no label"},
         {NRRD "type: uchar\nencoding: text\n\n1000000000 1000000000 1000000000 1000000000 1000000000",
-            "its data end after 5 of 24 values"},
+         "its data end after 5 of 24 values"},
         {NRRD "type: uchar\nencoding: text\n\n1 2 3 4 5 6 x 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1",
-            "value 7 of its data is 'x' and no number"},
+         "value 7 of its data is 'x' and no number"},
         {NRRD "spacings: 1 2 1\n" NRRD_END "123456789012345678901234", "its voxels are 1 x 2 x 1 and not cubes"},
     };
     (void)state;

@@ -16,8 +16,8 @@ static sample npy(int version, const char *dictionary)
 
 static void every_type_order_and_version_is_read(void **state)
 {
-    static const char *const types[] = {"|b1", "|u1", "<u2", ">u2", "<u4", ">u4", "<u8", ">u8", "|i1", "<i1", "<i2",
-        ">i2", "<i4", ">i4", "<i8", ">i8", "<f4", ">f4", "<f8", ">f8"};
+    static const char *const types[] = {"|b1", "|u1", "<u2", ">u2", "<u4", ">u4", "<u8", ">u8", "|i1", "<i1",
+                                        "<i2", ">i2", "<i4", ">i4", "<i8", ">i8", "<f4", ">f4", "<f8", ">f8"};
     (void)state;
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
         for (int fortran = 0; fortran < 2; fortran++) {
@@ -25,7 +25,7 @@ static void every_type_order_and_version_is_read(void **state)
             const char *type = types[i];
             uint32_t largest = type[1] == 'b' ? 1 : 100;
             snprintf(text, sizeof text, "{'descr': '%s', 'fortran_order': %s, 'shape': %s, }      \n", type,
-                fortran ? "True" : "False", fortran ? "(2, 3, 4)" : "(4, 3, 2)");
+                     fortran ? "True" : "False", fortran ? "(2, 3, 4)" : "(4, 3, 2)");
             sample made = npy(1 + (int)i % 3, text);
             put_voxels(&made, type[1], (size_t)(type[2] - '0'), type[0] == '>', largest);
             expect_volume(ms_volume_parse_npy, &made, "sample", largest);
@@ -118,7 +118,7 @@ static void data_of_a_wrong_size_are_refused(void **state)
     put_voxels(&made, 'u', 2, 0, 100);
     made.size--;
     expect_volume_refused(ms_volume_parse_npy, &made, MS_ERR_FORMAT,
-        "claims 2 x 3 x 4 voxels of 2 bytes (48) but there are 47 bytes");
+                          "claims 2 x 3 x 4 voxels of 2 bytes (48) but there are 47 bytes");
     made.size += 2;
     expect_volume_refused(ms_volume_parse_npy, &made, MS_ERR_FORMAT, "(48) but there are 49 bytes");
     expect_volume_refused(ms_volume_parse_npy, &huge, MS_ERR_LIMIT, "2147483647 voxels, too many");
@@ -155,7 +155,7 @@ static void integers_that_are_no_labels_are_refused(void **state)
     expect_volume_refused(ms_volume_parse_npy, &wide, MS_ERR_FORMAT, "voxel (0, 0, 0) holds 4.2949673e+09");
     put_integer(&truth, 2, 1, 0);
     expect_volume_refused(ms_volume_parse_npy, &truth, MS_ERR_FORMAT,
-        "holds 2, which is no label (0, 1, 2, ... up to 1");
+                          "holds 2, which is no label (0, 1, 2, ... up to 1");
 }
 
 static void the_largest_label_is_read(void **state)

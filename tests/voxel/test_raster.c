@@ -1,6 +1,6 @@
 /* Unions of balls on a grid against brute force. */
-#include "support/grid_samples.h"
 #include "clump/ms_clump.h"
+#include "support/grid_samples.h"
 #include "voxel/ms_raster.h"
 
 static const ms_voxel_rule both_rules[] = {MS_VOXEL_HALF, MS_VOXEL_CENTRE};
@@ -73,7 +73,9 @@ static void expect_tallies(const ms_raster *raster)
         for (size_t v = 0; v < ms_grid_voxels(raster->grid); v++) {
             const int64_t i = (int64_t)v % raster->grid->n[0], j = (int64_t)v / raster->grid->n[0] % raster->grid->n[1];
             const int64_t k = (int64_t)v / raster->grid->n[0] / raster->grid->n[1];
-            const ms_tally one = {raster->grid->inside[v] == 1, raster->grid->inside[v] == 0, {i, j, k},
+            const ms_tally one = {raster->grid->inside[v] == 1,
+                                  raster->grid->inside[v] == 0,
+                                  {i, j, k},
                                   {i * i, j * j, k * k, j * k, i * k, i * j}};
             if (raster->first[v] == b) {
                 ms_tally_add(&sum, &one);
@@ -276,8 +278,8 @@ static void bad_balls_are_refused(void **state)
     ms_grid grid = empty_grid(3, 3, 3, 1);
     ms_raster raster = raster_of(&grid, MS_VOXEL_HALF);
     const double none = (double)NAN;
-    const ms_ball bad[] = {{{none, 0, 0}, 1}, {{0, HUGE_VAL, 0}, 1}, {{0, 0, 0}, none}, {{0, 0, 0}, HUGE_VAL},
-                           {{1, 1, 1}, -0.6}};
+    const ms_ball bad[] = {
+        {{none, 0, 0}, 1}, {{0, HUGE_VAL, 0}, 1}, {{0, 0, 0}, none}, {{0, 0, 0}, HUGE_VAL}, {{1, 1, 1}, -0.6}};
     for (int b = 0; b < 5; b++) {
         const ms_ball two[] = {{{1, 1, 1}, 1}, bad[b]};
         expect_refused(&raster, two, 2, MS_ERR_ARG, "sphere 2 ");

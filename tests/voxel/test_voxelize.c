@@ -9,8 +9,8 @@ static void expect_refused(const ms_mesh *mesh, double h, ms_status status, cons
         ms_grid grid;
         size_t disagree;
         ms_error err = {{0}};
-        const ms_status got = open ? ms_voxelize_open(&grid, &disagree, mesh, h, &err)
-                                   : ms_voxelize(&grid, mesh, h, MS_VOXEL_HALF, &err);
+        const ms_status got =
+            open ? ms_voxelize_open(&grid, &disagree, mesh, h, &err) : ms_voxelize(&grid, mesh, h, MS_VOXEL_HALF, &err);
         assert_int_equal(got, status);
         expect_message(&err, message);
         assert_null(grid.inside);

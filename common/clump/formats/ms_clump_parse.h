@@ -2,8 +2,8 @@
 #ifndef MS_CLUMP_PARSE_H
 #define MS_CLUMP_PARSE_H
 
-#include "clump/ms_clump.h"
 #include "base/ms_file.h"
+#include "clump/ms_clump.h"
 
 /**
  * @param[out]    clump the caller frees it; empty on failure

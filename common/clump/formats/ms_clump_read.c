@@ -2,10 +2,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "clump/ms_clump.h"
-#include "ms_clump_parse.h"
 #include "base/ms_file.h"
 #include "base/ms_text.h"
+#include "clump/ms_clump.h"
+#include "ms_clump_parse.h"
 
 static int is_mark(char c)
 {
@@ -143,8 +143,8 @@ static ms_status add_mass(masses *m, const ms_clump *clump, double mass, ms_erro
 static ms_status read_sphere(ms_clump *clump, masses *m, ms_text *text, ms_error *err)
 {
     double v[5];
-    ms_status status = ms_text_doubles(v, m->wanted ? 5 : 4, text,
-                                       m->wanted ? "a sphere (x y z r mass)" : "a sphere (x y z r)", err);
+    ms_status status =
+        ms_text_doubles(v, m->wanted ? 5 : 4, text, m->wanted ? "a sphere (x y z r mass)" : "a sphere (x y z r)", err);
     if (status != MS_OK) {
         return status;
     }

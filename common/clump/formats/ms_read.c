@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "ms_clump_parse.h"
 #include "base/ms_file.h"
+#include "ms_clump_parse.h"
 #include "ms_read_formats.h"
 
 typedef ms_status parser(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
@@ -31,8 +31,9 @@ static parser *parser_of(const char *path)
     static const struct {
         const char *ending;
         parser *parse;
-    } READERS[] = {{"json", ms_parse_json}, {"lammps", ms_parse_lammps}, {"vtk", refuse},
-                   {"clu", refuse},         {"pfc", refuse},             {"mfix", refuse}};
+    } READERS[] = {{"json", ms_parse_json}, {"lammps", ms_parse_lammps},
+                   {"vtk", refuse},         {"clu", refuse},
+                   {"pfc", refuse},         {"mfix", refuse}};
     char ending[16];
     ms_file_ending(ending, path);
     for (size_t r = 0; r < sizeof READERS / sizeof *READERS; r++) {
@@ -47,8 +48,8 @@ static ms_status check_masses(const ms_clump *clump, const char *name, ms_error 
 {
     for (size_t s = 0; clump->mass && s < clump->n_spheres; s++) {
         if (!isfinite(clump->mass[s]) || !(clump->mass[s] > 0)) {
-            return ms_fail(err, MS_ERR_FORMAT, "%s: sphere %zu has the mass %g; masses must be finite and above 0", name,
-                           s + 1, clump->mass[s]);
+            return ms_fail(err, MS_ERR_FORMAT, "%s: sphere %zu has the mass %g; masses must be finite and above 0",
+                           name, s + 1, clump->mass[s]);
         }
     }
     return MS_OK;

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ms_read_formats.h"
 #include "base/ms_text.h"
+#include "ms_read_formats.h"
 
 /* What the file says of each sphere. */
 typedef struct table {
@@ -112,7 +112,8 @@ static ms_status settle_particle(ms_particle *particle, const char *name, ms_err
     for (int k = 0; k < 3; k++) {
         if (!(particle->mass > 0) || !isfinite(particle->mass) || !(i[k][k] > 0) || !isfinite(i[k][k]) ||
             !isfinite(particle->centre[k])) {
-            return ms_fail(err, MS_ERR_FORMAT, "%s: mass and inertia of its header must both be above 0 and finite", name);
+            return ms_fail(err, MS_ERR_FORMAT, "%s: mass and inertia of its header must both be above 0 and finite",
+                           name);
         }
     }
     particle->scale = 1;

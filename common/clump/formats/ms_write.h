@@ -4,8 +4,8 @@
 
 #include <stdio.h>
 
-#include "voxel/ms_grid.h"
 #include "clump/ms_template.h"
+#include "voxel/ms_grid.h"
 
 MS_C_BEGIN
 

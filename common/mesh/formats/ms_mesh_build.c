@@ -27,10 +27,9 @@ static ms_status grow_vertices(ms_mesh_builder *builder, size_t wanted, ms_error
     void *array = builder->mesh.vertex;
     if (wanted > MAX_VERTICES) {
         return ms_fail(err, MS_ERR_LIMIT, "%s: has more than %llu vertices; make the mesh coarser", builder->name,
-            (unsigned long long)MAX_VERTICES);
+                       (unsigned long long)MAX_VERTICES);
     }
-    ms_status status =
-        grow(&array, &builder->vertex_room, wanted, sizeof *builder->mesh.vertex, builder->name, err);
+    ms_status status = grow(&array, &builder->vertex_room, wanted, sizeof *builder->mesh.vertex, builder->name, err);
     builder->mesh.vertex = array;
     return status;
 }
@@ -40,7 +39,7 @@ static ms_status grow_triangles(ms_mesh_builder *builder, size_t wanted, ms_erro
     void *array = builder->mesh.triangle;
     if (wanted > MAX_TRIANGLES) {
         return ms_fail(err, MS_ERR_LIMIT, "%s: has more than %llu triangles; make the mesh coarser", builder->name,
-            (unsigned long long)MAX_TRIANGLES);
+                       (unsigned long long)MAX_TRIANGLES);
     }
     ms_status status =
         grow(&array, &builder->triangle_room, wanted, sizeof *builder->mesh.triangle, builder->name, err);
@@ -103,7 +102,8 @@ static ms_status append_triangle(ms_mesh_builder *builder, uint32_t third, ms_er
 
 static ms_status fail_index(ms_mesh_builder *builder, int64_t index, size_t place, ms_error *err)
 {
-    return ms_fail(err, MS_ERR_FORMAT,
+    return ms_fail(
+        err, MS_ERR_FORMAT,
         "%s: %s %zu: the face names vertex %lld but the file has vertices %lld to %lld; export the mesh again",
         builder->name, builder->place_word, place, (long long)(index + builder->first_index),
         (long long)builder->first_index, (long long)builder->mesh.n_vertices - 1 + builder->first_index);
@@ -132,7 +132,7 @@ ms_status ms_build_face_end(ms_mesh_builder *builder, ms_error *err)
 {
     if (builder->n_corners < 3) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: %s %zu: a face has %zu corners and needs at least 3; remove it",
-            builder->name, builder->place_word, builder->place, builder->n_corners);
+                       builder->name, builder->place_word, builder->place, builder->n_corners);
     }
     return MS_OK;
 }
@@ -156,17 +156,17 @@ static ms_status check_mesh(ms_mesh_builder *builder, ms_error *err)
     const ms_mesh *mesh = &builder->mesh;
     if (mesh->n_triangles == 0) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: has no triangles (and %zu vertices); export the surface of the body",
-            builder->name, mesh->n_vertices);
+                       builder->name, mesh->n_vertices);
     }
     if (builder->largest >= mesh->n_vertices) {
         return fail_index(builder, builder->largest, builder->largest_place, err);
     }
     if (builder->n_not_finite > 0) {
         return ms_fail(err, MS_ERR_FORMAT,
-            "%s: %zu of %zu triangles have a corner that is not finite (inf or nan), %s %zu is the first; "
-            "export the mesh again",
-            builder->name, count_not_finite_triangles(mesh), mesh->n_triangles, builder->place_word,
-            builder->first_not_finite);
+                       "%s: %zu of %zu triangles have a corner that is not finite (inf or nan), %s %zu is the first; "
+                       "export the mesh again",
+                       builder->name, count_not_finite_triangles(mesh), mesh->n_triangles, builder->place_word,
+                       builder->first_not_finite);
     }
     return MS_OK;
 }

@@ -20,16 +20,16 @@ ms_status ms_mesh_parse_off(ms_mesh *mesh, const ms_bytes *bytes, const char *na
 
 /** A mesh under construction. Places are line numbers in text and byte offsets in binary files. */
 typedef struct ms_mesh_builder {
-    const char *name;        /* of the file */
-    const char *place_word;  /* "line" or "byte" */
-    int64_t first_index;     /* what the format calls its first vertex: 0 or 1 */
-    ms_mesh mesh;            /* vertices as in the file, not yet welded */
+    const char *name;       /* of the file */
+    const char *place_word; /* "line" or "byte" */
+    int64_t first_index;    /* what the format calls its first vertex: 0 or 1 */
+    ms_mesh mesh;           /* vertices as in the file, not yet welded */
     size_t vertex_room;
     size_t triangle_room;
-    size_t place;            /* of the face under way */
-    size_t n_corners;        /* of the face under way */
-    uint32_t fan[2];         /* its first corner and its latest */
-    uint32_t largest;        /* index of a vertex that any face names, from 0 */
+    size_t place;     /* of the face under way */
+    size_t n_corners; /* of the face under way */
+    uint32_t fan[2];  /* its first corner and its latest */
+    uint32_t largest; /* index of a vertex that any face names, from 0 */
     size_t largest_place;
     size_t n_not_finite;     /* vertices */
     size_t first_not_finite; /* its place */

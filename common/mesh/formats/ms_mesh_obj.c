@@ -1,8 +1,8 @@
 /* Wavefront OBJ: vertices and polygons; what else a file holds (texture, normals, groups) is passed over. */
 #include <string.h>
 
-#include "ms_mesh_formats.h"
 #include "base/ms_text.h"
+#include "ms_mesh_formats.h"
 
 /* x y z, then nothing, a weight, a colour, or a colour with opacity. */
 static ms_status parse_vertex(ms_mesh_builder *builder, ms_text *text, ms_error *err)

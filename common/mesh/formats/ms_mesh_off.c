@@ -1,8 +1,8 @@
 /* Geomview's OFF as text, with the prefixes ST, C and N; normals, colours and texture are passed over. */
 #include <string.h>
 
-#include "ms_mesh_formats.h"
 #include "base/ms_text.h"
+#include "ms_mesh_formats.h"
 
 /* The first word: OFF behind prefixes. `extras` is set where vertices carry more than x, y, z. */
 static ms_status parse_keyword(int *extras, ms_text *text, ms_error *err)
@@ -18,8 +18,8 @@ static ms_status parse_keyword(int *extras, ms_text *text, ms_error *err)
         *extras |= ms_word_is(&word, plain[i]);
     }
     if (!*extras && !ms_word_is(&word, "off")) {
-        return ms_text_fail(err, text,
-            "'%s' stands where OFF belongs (four-dimensional kinds are not read)", ms_word_quote(&word).text);
+        return ms_text_fail(err, text, "'%s' stands where OFF belongs (four-dimensional kinds are not read)",
+                            ms_word_quote(&word).text);
     }
     ms_text peek = *text;
     if (ms_text_word(&word, &peek) && ms_word_is(&word, "binary")) {
@@ -63,7 +63,7 @@ static ms_status parse_counts(size_t *n_vertices, size_t *n_faces, ms_text *text
     int64_t room = (text->end - text->at) / 6 + 1;
     if (!status && (count[0] > room || count[1] > room - count[0])) {
         return ms_text_fail(err, text, "%lld vertices and %lld faces are claimed but only %td bytes follow",
-            (long long)count[0], (long long)count[1], text->end - text->at);
+                            (long long)count[0], (long long)count[1], text->end - text->at);
     }
     *n_vertices = (size_t)count[0];
     *n_faces = (size_t)count[1];
@@ -120,7 +120,7 @@ static ms_status parse_body(ms_mesh_builder *builder, int extras, ms_text *text,
     for (size_t i = 0; i < n_vertices + n_faces && !status; i++) {
         if (!ms_text_seek(text)) {
             return ms_text_fail(err, text, "the file ends after %zu of %zu %s", i < n_vertices ? i : i - n_vertices,
-                i < n_vertices ? n_vertices : n_faces, i < n_vertices ? "vertices" : "faces");
+                                i < n_vertices ? n_vertices : n_faces, i < n_vertices ? "vertices" : "faces");
         }
         status = i < n_vertices ? parse_vertex(builder, extras, text, err) : parse_face(builder, text, err);
     }

@@ -62,7 +62,7 @@ static ms_status next_value(double *value, source *from, ms_ply_type type, const
     size_t size = ms_ply_type_size(type);
     if ((size_t)(from->text.end - from->text.at) < size) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: byte %zu: the file is cut inside its rows; fetch or export it again",
-            from->text.name, place_of(from, bytes));
+                       from->text.name, place_of(from, bytes));
     }
     *value = bits_to_double(load_bits(from, size), type);
     from->text.at += size;
@@ -77,22 +77,22 @@ static ms_status next_whole(int64_t *whole, source *from, ms_ply_type type, cons
     /* The negation also catches nan. */
     if (!status && !(value >= -4294967296.0 && value <= 4294967296.0 && value == floor(value))) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: %s %zu: %g is no index or length; export the mesh again",
-            from->text.name, from->encoding == MS_PLY_ASCII ? "line" : "byte", place, value);
+                       from->text.name, from->encoding == MS_PLY_ASCII ? "line" : "byte", place, value);
     }
     *whole = status ? 0 : (int64_t)value;
     return status;
 }
 
 /* A list: its corners go into the face under way, others are passed over. */
-static ms_status parse_list(
-    ms_mesh_builder *builder, source *from, const ms_ply_property *property, const ms_bytes *bytes, ms_error *err)
+static ms_status parse_list(ms_mesh_builder *builder, source *from, const ms_ply_property *property,
+                            const ms_bytes *bytes, ms_error *err)
 {
     int64_t length = 0;
     size_t place = place_of(from, bytes);
     ms_status status = next_whole(&length, from, property->count_type, bytes, err);
     if (!status && length < 0) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: %s %zu: a list has the length %lld; export the mesh again",
-            from->text.name, builder->place_word, place, (long long)length);
+                       from->text.name, builder->place_word, place, (long long)length);
     }
     for (int64_t i = 0; i < length && !status; i++) {
         double ignored;
@@ -111,7 +111,8 @@ static ms_status parse_list(
 
 /* One row; `position` takes the values whose role is x, y or z. */
 static ms_status parse_properties(double position[3], ms_mesh_builder *builder, source *from,
-    const ms_ply_header *header, const ms_ply_element *element, const ms_bytes *bytes, ms_error *err)
+                                  const ms_ply_header *header, const ms_ply_element *element, const ms_bytes *bytes,
+                                  ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t i = 0; i < element->n_properties && !status; i++) {
@@ -130,7 +131,7 @@ static ms_status parse_properties(double position[3], ms_mesh_builder *builder, 
 }
 
 static ms_status parse_element(ms_mesh_builder *builder, source *from, const ms_ply_header *header,
-    const ms_ply_element *element, const ms_bytes *bytes, ms_error *err)
+                               const ms_ply_element *element, const ms_bytes *bytes, ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t row = 0; row < element->count && !status; row++) {
@@ -160,13 +161,13 @@ static ms_status check_end(source *from, const ms_bytes *bytes, ms_error *err)
     }
     if (from->text.at < from->text.end) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: byte %zu: %td bytes follow after the last row; export the mesh again",
-            from->text.name, place_of(from, bytes), from->text.end - from->text.at);
+                       from->text.name, place_of(from, bytes), from->text.end - from->text.at);
     }
     return MS_OK;
 }
 
-static ms_status parse_rows(ms_mesh_builder *builder, source *from, const ms_ply_header *header,
-    const ms_bytes *bytes, ms_error *err)
+static ms_status parse_rows(ms_mesh_builder *builder, source *from, const ms_ply_header *header, const ms_bytes *bytes,
+                            ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t i = 0; i < header->n_elements && !status; i++) {

@@ -15,11 +15,10 @@ static ms_ply_type find_type(const ms_word *word)
         const char *name;
         ms_ply_type type;
     } names[] = {
-        {"char", MS_PLY_INT8}, {"int8", MS_PLY_INT8}, {"uchar", MS_PLY_UINT8}, {"uint8", MS_PLY_UINT8},
-        {"short", MS_PLY_INT16}, {"int16", MS_PLY_INT16}, {"ushort", MS_PLY_UINT16}, {"uint16", MS_PLY_UINT16},
-        {"int", MS_PLY_INT32}, {"int32", MS_PLY_INT32}, {"uint", MS_PLY_UINT32}, {"uint32", MS_PLY_UINT32},
-        {"float", MS_PLY_FLOAT32}, {"float32", MS_PLY_FLOAT32}, {"double", MS_PLY_FLOAT64},
-        {"float64", MS_PLY_FLOAT64},
+        {"char", MS_PLY_INT8},     {"int8", MS_PLY_INT8},       {"uchar", MS_PLY_UINT8},    {"uint8", MS_PLY_UINT8},
+        {"short", MS_PLY_INT16},   {"int16", MS_PLY_INT16},     {"ushort", MS_PLY_UINT16},  {"uint16", MS_PLY_UINT16},
+        {"int", MS_PLY_INT32},     {"int32", MS_PLY_INT32},     {"uint", MS_PLY_UINT32},    {"uint32", MS_PLY_UINT32},
+        {"float", MS_PLY_FLOAT32}, {"float32", MS_PLY_FLOAT32}, {"double", MS_PLY_FLOAT64}, {"float64", MS_PLY_FLOAT64},
     };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (ms_word_is(word, names[i].name)) {
@@ -47,7 +46,7 @@ static ms_status next_type(ms_ply_type *type, int is_count, ms_text *text, ms_er
     *type = find_type(&word);
     if (*type == MS_PLY_NONE || (is_count && *type >= MS_PLY_FLOAT32)) {
         return ms_text_fail(err, text, "'%s' is no type for %s", ms_word_quote(&word).text,
-            is_count ? "the length of a list" : "a property");
+                            is_count ? "the length of a list" : "a property");
     }
     return MS_OK;
 }
@@ -67,7 +66,7 @@ static ms_status parse_format(ms_ply_header *header, ms_text *text, ms_error *er
         header->encoding = MS_PLY_BIG_ENDIAN;
     } else {
         return ms_text_fail(err, text, "the format '%s' is none of ascii, binary_little_endian and binary_big_endian",
-            ms_word_quote(&word).text);
+                            ms_word_quote(&word).text);
     }
     status = next_word(&word, "the version 1.0", text, err);
     if (!status && !ms_word_is(&word, "1.0")) {
@@ -95,7 +94,7 @@ static ms_status parse_element(ms_ply_header *header, ms_text *text, ms_error *e
         return ms_text_fail(err, text, "more than %d elements are not read", MS_PLY_MAX_ELEMENTS);
     }
     ms_ply_kind kind = ms_word_is(&name, "vertex") ? MS_PLY_VERTEX
-        : ms_word_is(&name, "face")                ? MS_PLY_FACE
+                       : ms_word_is(&name, "face") ? MS_PLY_FACE
                                                    : MS_PLY_OTHER;
     for (size_t i = 0; i < header->n_elements; i++) {
         if (kind != MS_PLY_OTHER && header->element[i].kind == kind) {
@@ -105,18 +104,18 @@ static ms_status parse_element(ms_ply_header *header, ms_text *text, ms_error *e
     if (ms_word_is(&name, "tristrips") && count > 0) {
         return ms_text_fail(err, text, "triangle strips are not read, only faces are");
     }
-    header->element[header->n_elements++] = (ms_ply_element){
-        .kind = kind, .count = (size_t)count, .first = header->n_properties, .line = text->line};
+    header->element[header->n_elements++] =
+        (ms_ply_element){.kind = kind, .count = (size_t)count, .first = header->n_properties, .line = text->line};
     return ms_text_end_line(text, err);
 }
 
 static ms_ply_role find_role(ms_ply_kind kind, int is_list, const ms_word *name)
 {
     if (kind == MS_PLY_VERTEX && !is_list) {
-        return ms_word_is(name, "x") ? MS_PLY_X
-            : ms_word_is(name, "y")  ? MS_PLY_Y
-            : ms_word_is(name, "z")  ? MS_PLY_Z
-                                     : MS_PLY_IGNORED;
+        return ms_word_is(name, "x")   ? MS_PLY_X
+               : ms_word_is(name, "y") ? MS_PLY_Y
+               : ms_word_is(name, "z") ? MS_PLY_Z
+                                       : MS_PLY_IGNORED;
     }
     int is_corners = ms_word_is(name, "vertex_indices") || ms_word_is(name, "vertex_index");
     return kind == MS_PLY_FACE && is_list && is_corners ? MS_PLY_CORNERS : MS_PLY_IGNORED;
@@ -219,7 +218,7 @@ static ms_status check_sizes(const ms_ply_header *header, const ms_text *text, m
         size_t row = least_row_size(header, element);
         if (element->count > 0 && element->count > left / row) {
             return ms_text_fail(err, &place, "%zu rows of at least %zu bytes are claimed but only %zu bytes follow",
-                element->count, row, left);
+                                element->count, row, left);
         }
         left -= element->count * row;
     }
@@ -238,7 +237,7 @@ static ms_status check_roles(const ms_ply_header *header, const ms_text *text, m
     }
     if (n_faces == 0) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: has no faces (and %zu points); export the surface of the body",
-            text->name, n_points);
+                       text->name, n_points);
     }
     for (size_t i = 0; i < header->n_properties; i++) {
         has_role[header->property[i].role] = 1;

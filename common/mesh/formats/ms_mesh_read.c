@@ -38,7 +38,7 @@ ms_status ms_mesh_parse(ms_mesh *mesh, const ms_bytes *bytes, const char *path, 
     *mesh = (ms_mesh){0};
     if (!found) {
         return ms_fail(err, MS_ERR_FORMAT,
-            "%s: its ending names no mesh format; meshes are read from .stl, .obj, .ply and .off", path);
+                       "%s: its ending names no mesh format; meshes are read from .stl, .obj, .ply and .off", path);
     }
     if (bytes->size == 0) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: is empty (0 bytes); export the mesh again", path);

@@ -1,8 +1,8 @@
 /* STL, the format of 3D Systems 1989: ASCII and binary. Normals and attributes are ignored. */
 #include <string.h>
 
-#include "ms_mesh_formats.h"
 #include "base/ms_text.h"
+#include "ms_mesh_formats.h"
 
 #define HEADER_SIZE 84 /* a comment of 80 bytes and the number of triangles */
 #define RECORD_SIZE 50 /* normal and corners as float32, and 2 bytes of attributes */
@@ -36,14 +36,16 @@ static ms_status check_size(uint64_t size, uint32_t count, const char *name, ms_
 {
     uint64_t wanted = HEADER_SIZE + (uint64_t)count * RECORD_SIZE;
     if (size < wanted) {
-        return ms_fail(err, MS_ERR_FORMAT,
+        return ms_fail(
+            err, MS_ERR_FORMAT,
             "%s: binary STL cut after %llu of %lu triangles: its header claims %llu bytes and the file has %llu; "
             "fetch or export it again",
             name, (unsigned long long)((size - HEADER_SIZE) / RECORD_SIZE), (unsigned long)count,
             (unsigned long long)wanted, (unsigned long long)size);
     }
     if (size > wanted) {
-        return ms_fail(err, MS_ERR_FORMAT,
+        return ms_fail(
+            err, MS_ERR_FORMAT,
             "%s: binary STL whose header claims %lu triangles (%llu bytes) has %llu bytes more behind byte %llu; "
             "export it again",
             name, (unsigned long)count, (unsigned long long)wanted, (unsigned long long)(size - wanted),
@@ -129,7 +131,7 @@ static ms_status parse_solid(ms_mesh_builder *builder, ms_text *text, ms_error *
         ms_word word;
         if (!ms_text_seek(text)) {
             return ms_text_fail(err, text, "the file ends without 'endsolid' after %zu triangles",
-                builder->mesh.n_triangles);
+                                builder->mesh.n_triangles);
         }
         ms_text_word(&word, text);
         if (ms_word_is(&word, "endsolid")) {
@@ -138,7 +140,7 @@ static ms_status parse_solid(ms_mesh_builder *builder, ms_text *text, ms_error *
         }
         if (!ms_word_is(&word, "facet")) {
             return ms_text_fail(err, text, "'%s' stands where 'facet' or 'endsolid' belongs",
-                ms_word_quote(&word).text);
+                                ms_word_quote(&word).text);
         }
         ms_status status = parse_facet(builder, text, err);
         if (status) {
@@ -185,7 +187,8 @@ ms_status ms_mesh_parse_stl(ms_mesh *mesh, const ms_bytes *bytes, const char *na
     } else if (has_header) {
         status = parse_binary(&builder, bytes, err);
     } else {
-        status = ms_fail(err, MS_ERR_FORMAT,
+        status = ms_fail(
+            err, MS_ERR_FORMAT,
             "%s: is no STL: it does not begin with 'solid' and its %zu bytes are too few for a binary header of %d; "
             "export the mesh again",
             name, bytes->size, HEADER_SIZE);
