@@ -17,7 +17,7 @@ static size_t count_options(const ms_option *options)
     return count;
 }
 
-ms_status ms_settings_init(ms_settings *settings, const ms_option *options, ms_error *err)
+ms_status ms_option_settings_init(ms_settings *settings, const ms_option *options, ms_error *err)
 {
     const size_t count = count_options(options);
     memset(settings, 0, sizeof *settings);
@@ -32,7 +32,7 @@ ms_status ms_settings_init(ms_settings *settings, const ms_option *options, ms_e
     return MS_OK;
 }
 
-void ms_settings_free(ms_settings *settings)
+void ms_option_settings_free(ms_settings *settings)
 {
     if (settings) {
         free(settings->value);
@@ -65,7 +65,7 @@ static ms_status fail_unknown(ms_error *err, const ms_option *options, const cha
 static int parse_number(double *value, const char *text)
 {
     const ms_word word = {.start = text, .length = strlen(text)};
-    return word.length > 0 && ms_word_double(value, &word) && isfinite(*value);
+    return word.length > 0 && ms_text_to_double(value, &word) && isfinite(*value);
 }
 
 static ms_status set_number(double *value, const ms_option *option, const char *text, ms_error *err)
@@ -133,7 +133,7 @@ static ms_status add_plane(ms_settings *settings, const ms_option *option, const
     const char *at = text;
     for (int m = 0; m < 4; m++) {
         const ms_word word = {.start = at, .length = strcspn(at, ",")};
-        if (word.length == 0 || !ms_word_double(&plane[m], &word) || !isfinite(plane[m]) ||
+        if (word.length == 0 || !ms_text_to_double(&plane[m], &word) || !isfinite(plane[m]) ||
             (m < 3) != (at[word.length] == ',')) {
             return ms_fail(err, MS_ERR_ARG, "%s=%s is not four numbers a,b,c,d (the plane a x + b y + c z = d)",
                            option->name, text);
@@ -168,7 +168,7 @@ static ms_status read_clump(ms_settings *settings, const char *path, ms_error *e
     return status;
 }
 
-ms_status ms_settings_set(ms_settings *settings, const char *name, const char *text, ms_error *err)
+ms_status ms_option_settings_set(ms_settings *settings, const char *name, const char *text, ms_error *err)
 {
     const ms_option *option = ms_option_find(settings->options, name);
     if (!option) {
@@ -192,7 +192,7 @@ ms_status ms_settings_set(ms_settings *settings, const char *name, const char *t
     return ms_fail(err, MS_ERR_ARG, "option %s has an unknown type", name);
 }
 
-void ms_settings_text(char *out, size_t size, const ms_settings *settings, size_t option)
+void ms_option_settings_text(char *out, size_t size, const ms_settings *settings, size_t option)
 {
     const ms_option *o = &settings->options[option];
     const double value = settings->value[option];

@@ -59,7 +59,7 @@ ms_status ms_stop_set(ms_stop *stop, const char *measure, double value, ms_error
 
 ms_stop_reason ms_stop_reached(const ms_stop *stop, const ms_target *target, const ms_tally *sum, size_t n)
 {
-    const ms_score score = ms_score_of(sum, target->voxels);
+    const ms_score score = ms_metrics_score(sum, target->voxels);
     if (stop->spheres && n >= stop->spheres) {
         return MS_STOP_SPHERES;
     }
@@ -76,7 +76,8 @@ ms_stop_reason ms_stop_reached(const ms_stop *stop, const ms_target *target, con
         ms_body body;
         ms_inertia_error error;
         ms_tally_body(&body, sum, &target->grid);
-        if (ms_inertia_compare(&error, &body, &target->body, NULL) == MS_OK && error.weighted <= stop->inertia) {
+        if (ms_metrics_compare_inertia(&error, &body, &target->body, NULL) == MS_OK &&
+            error.weighted <= stop->inertia) {
             return MS_STOP_INERTIA;
         }
     }

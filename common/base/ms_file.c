@@ -62,12 +62,12 @@ cleanup:
         close(fd);
     }
     if (status) {
-        ms_bytes_free(bytes);
+        ms_file_free(bytes);
     }
     return status;
 }
 
-void ms_bytes_free(ms_bytes *bytes)
+void ms_file_free(ms_bytes *bytes)
 {
     if (bytes) {
         free(bytes->data);
@@ -75,7 +75,7 @@ void ms_bytes_free(ms_bytes *bytes)
     }
 }
 
-uint64_t ms_bytes_checksum(const ms_bytes *bytes)
+uint64_t ms_file_checksum(const ms_bytes *bytes)
 {
     uint64_t hash = UINT64_C(14695981039346656037);
     for (size_t i = 0; i < bytes->size; i++) {

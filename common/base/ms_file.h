@@ -18,14 +18,14 @@ typedef struct ms_bytes {
 /**
  * Reads a regular file whole (a folder, a device or a pipe is refused).
  *
- * @param[out] bytes the caller frees it with ms_bytes_free; empty on failure
+ * @param[out] bytes the caller frees it with ms_file_free; empty on failure
  * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM
  */
 ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err);
-void ms_bytes_free(ms_bytes *bytes);
+void ms_file_free(ms_bytes *bytes);
 
 /** FNV-1a, 64 bits: names an input in a result so that a run can be repeated. */
-uint64_t ms_bytes_checksum(const ms_bytes *bytes);
+uint64_t ms_file_checksum(const ms_bytes *bytes);
 
 /** A file being written. "-" is standard output. */
 typedef struct ms_output {

@@ -106,8 +106,8 @@ ms_status ms_text_doubles(double *values, size_t n, ms_text *text, const char *w
         if (!ms_text_word(&word, text)) {
             return ms_text_fail(err, text, "%s needs %zu numbers but the line has %zu", what, n, i);
         }
-        if (!ms_word_double(&values[i], &word)) {
-            return ms_text_fail(err, text, "%s has '%s' where a number belongs", what, ms_word_quote(&word).text);
+        if (!ms_text_to_double(&values[i], &word)) {
+            return ms_text_fail(err, text, "%s has '%s' where a number belongs", what, ms_text_quote(&word).text);
         }
     }
     return MS_OK;
@@ -117,7 +117,7 @@ ms_status ms_text_end_line(ms_text *text, ms_error *err)
 {
     ms_word word;
     if (ms_text_word(&word, text)) {
-        return ms_text_fail(err, text, "'%s' stands where the line should end", ms_word_quote(&word).text);
+        return ms_text_fail(err, text, "'%s' stands where the line should end", ms_text_quote(&word).text);
     }
     return MS_OK;
 }
@@ -133,7 +133,7 @@ ms_status ms_text_fail(ms_error *err, const ms_text *text, const char *format, .
                    text->line, detail);
 }
 
-int ms_word_is(const ms_word *word, const char *lower)
+int ms_text_word_is(const ms_word *word, const char *lower)
 {
     size_t i = 0;
     for (; i < word->length && lower[i]; i++) {
@@ -148,7 +148,7 @@ int ms_word_is(const ms_word *word, const char *lower)
     return i == word->length && lower[i] == '\0';
 }
 
-ms_quote ms_word_quote(const ms_word *word)
+ms_quote ms_text_quote(const ms_word *word)
 {
     ms_quote quote;
     size_t room = sizeof quote.text - 4;

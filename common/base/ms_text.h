@@ -50,15 +50,15 @@ ms_status ms_text_end_line(ms_text *text, ms_error *err);
 ms_status ms_text_fail(ms_error *err, const ms_text *text, const char *format, ...) MS_PRINTF(3, 4);
 
 /** Nonzero if the word is `lower`, whatever its case. */
-int ms_word_is(const ms_word *word, const char *lower);
-ms_quote ms_word_quote(const ms_word *word);
+int ms_text_word_is(const ms_word *word, const char *lower);
+ms_quote ms_text_quote(const ms_word *word);
 
 /**
  * A decimal number as C writes it in the "C" locale, correctly rounded, whatever locale is
  * set; inf and nan are numbers, hexadecimal ones are not. The word is the whole number.
  * @return 0 if it is not one
  */
-int ms_word_double(double *value, const ms_word *word);
+int ms_text_to_double(double *value, const ms_word *word);
 
 /** A number as text. */
 typedef struct ms_number {
@@ -66,9 +66,9 @@ typedef struct ms_number {
 } ms_number;
 
 /** The shortest of 15 to 17 digits that restores the double, with a point whatever the locale. */
-ms_number ms_number_text(double value);
+ms_number ms_text_of_number(double value);
 
 /** An integer with an optional sign, of at most 18 digits. @return 0 if it is not one */
-int ms_word_integer(int64_t *value, const ms_word *word);
+int ms_text_to_integer(int64_t *value, const ms_word *word);
 
 #endif

@@ -82,11 +82,11 @@ static int scan_special(double *value, const ms_word *word)
     const char *end = word->start + word->length;
     const char *start = scan_sign(&negative, word->start, end);
     ms_word name = {start, (size_t)(end - start)};
-    if (ms_word_is(&name, "inf") || ms_word_is(&name, "infinity")) {
+    if (ms_text_word_is(&name, "inf") || ms_text_word_is(&name, "infinity")) {
         *value = negative ? -(double)INFINITY : (double)INFINITY;
         return 1;
     }
-    if (ms_word_is(&name, "nan") || ms_word_is(&name, "nan(ind)")) {
+    if (ms_text_word_is(&name, "nan") || ms_text_word_is(&name, "nan(ind)")) {
         *value = (double)NAN;
         return 1;
     }
@@ -108,7 +108,7 @@ static int convert_with_strtod(double *value, const ms_word *word)
     return stop == word->start + word->length;
 }
 
-int ms_word_double(double *value, const ms_word *word)
+int ms_text_to_double(double *value, const ms_word *word)
 {
     static const double power[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                    1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
@@ -126,7 +126,7 @@ int ms_word_double(double *value, const ms_word *word)
     return 1;
 }
 
-int ms_word_integer(int64_t *value, const ms_word *word)
+int ms_text_to_integer(int64_t *value, const ms_word *word)
 {
     int negative;
     const char *end = word->start + word->length;
@@ -142,7 +142,7 @@ int ms_word_integer(int64_t *value, const ms_word *word)
     return at == end;
 }
 
-ms_number ms_number_text(double value)
+ms_number ms_text_of_number(double value)
 {
     ms_number number;
     for (int digits = 15; digits <= 17; digits++) {
@@ -152,7 +152,7 @@ ms_number ms_number_text(double value)
             *at = strchr("0123456789+-einfa", *at) ? *at : '.'; /* the locale's decimal point */
         }
         const ms_word word = {number.text, strlen(number.text)};
-        if (ms_word_double(&restored, &word) && restored == value) {
+        if (ms_text_to_double(&restored, &word) && restored == value) {
             break;
         }
     }

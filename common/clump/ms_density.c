@@ -28,7 +28,7 @@ static void free_equations(equations *e)
 }
 
 /* The axes, and the tensor along them. */
-static ms_status settle_tensor(equations *e, const ms_particle *particle, int input_frame, double unit, ms_error *err)
+static ms_status choose_tensor(equations *e, const ms_particle *particle, int input_frame, double unit, ms_error *err)
 {
     ms_principal principal = {.axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     ms_body body = {.volume = 1};
@@ -57,7 +57,7 @@ static ms_status make_equations(equations *e, const ms_clump *clump, const ms_pa
     if (!e->place || !e->square) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the equations of %zu spheres", e->n);
     }
-    ms_status status = settle_tensor(e, particle, input_frame, unit * particle->scale, err);
+    ms_status status = choose_tensor(e, particle, input_frame, unit * particle->scale, err);
     for (size_t s = 0; s < e->n && status == MS_OK; s++) {
         const double r = clump->sphere[s].radius / unit;
         double from_centre[3];
@@ -93,10 +93,10 @@ static double product_of(const equations *e, size_t s, int m)
 /* The goals in their order: each is a column that is made least and then held. */
 enum goal { CENTRE, EPSILON, PRODUCTS, GOALS };
 
-static ms_programme *make_programme(const equations *e, double least, double most, int input_frame, ms_error *err)
+static ms_linear_program *make_programme(const equations *e, double least, double most, int input_frame, ms_error *err)
 {
     double *row = malloc((e->n + 1) * sizeof *row);
-    ms_programme *p = row ? ms_programme_new(e->n, GOALS, least, most, err) : NULL;
+    ms_linear_program *p = row ? ms_linear_program_new(e->n, GOALS, least, most, err) : NULL;
     if (!row) {
         ms_fail(err, MS_ERR_NOMEM, "no memory for the equations of %zu spheres", e->n);
         return NULL;
@@ -104,7 +104,7 @@ static ms_programme *make_programme(const equations *e, double least, double mos
     for (size_t s = 0; s < e->n; s++) {
         row[s] = 1;
     }
-    ms_status status = p ? ms_programme_equation(p, row, 1, -1, 0, err) : MS_ERR_NOMEM;
+    ms_status status = p ? ms_linear_program_equation(p, row, 1, -1, 0, err) : MS_ERR_NOMEM;
     for (int m = 0; m < 9 && status == MS_OK; m++) {
         const int axis = m % 3, kind = m / 3;
         const double right[3] = {0, e->moment[axis], e->product[axis]}, slack[3] = {1, e->moment[axis], e->mean};
@@ -112,11 +112,11 @@ static ms_programme *make_programme(const equations *e, double least, double mos
         for (size_t s = 0; s < e->n; s++) {
             row[s] = kind == 0 ? e->place[s][axis] : kind == 1 ? moment_of(e, s, axis) : product_of(e, s, axis);
         }
-        status = ms_programme_equation(p, row, right[kind], goal[kind], slack[kind], err);
+        status = ms_linear_program_equation(p, row, right[kind], goal[kind], slack[kind], err);
     }
     free(row);
     if (status != MS_OK) {
-        ms_programme_free(p);
+        ms_linear_program_free(p);
         return NULL;
     }
     return p;
@@ -192,13 +192,13 @@ static ms_status judge(ms_density_report *report, const equations *e, const ms_c
     return MS_OK;
 }
 
-static ms_status solve(ms_clump *clump, ms_density_report *report, const equations *e, ms_programme *p,
+static ms_status solve(ms_clump *clump, ms_density_report *report, const equations *e, ms_linear_program *p,
                        const ms_particle *particle, double centre_tolerance, ms_error *err)
 {
     double reached[GOALS] = {0};
     ms_status status = MS_OK;
     for (int goal = 0; goal < GOALS && status == MS_OK; goal++) {
-        status = ms_programme_least(p, goal, EXACT, &reached[goal], err);
+        status = ms_linear_program_minimise(p, goal, EXACT, &reached[goal], err);
         if (goal == CENTRE && status == MS_OK && reached[CENTRE] > centre_tolerance) {
             return fail_centre(e, reached[CENTRE], centre_tolerance, err);
         }
@@ -207,7 +207,7 @@ static ms_status solve(ms_clump *clump, ms_density_report *report, const equatio
         status = ms_clump_alloc_masses(clump, err);
     }
     if (status == MS_OK) {
-        status = ms_programme_spread(p, clump->mass, err);
+        status = ms_linear_program_spread(p, clump->mass, err);
     }
     for (size_t s = 0; s < e->n && status == MS_OK; s++) {
         clump->mass[s] *= particle->mass;
@@ -251,7 +251,7 @@ ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_
     const double least = options->least > 0 ? options->least : fmin(1e-3, 0.5 / n);
     const double most = options->most > 0 ? options->most : 1;
     equations e = {0};
-    ms_programme *programme = NULL;
+    ms_linear_program *programme = NULL;
     memset(report, 0, sizeof *report);
     ms_status status = check(clump, least, most, options, err);
     if (status == MS_OK) {
@@ -267,7 +267,7 @@ ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_
         free(clump->mass);
         clump->mass = NULL;
     }
-    ms_programme_free(programme);
+    ms_linear_program_free(programme);
     free_equations(&e);
     return status;
 }

@@ -9,7 +9,7 @@
  * Columns: n excesses, then the smallest share u, then the goals. The share of s is u plus its excess, so that the
  * bound m_s >= u, which would be a row for each sphere, is the bound 0 of a column.
  */
-struct ms_programme {
+struct ms_linear_program {
     glp_prob *problem;
     size_t n;
     int n_goals;
@@ -42,7 +42,7 @@ static void end_quiet(const guard *g)
 }
 
 /* After an error GLPK has nothing left that may be used. */
-static ms_status give_up(const guard *g, ms_programme *p, ms_error *err)
+static ms_status give_up(const guard *g, ms_linear_program *p, ms_error *err)
 {
     end_quiet(g);
     glp_free_env();
@@ -51,7 +51,7 @@ static ms_status give_up(const guard *g, ms_programme *p, ms_error *err)
                    "GLPK could not go on with a programme of %zu spheres; most likely it has no memory", p->n);
 }
 
-static void make_columns(ms_programme *p, double least)
+static void make_columns(ms_linear_program *p, double least)
 {
     const int n = (int)p->n;
     p->problem = glp_create_prob();
@@ -63,7 +63,7 @@ static void make_columns(ms_programme *p, double least)
 }
 
 /* Rows m_s <= most, where that does not follow from the sum. */
-static void make_upper_bounds(ms_programme *p)
+static void make_upper_bounds(ms_linear_program *p)
 {
     const int n = (int)p->n, first = glp_add_rows(p->problem, n);
     const double ones[3] = {0, 1, 1};
@@ -74,7 +74,7 @@ static void make_upper_bounds(ms_programme *p)
     }
 }
 
-static ms_status make_problem(ms_programme *p, double least, ms_error *err)
+static ms_status make_problem(ms_linear_program *p, double least, ms_error *err)
 {
     guard g;
     begin_quiet(&g);
@@ -89,28 +89,28 @@ static ms_status make_problem(ms_programme *p, double least, ms_error *err)
     return MS_OK;
 }
 
-ms_programme *ms_programme_new(size_t n, int n_goals, double least, double most, ms_error *err)
+ms_linear_program *ms_linear_program_new(size_t n, int n_goals, double least, double most, ms_error *err)
 {
-    ms_programme *p = calloc(1, sizeof *p);
+    ms_linear_program *p = calloc(1, sizeof *p);
     if (p) {
-        *p = (ms_programme){.n = n, .n_goals = n_goals, .most = most};
+        *p = (ms_linear_program){.n = n, .n_goals = n_goals, .most = most};
         p->index = malloc((n + 4) * sizeof *p->index);
         p->value = malloc((n + 4) * sizeof *p->value);
     }
     if (!p || !p->index || !p->value) {
         ms_fail(err, MS_ERR_NOMEM, "no memory for a programme of %zu spheres", n);
-        ms_programme_free(p);
+        ms_linear_program_free(p);
         return NULL;
     }
     if (make_problem(p, least, err) != MS_OK) {
-        ms_programme_free(p);
+        ms_linear_program_free(p);
         return NULL;
     }
     return p;
 }
 
 /* The row's coefficients in GLPK's arrays; returns how many. */
-static int fill_row(ms_programme *p, const double *row, int goal, double weight)
+static int fill_row(ms_linear_program *p, const double *row, int goal, double weight)
 {
     const int n = (int)p->n;
     double sum = 0;
@@ -131,8 +131,8 @@ static int fill_row(ms_programme *p, const double *row, int goal, double weight)
     return used;
 }
 
-ms_status ms_programme_equation(ms_programme *p, const double *row, double right, int goal, double weight,
-                                ms_error *err)
+ms_status ms_linear_program_equation(ms_linear_program *p, const double *row, double right, int goal, double weight,
+                                     ms_error *err)
 {
     guard g;
     begin_quiet(&g);
@@ -150,7 +150,7 @@ ms_status ms_programme_equation(ms_programme *p, const double *row, double right
 }
 
 /* Minimises the objective that is set. */
-static ms_status minimise(ms_programme *p, ms_error *err)
+static ms_status minimise(ms_linear_program *p, ms_error *err)
 {
     glp_smcp how;
     guard g;
@@ -173,7 +173,7 @@ static ms_status minimise(ms_programme *p, ms_error *err)
     return MS_OK;
 }
 
-ms_status ms_programme_least(ms_programme *p, int goal, double zero, double *value, ms_error *err)
+ms_status ms_linear_program_minimise(ms_linear_program *p, int goal, double zero, double *value, ms_error *err)
 {
     const int column = (int)p->n + 2 + goal;
     glp_set_obj_coef(p->problem, column, 1);
@@ -189,7 +189,7 @@ ms_status ms_programme_least(ms_programme *p, int goal, double zero, double *val
     return MS_OK;
 }
 
-ms_status ms_programme_spread(ms_programme *p, double *share, ms_error *err)
+ms_status ms_linear_program_spread(ms_linear_program *p, double *share, ms_error *err)
 {
     const int u = (int)p->n + 1;
     glp_set_obj_coef(p->problem, u, -1);
@@ -200,7 +200,7 @@ ms_status ms_programme_spread(ms_programme *p, double *share, ms_error *err)
     return status;
 }
 
-void ms_programme_free(ms_programme *p)
+void ms_linear_program_free(ms_linear_program *p)
 {
     if (p) {
         if (p->problem) {

@@ -9,10 +9,10 @@
 /**
  * Shares m_1..m_n within bounds; equations on them that may be off by a goal's column times a weight.
  */
-typedef struct ms_programme ms_programme;
+typedef struct ms_linear_program ms_linear_program;
 
 /** @return NULL without memory. @param least, most bounds of each share, 0 <= least <= most */
-ms_programme *ms_programme_new(size_t n, int n_goals, double least, double most, ms_error *err);
+ms_linear_program *ms_linear_program_new(size_t n, int n_goals, double least, double most, ms_error *err);
 
 /**
  * Adds |sum row_s m_s - right| <= weight * goal; goal -1: equal.
@@ -20,8 +20,8 @@ ms_programme *ms_programme_new(size_t n, int n_goals, double least, double most,
  * @param row n coefficients
  * @return MS_OK; MS_ERR_NOMEM
  */
-ms_status ms_programme_equation(ms_programme *p, const double *row, double right, int goal, double weight,
-                                ms_error *err);
+ms_status ms_linear_program_equation(ms_linear_program *p, const double *row, double right, int goal, double weight,
+                                     ms_error *err);
 
 /**
  * Makes a goal's column least, then holds it there.
@@ -30,11 +30,11 @@ ms_status ms_programme_equation(ms_programme *p, const double *row, double right
  * @param[out] value the least one
  * @return MS_OK; MS_ERR_LIMIT if the simplex method finds no end; MS_ERR_NOMEM
  */
-ms_status ms_programme_least(ms_programme *p, int goal, double zero, double *value, ms_error *err);
+ms_status ms_linear_program_minimise(ms_linear_program *p, int goal, double zero, double *value, ms_error *err);
 
-/** Makes the smallest share greatest. @param[out] share n values. @return as ms_programme_least */
-ms_status ms_programme_spread(ms_programme *p, double *share, ms_error *err);
+/** Makes the smallest share greatest. @param[out] share n values. @return as ms_linear_program_minimise */
+ms_status ms_linear_program_spread(ms_linear_program *p, double *share, ms_error *err);
 
-void ms_programme_free(ms_programme *p);
+void ms_linear_program_free(ms_linear_program *p);
 
 #endif

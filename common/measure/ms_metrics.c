@@ -6,7 +6,7 @@
 
 #include "ms_surface.h"
 
-ms_score ms_score_of(const ms_tally *sum, size_t target_voxels)
+ms_score ms_metrics_score(const ms_tally *sum, size_t target_voxels)
 {
     const double target = (double)target_voxels, inside = (double)sum->inside, outside = (double)sum->outside;
     return (ms_score){
@@ -38,7 +38,7 @@ static double axis_angle(const double a[3], const double b[3])
     return DEGREES * acos(fmin(1, cosine));
 }
 
-ms_status ms_inertia_compare(ms_inertia_error *error, const ms_body *body, const ms_body *target, ms_error *err)
+ms_status ms_metrics_compare_inertia(ms_inertia_error *error, const ms_body *body, const ms_body *target, ms_error *err)
 {
     ms_principal p, q;
     double difference = 0, total = 0, away = 0;
@@ -83,9 +83,9 @@ static ms_score full_score(const ms_tally *sum, const ms_grid *grid, const ms_ta
 {
     ms_body body;
     ms_inertia_error error;
-    ms_score score = ms_score_of(sum, target->voxels);
+    ms_score score = ms_metrics_score(sum, target->voxels);
     ms_tally_body(&body, sum, grid);
-    if (body.volume > 0 && ms_inertia_compare(&error, &body, &target->body, NULL) == MS_OK) {
+    if (body.volume > 0 && ms_metrics_compare_inertia(&error, &body, &target->body, NULL) == MS_OK) {
         score.inertia = error.weighted;
     }
     return score;
@@ -171,7 +171,7 @@ ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_targ
         status = measure_surface(metrics, target, clump, err);
     }
     if (status == MS_OK && metrics->body.volume > 0) {
-        status = ms_inertia_compare(&metrics->inertia, &metrics->body, &target->body, err);
+        status = ms_metrics_compare_inertia(&metrics->inertia, &metrics->body, &target->body, err);
     } else {
         const double unknown = (double)NAN;
         metrics->inertia = (ms_inertia_error){{unknown, unknown, unknown}, unknown, unknown, unknown};

@@ -18,7 +18,7 @@ typedef struct ms_score {
 } ms_score;
 
 /** From the sums over the union and the number of voxels of the target; all but the inertia. */
-ms_score ms_score_of(const ms_tally *sum, size_t target_voxels);
+ms_score ms_metrics_score(const ms_tally *sum, size_t target_voxels);
 
 /** How the inertia of one body differs from that of another, both of unit density. */
 typedef struct ms_inertia_error {
@@ -30,7 +30,8 @@ typedef struct ms_inertia_error {
 } ms_inertia_error;
 
 /** @return MS_OK; MS_ERR_SHAPE if a body has no volume; as ms_inertia_principal */
-ms_status ms_inertia_compare(ms_inertia_error *error, const ms_body *body, const ms_body *target, ms_error *err);
+ms_status ms_metrics_compare_inertia(ms_inertia_error *error, const ms_body *body, const ms_body *target,
+                                     ms_error *err);
 
 /** All measures of a clump. */
 typedef struct ms_metrics {

@@ -174,7 +174,7 @@ static void first_axis_across(double out[3], const double normal[3])
     }
 }
 
-static void settle_axes(ms_principal *principal)
+static void orient_axes(ms_principal *principal)
 {
     double(*axis)[3] = principal->axis;
     double tie = TIE * fabs(principal->moment[2]);
@@ -244,6 +244,6 @@ ms_status ms_inertia_principal(ms_principal *principal, const ms_body *body, ms_
             return status;
         }
     }
-    settle_axes(principal);
+    orient_axes(principal);
     return MS_OK;
 }

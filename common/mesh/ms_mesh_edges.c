@@ -38,7 +38,7 @@ static void sort_sides(entry *list, uint32_t *first, const ms_mesh *mesh)
 {
     uint32_t n_sides = (uint32_t)(3 * mesh->n_triangles);
     for (uint32_t side = 0; side < n_sides; side++) {
-        uint32_t a = ms_side_from(mesh, side);
+        uint32_t a = ms_mesh_edges_side_from(mesh, side);
         uint32_t b = ms_side_to(mesh, side);
         first[a < b ? a : b]++;
     }
@@ -49,7 +49,7 @@ static void sort_sides(entry *list, uint32_t *first, const ms_mesh *mesh)
         before += count;
     }
     for (uint32_t side = 0; side < n_sides; side++) {
-        uint32_t a = ms_side_from(mesh, side);
+        uint32_t a = ms_mesh_edges_side_from(mesh, side);
         uint32_t b = ms_side_to(mesh, side);
         list[first[a < b ? a : b]++] = (entry){a < b ? b : a, ms_side_opposite(mesh, side), side};
     }
@@ -71,7 +71,7 @@ static void group(ms_edges *edges, const entry *list, const ms_mesh *mesh)
     uint32_t n_sides = (uint32_t)(3 * mesh->n_triangles);
     uint32_t last_low = 0;
     for (uint32_t k = 0; k < n_sides; k++) {
-        uint32_t from = ms_side_from(mesh, list[k].side);
+        uint32_t from = ms_mesh_edges_side_from(mesh, list[k].side);
         uint32_t low = from < list[k].other ? from : ms_side_to(mesh, list[k].side);
         if (k == 0 || low != last_low || list[k].other != list[k - 1].other) {
             edges->start[edges->n++] = k;
@@ -101,7 +101,7 @@ ms_status ms_edges_build(ms_edges *edges, const ms_mesh *mesh, ms_error *err)
         sort_sides(list, first, mesh);
         group(edges, list, mesh);
     } else {
-        ms_edges_free(edges);
+        ms_mesh_edges_free(edges);
         status = ms_fail(err, MS_ERR_NOMEM, "no memory for the edges of %zu triangles", mesh->n_triangles);
     }
     free(list);
@@ -109,7 +109,7 @@ ms_status ms_edges_build(ms_edges *edges, const ms_mesh *mesh, ms_error *err)
     return status;
 }
 
-void ms_edges_free(ms_edges *edges)
+void ms_mesh_edges_free(ms_edges *edges)
 {
     free(edges->start);
     free(edges->side);

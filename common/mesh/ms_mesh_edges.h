@@ -20,14 +20,14 @@ typedef struct ms_edges {
 #define MS_EDGES_MAX_TRIANGLES (UINT32_MAX / 3)
 
 /**
- * @param[out] edges freed by ms_edges_free; empty on failure
+ * @param[out] edges freed by ms_mesh_edges_free; empty on failure
  * @return MS_OK; MS_ERR_LIMIT over MS_EDGES_MAX_TRIANGLES; MS_ERR_NOMEM
  * Cost: O(vertices + triangles log k), k the triangles that meet at one vertex.
  */
 ms_status ms_edges_build(ms_edges *edges, const ms_mesh *mesh, ms_error *err);
-void ms_edges_free(ms_edges *edges);
+void ms_mesh_edges_free(ms_edges *edges);
 
-static inline uint32_t ms_side_from(const ms_mesh *mesh, uint32_t side)
+static inline uint32_t ms_mesh_edges_side_from(const ms_mesh *mesh, uint32_t side)
 {
     return mesh->triangle[side / 3][side % 3];
 }
@@ -45,7 +45,7 @@ static inline uint32_t ms_side_opposite(const ms_mesh *mesh, uint32_t side)
 /** Nonzero if the side runs from the vertex of lower number to the other. */
 static inline int ms_side_rises(const ms_mesh *mesh, uint32_t side)
 {
-    return ms_side_from(mesh, side) < ms_side_to(mesh, side);
+    return ms_mesh_edges_side_from(mesh, side) < ms_side_to(mesh, side);
 }
 
 #endif

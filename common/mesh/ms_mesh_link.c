@@ -45,7 +45,7 @@ static void frame_across(double u[3], double v[3], const double axis[3])
 static void place_spokes(spoke *list, uint32_t n, const uint32_t *side, const ms_mesh *mesh, int inside_out)
 {
     double axis[3], u[3], v[3];
-    uint32_t a = ms_side_from(mesh, side[0]);
+    uint32_t a = ms_mesh_edges_side_from(mesh, side[0]);
     uint32_t b = ms_side_to(mesh, side[0]);
     const double *low = mesh->vertex[a < b ? a : b];
     const double *high = mesh->vertex[a < b ? b : a];

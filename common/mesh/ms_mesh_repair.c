@@ -88,7 +88,7 @@ static void prune_duplicates(pruning *p, ms_mesh_report *report)
                 next++;
             }
             /* Every set shows at three edges; take it at the one across from its last vertex. */
-            int last = opposite > ms_side_from(p->mesh, side) && opposite > ms_side_to(p->mesh, side);
+            int last = opposite > ms_mesh_edges_side_from(p->mesh, side) && opposite > ms_side_to(p->mesh, side);
             if (last && next - begin > 1) {
                 prune_set(p, p->edges->side + begin, next - begin, report);
             }
@@ -233,7 +233,7 @@ ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err)
         status = prune(mesh, &edges, report, err);
     }
     if (status == MS_OK && mesh->n_triangles < n_before) {
-        ms_edges_free(&edges);
+        ms_mesh_edges_free(&edges);
         status = ms_edges_build(&edges, mesh, err);
     }
     if (status == MS_OK && mesh->n_triangles == 0) {
@@ -247,6 +247,6 @@ ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err)
         count_edges(report, &edges);
         status = ms_mesh_orient(mesh, &edges, report, err);
     }
-    ms_edges_free(&edges);
+    ms_mesh_edges_free(&edges);
     return status;
 }

@@ -30,10 +30,10 @@ typedef struct ms_profile {
 } ms_profile;
 
 /** Room for `capacity` points, of which the first is (0, z_top). */
-ms_status ms_profile_begin(ms_profile *profile, int capacity, double z_top, ms_error *err);
+ms_status ms_shape_profile_begin(ms_profile *profile, int capacity, double z_top, ms_error *err);
 
 /** Appends a straight line in equal segments. More points than the capacity are not taken. */
-void ms_profile_line(ms_profile *profile, double radius, double z, int segments);
+void ms_shape_profile_line(ms_profile *profile, double radius, double z, int segments);
 
 /** A circle about (0, centre_z); angles run from the +z axis towards the radius. */
 typedef struct ms_arc {
@@ -41,12 +41,12 @@ typedef struct ms_arc {
 } ms_arc;
 
 /** Appends an arc in equal segments; its last point is (radius, z) to the bit. */
-void ms_profile_arc(ms_profile *profile, ms_arc arc, double radius, double z, int segments);
+void ms_shape_profile_arc(ms_profile *profile, ms_arc arc, double radius, double z, int segments);
 
 /** Appends the mirror image of a profile whose last point lies at z = 0. */
-void ms_profile_mirror(ms_profile *profile);
+void ms_shape_profile_mirror(ms_profile *profile);
 
-void ms_profile_free(ms_profile *profile);
+void ms_shape_profile_free(ms_profile *profile);
 
 /**
  * Turns a profile about z. The mirror planes through the z axis (and z = 0 where the profile

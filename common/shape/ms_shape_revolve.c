@@ -4,7 +4,7 @@
 
 #include "ms_shape_build.h"
 
-ms_status ms_profile_begin(ms_profile *profile, int capacity, double z_top, ms_error *err)
+ms_status ms_shape_profile_begin(ms_profile *profile, int capacity, double z_top, ms_error *err)
 {
     *profile = (ms_profile){.point = malloc((size_t)capacity * sizeof *profile->point), .capacity = capacity};
     if (!profile->point) {
@@ -25,7 +25,7 @@ static void add_point(ms_profile *profile, double radius, double z)
     }
 }
 
-void ms_profile_line(ms_profile *profile, double radius, double z, int segments)
+void ms_shape_profile_line(ms_profile *profile, double radius, double z, int segments)
 {
     double radius0 = profile->point[profile->n - 1][0];
     double z0 = profile->point[profile->n - 1][1];
@@ -36,7 +36,7 @@ void ms_profile_line(ms_profile *profile, double radius, double z, int segments)
     add_point(profile, radius, z);
 }
 
-void ms_profile_arc(ms_profile *profile, ms_arc arc, double radius, double z, int segments)
+void ms_shape_profile_arc(ms_profile *profile, ms_arc arc, double radius, double z, int segments)
 {
     for (int k = 1; k < segments; k++) {
         double angle = arc.from + (arc.to - arc.from) * k / segments;
@@ -45,14 +45,14 @@ void ms_profile_arc(ms_profile *profile, ms_arc arc, double radius, double z, in
     add_point(profile, radius, z);
 }
 
-void ms_profile_mirror(ms_profile *profile)
+void ms_shape_profile_mirror(ms_profile *profile)
 {
     for (int k = profile->n - 2; k >= 0; k--) {
         add_point(profile, profile->point[k][0], -profile->point[k][1]);
     }
 }
 
-void ms_profile_free(ms_profile *profile)
+void ms_shape_profile_free(ms_profile *profile)
 {
     free(profile->point);
     *profile = (ms_profile){0};

@@ -19,7 +19,7 @@ static int line_of(double fineness)
 static ms_status revolve_and_free(ms_mesh *mesh, ms_profile *profile, double fineness, ms_error *err)
 {
     ms_status status = ms_shape_revolve(mesh, profile, around_of(fineness), err);
-    ms_profile_free(profile);
+    ms_shape_profile_free(profile);
     return status;
 }
 
@@ -39,13 +39,13 @@ ms_status ms_shape_tablet(ms_mesh *mesh, const double *value, ms_error *err)
     /* As many segments as bring the chords of the arc as near to it as those around the band. */
     int segments = (int)ceil(value[3] * arc.to / M_PI_2 * sqrt(sphere / radius));
     ms_profile profile;
-    ms_status status = ms_profile_begin(&profile, 2 * (segments + line_of(value[3])) + 1, half_band + cap, err);
+    ms_status status = ms_shape_profile_begin(&profile, 2 * (segments + line_of(value[3])) + 1, half_band + cap, err);
     if (status != MS_OK) {
         return status;
     }
-    ms_profile_arc(&profile, arc, radius, half_band, segments);
-    ms_profile_line(&profile, radius, 0, line_of(value[3]));
-    ms_profile_mirror(&profile);
+    ms_shape_profile_arc(&profile, arc, radius, half_band, segments);
+    ms_shape_profile_line(&profile, radius, 0, line_of(value[3]));
+    ms_shape_profile_mirror(&profile);
     return revolve_and_free(mesh, &profile, value[3], err);
 }
 
@@ -83,13 +83,13 @@ ms_status ms_shape_needle(ms_mesh *mesh, const double *value, ms_error *err)
     }
     int turn = (int)value[2];
     ms_profile profile;
-    ms_status status = ms_profile_begin(&profile, 4 * turn + 1, half + r, err);
+    ms_status status = ms_shape_profile_begin(&profile, 4 * turn + 1, half + r, err);
     if (status != MS_OK) {
         return status;
     }
-    ms_profile_arc(&profile, (ms_arc){.centre_z = half, .radius = r, .from = 0, .to = M_PI_2}, r, half, turn);
-    ms_profile_line(&profile, r, 0, turn);
-    ms_profile_mirror(&profile);
+    ms_shape_profile_arc(&profile, (ms_arc){.centre_z = half, .radius = r, .from = 0, .to = M_PI_2}, r, half, turn);
+    ms_shape_profile_line(&profile, r, 0, turn);
+    ms_shape_profile_mirror(&profile);
     status = revolve_and_free(mesh, &profile, value[2], err);
     ms_shape_z_to_x(mesh);
     return status;
@@ -107,13 +107,13 @@ ms_status ms_shape_cylinder(ms_mesh *mesh, const double *value, ms_error *err)
     *mesh = (ms_mesh){0};
     int line = line_of(value[2]);
     ms_profile profile;
-    ms_status status = ms_profile_begin(&profile, 4 * line + 1, value[1] / 2, err);
+    ms_status status = ms_shape_profile_begin(&profile, 4 * line + 1, value[1] / 2, err);
     if (status != MS_OK) {
         return status;
     }
-    ms_profile_line(&profile, value[0], value[1] / 2, line);
-    ms_profile_line(&profile, value[0], 0, line);
-    ms_profile_mirror(&profile);
+    ms_shape_profile_line(&profile, value[0], value[1] / 2, line);
+    ms_shape_profile_line(&profile, value[0], 0, line);
+    ms_shape_profile_mirror(&profile);
     return revolve_and_free(mesh, &profile, value[2], err);
 }
 
@@ -129,12 +129,12 @@ ms_status ms_shape_cone(ms_mesh *mesh, const double *value, ms_error *err)
     int line = line_of(value[2]);
     ms_profile profile;
     /* The centre of mass, a quarter of the height above the base, is the origin. */
-    ms_status status = ms_profile_begin(&profile, 3 * line + 1, 0.75 * value[1], err);
+    ms_status status = ms_shape_profile_begin(&profile, 3 * line + 1, 0.75 * value[1], err);
     if (status != MS_OK) {
         return status;
     }
-    ms_profile_line(&profile, value[0], -0.25 * value[1], 2 * line);
-    ms_profile_line(&profile, 0, -0.25 * value[1], line);
+    ms_shape_profile_line(&profile, value[0], -0.25 * value[1], 2 * line);
+    ms_shape_profile_line(&profile, 0, -0.25 * value[1], line);
     return revolve_and_free(mesh, &profile, value[2], err);
 }
 
@@ -163,13 +163,13 @@ ms_status ms_shape_dumbbell(ms_mesh *mesh, const double *value, ms_error *err)
     ms_arc arc = {.centre_z = half, .radius = ball, .from = 0, .to = M_PI - asin(neck / ball)};
     int segments = (int)ceil(value[3] * arc.to / M_PI_2);
     ms_profile profile;
-    ms_status status = ms_profile_begin(&profile, 2 * (segments + line_of(value[3])) + 1, half + ball, err);
+    ms_status status = ms_shape_profile_begin(&profile, 2 * (segments + line_of(value[3])) + 1, half + ball, err);
     if (status != MS_OK) {
         return status;
     }
-    ms_profile_arc(&profile, arc, neck, half - shoulder, segments);
-    ms_profile_line(&profile, neck, 0, line_of(value[3]));
-    ms_profile_mirror(&profile);
+    ms_shape_profile_arc(&profile, arc, neck, half - shoulder, segments);
+    ms_shape_profile_line(&profile, neck, 0, line_of(value[3]));
+    ms_shape_profile_mirror(&profile);
     status = revolve_and_free(mesh, &profile, value[3], err);
     ms_shape_z_to_x(mesh);
     return status;

@@ -54,7 +54,7 @@ ms_status ms_volume_read(ms_volume *volume, const char *path, size_t max_voxels,
     if (status == MS_OK) {
         status = ms_volume_parse(volume, &bytes, path, max_voxels, err);
     }
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     return status;
 }
 
@@ -103,20 +103,20 @@ ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_t
     return status;
 }
 
-ms_text ms_text_of_word(const ms_word *word, const ms_text *from)
+ms_text ms_volume_text_of_word(const ms_word *word, const ms_text *from)
 {
     return (ms_text){.at = word->start, .end = word->start + word->length, .name = from->name, .line = from->line};
 }
 
-ms_status ms_text_integers(int64_t *values, size_t n, ms_text *text, ms_error *err)
+ms_status ms_volume_text_integers(int64_t *values, size_t n, ms_text *text, ms_error *err)
 {
     ms_word word;
     for (size_t i = 0; i < n; i++) {
         if (!ms_text_word(&word, text)) {
             return ms_text_fail(err, text, "%zu integers are needed but there are %zu", n, i);
         }
-        if (!ms_word_integer(&values[i], &word)) {
-            return ms_text_fail(err, text, "'%s' stands where an integer belongs", ms_word_quote(&word).text);
+        if (!ms_text_to_integer(&values[i], &word)) {
+            return ms_text_fail(err, text, "'%s' stands where an integer belongs", ms_text_quote(&word).text);
         }
     }
     return ms_text_end_line(text, err);

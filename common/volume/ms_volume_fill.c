@@ -145,9 +145,9 @@ static ms_status fill_text(ms_volume *volume, size_t count, const ms_volume_head
                            count);
         }
         ms_text_word(&word, &text);
-        if (!ms_word_double(&value, &word)) {
+        if (!ms_text_to_double(&value, &word)) {
             return ms_fail(err, MS_ERR_FORMAT, "%s: value %zu of its data is '%s' and no number; save it again", path,
-                           i + 1, ms_word_quote(&word).text);
+                           i + 1, ms_text_quote(&word).text);
         }
         if (!to_label(&volume->label[i], value, (double)UINT32_MAX)) {
             return fail_value(value, i, header, path, err);
@@ -225,7 +225,7 @@ ms_status ms_volume_fill(ms_volume *volume, const ms_volume_header *header, cons
     if (!status) {
         status = fill_unpacked(volume, header, &borrowed, data_size, path, err);
     }
-    ms_bytes_free(&unpacked);
+    ms_file_free(&unpacked);
     if (status) {
         ms_volume_free(volume);
     }

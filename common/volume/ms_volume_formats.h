@@ -73,9 +73,9 @@ ms_status ms_volume_data_file(ms_word *file, ms_text *value, ms_error *err);
 ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_text *header, ms_error *err);
 
 /** The value of one field of a text header, to be scanned on its own. */
-ms_text ms_text_of_word(const ms_word *word, const ms_text *from);
+ms_text ms_volume_text_of_word(const ms_word *word, const ms_text *from);
 
 /** Reads n integers that fill the value. */
-ms_status ms_text_integers(int64_t *values, size_t n, ms_text *text, ms_error *err);
+ms_status ms_volume_text_integers(int64_t *values, size_t n, ms_text *text, ms_error *err);
 
 #endif

@@ -83,7 +83,7 @@ ms_status ms_volume_inflate(ms_bytes *out, const uint8_t *data, size_t size, siz
     ms_status status = inflate_all(out, &stream, data, size, expected, path, err);
     inflateEnd(&stream);
     if (status) {
-        ms_bytes_free(out);
+        ms_file_free(out);
     }
     return status;
 }

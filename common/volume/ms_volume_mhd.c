@@ -19,14 +19,14 @@ static ms_status parse_object(mhd *image, ms_text *value, ms_error *err)
 {
     ms_word word = ms_text_rest(value);
     (void)image;
-    return ms_word_is(&word, "image") ? MS_OK : ms_text_fail(err, value, "only the ObjectType Image is read");
+    return ms_text_word_is(&word, "image") ? MS_OK : ms_text_fail(err, value, "only the ObjectType Image is read");
 }
 
 static ms_status parse_dimensions(mhd *image, ms_text *value, ms_error *err)
 {
     int64_t n = 0;
     (void)image;
-    ms_status status = ms_text_integers(&n, 1, value, err);
+    ms_status status = ms_volume_text_integers(&n, 1, value, err);
     if (!status && n != 3) {
         return ms_text_fail(err, value, "the image has %lld axes and a volume has 3", (long long)n);
     }
@@ -36,7 +36,7 @@ static ms_status parse_dimensions(mhd *image, ms_text *value, ms_error *err)
 static ms_status parse_size(mhd *image, ms_text *value, ms_error *err)
 {
     image->has_size = 1;
-    return ms_text_integers(image->header.n, 3, value, err);
+    return ms_volume_text_integers(image->header.n, 3, value, err);
 }
 
 static ms_status parse_three(double numbers[3], const char *what, ms_text *value, ms_error *err)
@@ -95,21 +95,21 @@ static ms_status parse_type(mhd *image, ms_text *value, ms_error *err)
     };
     ms_word word = ms_text_rest(value);
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
-        if (ms_word_is(&word, types[i].name)) {
+        if (ms_text_word_is(&word, types[i].name)) {
             image->header.sample = types[i].sample;
             return MS_OK;
         }
     }
     return ms_text_fail(err, value, "the type '%s' is not read; save the labels as MET_USHORT or MET_UINT",
-                        ms_word_quote(&word).text);
+                        ms_text_quote(&word).text);
 }
 
 static ms_status parse_bool(int *truth, ms_text *value, ms_error *err)
 {
     ms_word word = ms_text_rest(value);
-    *truth = ms_word_is(&word, "true") || ms_word_is(&word, "t") || ms_word_is(&word, "1");
-    if (!*truth && !ms_word_is(&word, "false") && !ms_word_is(&word, "f") && !ms_word_is(&word, "0")) {
-        return ms_text_fail(err, value, "'%s' stands where True or False belongs", ms_word_quote(&word).text);
+    *truth = ms_text_word_is(&word, "true") || ms_text_word_is(&word, "t") || ms_text_word_is(&word, "1");
+    if (!*truth && !ms_text_word_is(&word, "false") && !ms_text_word_is(&word, "f") && !ms_text_word_is(&word, "0")) {
+        return ms_text_fail(err, value, "'%s' stands where True or False belongs", ms_text_quote(&word).text);
     }
     return MS_OK;
 }
@@ -137,14 +137,14 @@ static ms_status parse_compressed(mhd *image, ms_text *value, ms_error *err)
 
 static ms_status parse_packed_size(mhd *image, ms_text *value, ms_error *err)
 {
-    return ms_text_integers(&image->packed_size, 1, value, err);
+    return ms_volume_text_integers(&image->packed_size, 1, value, err);
 }
 
 static ms_status parse_channels(mhd *image, ms_text *value, ms_error *err)
 {
     int64_t n = 0;
     (void)image;
-    ms_status status = ms_text_integers(&n, 1, value, err);
+    ms_status status = ms_volume_text_integers(&n, 1, value, err);
     if (!status && n != 1) {
         return ms_text_fail(err, value, "voxels of %lld channels are colours and not labels", (long long)n);
     }
@@ -153,7 +153,7 @@ static ms_status parse_channels(mhd *image, ms_text *value, ms_error *err)
 
 static ms_status parse_skip(mhd *image, ms_text *value, ms_error *err)
 {
-    ms_status status = ms_text_integers(&image->skip, 1, value, err);
+    ms_status status = ms_volume_text_integers(&image->skip, 1, value, err);
     if (!status && image->skip < -1) {
         return ms_text_fail(err, value, "HeaderSize is %lld; it must be -1 or more", (long long)image->skip);
     }
@@ -193,7 +193,7 @@ static field_parser *find_field(const ms_word *key)
         {"elementdatafile", parse_data_file},
     };
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
-        if (ms_word_is(key, fields[i].key)) {
+        if (ms_text_word_is(key, fields[i].key)) {
             return fields[i].parse;
         }
     }
@@ -206,12 +206,12 @@ static ms_status parse_line(mhd *image, ms_text *text, ms_error *err)
     ms_word line = ms_text_rest(text);
     const char *equals = memchr(line.start, '=', line.length);
     if (!equals) {
-        return ms_text_fail(err, text, "'%s' is no line 'Key = Value'", ms_word_quote(&line).text);
+        return ms_text_fail(err, text, "'%s' is no line 'Key = Value'", ms_text_quote(&line).text);
     }
     ms_word left = {line.start, (size_t)(equals - line.start)};
     ms_word right = {equals + 1, line.length - left.length - 1};
-    ms_text before = ms_text_of_word(&left, text);
-    ms_text value = ms_text_of_word(&right, text);
+    ms_text before = ms_volume_text_of_word(&left, text);
+    ms_text value = ms_volume_text_of_word(&right, text);
     ms_word key = ms_text_rest(&before);
     field_parser *parse = find_field(&key);
     return parse ? parse(image, &value, err) : MS_OK;
@@ -268,7 +268,7 @@ ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const ch
     if (status) {
         return status;
     }
-    if (ms_word_is(&image.data_file, "local")) {
+    if (ms_text_word_is(&image.data_file, "local")) {
         text.at += text.at < text.end;
         return fill(volume, &image, (const uint8_t *)text.at, (size_t)(text.end - text.at), path, err);
     }
@@ -276,6 +276,6 @@ ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const ch
     if (!status) {
         status = fill(volume, &image, beside.data, beside.size, path, err);
     }
-    ms_bytes_free(&beside);
+    ms_file_free(&beside);
     return status;
 }

@@ -91,7 +91,7 @@ static ms_status parse_type(dictionary *dict, ms_error *err)
     }
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
         int has_order = order == '<' || order == '>';
-        if (ms_word_is(&kind, types[i].name) && (has_order || (order == '|' && types[i].sample.size == 1))) {
+        if (ms_text_word_is(&kind, types[i].name) && (has_order || (order == '|' && types[i].sample.size == 1))) {
             dict->header.sample = types[i].sample;
             dict->header.big_endian = order == '>';
             return MS_OK;
@@ -99,16 +99,16 @@ static ms_status parse_type(dictionary *dict, ms_error *err)
     }
     return ms_fail(err, MS_ERR_FORMAT,
                    "%s: its values have the type '%s', which is not read; save the labels as uint8, uint16 or uint32",
-                   dict->path, ms_word_quote(&name).text);
+                   dict->path, ms_text_quote(&name).text);
 }
 
 static ms_status parse_order(dictionary *dict, ms_error *err)
 {
     ms_word word = parse_letters(dict);
-    if (!ms_word_is(&word, "true") && !ms_word_is(&word, "false")) {
+    if (!ms_text_word_is(&word, "true") && !ms_text_word_is(&word, "false")) {
         return fail_at(dict, "True or False", err);
     }
-    dict->fortran_order = ms_word_is(&word, "true");
+    dict->fortran_order = ms_text_word_is(&word, "true");
     return MS_OK;
 }
 
@@ -124,7 +124,7 @@ static ms_status parse_shape(dictionary *dict, ms_error *err)
         ms_word word = parse_letters(dict);
         /* Python 2 wrote its long integers as 20L. */
         word.length -= word.length > 0 && word.start[word.length - 1] == 'L';
-        if (!ms_word_integer(&extent, &word) || extent < 0) {
+        if (!ms_text_to_integer(&extent, &word) || extent < 0) {
             dict->at = word.start;
             return fail_at(dict, "an extent", err);
         }
@@ -154,13 +154,14 @@ static ms_status parse_item(dictionary *dict, ms_error *err)
     if (!take(dict, ':')) {
         return fail_at(dict, "a colon", err);
     }
-    if (ms_word_is(&key, "descr")) {
+    if (ms_text_word_is(&key, "descr")) {
         return parse_type(dict, err);
     }
-    if (ms_word_is(&key, "fortran_order")) {
+    if (ms_text_word_is(&key, "fortran_order")) {
         return parse_order(dict, err);
     }
-    return ms_word_is(&key, "shape") ? parse_shape(dict, err) : fail_at(dict, "descr, fortran_order or shape", err);
+    return ms_text_word_is(&key, "shape") ? parse_shape(dict, err)
+                                          : fail_at(dict, "descr, fortran_order or shape", err);
 }
 
 static ms_status parse_dictionary(dictionary *dict, ms_error *err)

@@ -40,20 +40,20 @@ static ms_status parse_type(nrrd *image, ms_text *value, ms_error *err)
     ms_word word = ms_text_rest(value);
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
         for (size_t k = 0; k < 6 && types[i].names[k]; k++) {
-            if (ms_word_is(&word, types[i].names[k])) {
+            if (ms_text_word_is(&word, types[i].names[k])) {
                 image->header.sample = types[i].sample;
                 return MS_OK;
             }
         }
     }
     return ms_text_fail(err, value, "the type '%s' is not read; save the labels as uint16 or uint32",
-                        ms_word_quote(&word).text);
+                        ms_text_quote(&word).text);
 }
 
 static ms_status parse_dimension(nrrd *image, ms_text *value, ms_error *err)
 {
     int64_t n = 0;
-    ms_status status = ms_text_integers(&n, 1, value, err);
+    ms_status status = ms_volume_text_integers(&n, 1, value, err);
     if (!status && n != 3) {
         return ms_text_fail(err, value, "the array has %lld axes and a volume has 3", (long long)n);
     }
@@ -64,22 +64,22 @@ static ms_status parse_dimension(nrrd *image, ms_text *value, ms_error *err)
 static ms_status parse_sizes(nrrd *image, ms_text *value, ms_error *err)
 {
     image->has_sizes = 1;
-    return ms_text_integers(image->header.n, 3, value, err);
+    return ms_volume_text_integers(image->header.n, 3, value, err);
 }
 
 static ms_status parse_encoding(nrrd *image, ms_text *value, ms_error *err)
 {
     ms_word word = ms_text_rest(value);
     image->has_encoding = 1;
-    if (ms_word_is(&word, "raw")) {
+    if (ms_text_word_is(&word, "raw")) {
         image->header.coding = MS_CODING_RAW;
-    } else if (ms_word_is(&word, "gzip") || ms_word_is(&word, "gz")) {
+    } else if (ms_text_word_is(&word, "gzip") || ms_text_word_is(&word, "gz")) {
         image->header.coding = MS_CODING_DEFLATE;
-    } else if (ms_word_is(&word, "text") || ms_word_is(&word, "txt") || ms_word_is(&word, "ascii")) {
+    } else if (ms_text_word_is(&word, "text") || ms_text_word_is(&word, "txt") || ms_text_word_is(&word, "ascii")) {
         image->header.coding = MS_CODING_TEXT;
     } else {
         return ms_text_fail(err, value, "the encoding '%s' is not read, only raw, gzip and text are",
-                            ms_word_quote(&word).text);
+                            ms_text_quote(&word).text);
     }
     return MS_OK;
 }
@@ -88,9 +88,9 @@ static ms_status parse_endian(nrrd *image, ms_text *value, ms_error *err)
 {
     ms_word word = ms_text_rest(value);
     image->has_endian = 1;
-    image->header.big_endian = ms_word_is(&word, "big");
-    if (!image->header.big_endian && !ms_word_is(&word, "little")) {
-        return ms_text_fail(err, value, "'%s' stands where little or big belongs", ms_word_quote(&word).text);
+    image->header.big_endian = ms_text_word_is(&word, "big");
+    if (!image->header.big_endian && !ms_text_word_is(&word, "little")) {
+        return ms_text_fail(err, value, "'%s' stands where little or big belongs", ms_text_quote(&word).text);
     }
     return MS_OK;
 }
@@ -137,7 +137,7 @@ static ms_status parse_vector(double vector[3], ms_text *value, ms_error *err)
             value->at++;
         }
         ms_word word = {start, (size_t)(value->at - start)};
-        ok = ms_word_double(&vector[k], &word) && take(value, k < 2 ? ',' : ')');
+        ok = ms_text_to_double(&vector[k], &word) && take(value, k < 2 ? ',' : ')');
     }
     return ok ? MS_OK : ms_text_fail(err, value, "a vector (x,y,z) of three numbers belongs here");
 }
@@ -173,9 +173,9 @@ static ms_status parse_kinds(nrrd *image, ms_text *value, ms_error *err)
     ms_word word;
     (void)image;
     while (ms_text_word(&word, value)) {
-        if (!ms_word_is(&word, "domain") && !ms_word_is(&word, "space") && !ms_word_is(&word, "none") &&
-            !ms_word_is(&word, "???")) {
-            return ms_text_fail(err, value, "an axis of the kind '%s' is none of space", ms_word_quote(&word).text);
+        if (!ms_text_word_is(&word, "domain") && !ms_text_word_is(&word, "space") && !ms_text_word_is(&word, "none") &&
+            !ms_text_word_is(&word, "???")) {
+            return ms_text_fail(err, value, "an axis of the kind '%s' is none of space", ms_text_quote(&word).text);
         }
     }
     return MS_OK;
@@ -189,13 +189,13 @@ static ms_status parse_data_file(nrrd *image, ms_text *value, ms_error *err)
 
 static ms_status parse_line_skip(nrrd *image, ms_text *value, ms_error *err)
 {
-    ms_status status = ms_text_integers(&image->skip_lines, 1, value, err);
+    ms_status status = ms_volume_text_integers(&image->skip_lines, 1, value, err);
     return status || image->skip_lines >= 0 ? status : ms_text_fail(err, value, "the line skip is negative");
 }
 
 static ms_status parse_byte_skip(nrrd *image, ms_text *value, ms_error *err)
 {
-    ms_status status = ms_text_integers(&image->skip_bytes, 1, value, err);
+    ms_status status = ms_volume_text_integers(&image->skip_bytes, 1, value, err);
     return status || image->skip_bytes >= -1 ? status : ms_text_fail(err, value, "the byte skip is less than -1");
 }
 
@@ -232,7 +232,7 @@ static field_parser *find_field(const ms_word *name)
         {"axismaxs", refuse_axis_mins},
     };
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
-        if (ms_word_is(name, fields[i].name)) {
+        if (ms_text_word_is(name, fields[i].name)) {
             return fields[i].parse;
         }
     }
@@ -247,14 +247,14 @@ static ms_status parse_line(nrrd *image, const ms_word *line, ms_text *text, ms_
         return MS_OK;
     }
     if (!colon) {
-        return ms_text_fail(err, text, "'%s' is no line 'field: value'", ms_word_quote(line).text);
+        return ms_text_fail(err, text, "'%s' is no line 'field: value'", ms_text_quote(line).text);
     }
     ms_word name = {line->start, (size_t)(colon - line->start)};
     ms_word rest = {colon + 1, line->length - name.length - 1};
     if (rest.length > 0 && rest.start[0] == '=') {
         return MS_OK;
     }
-    ms_text value = ms_text_of_word(&rest, text);
+    ms_text value = ms_volume_text_of_word(&rest, text);
     field_parser *parse = find_field(&name);
     return parse ? parse(image, &value, err) : MS_OK;
 }
@@ -282,8 +282,8 @@ static ms_status parse_header(nrrd *image, ms_text *text, ms_error *err)
 {
     ms_word line = ms_text_rest(text);
     ms_word magic = {line.start, line.length < 7 ? line.length : 7};
-    if (!ms_word_is(&magic, "nrrd000") || line.length != 8 || line.start[7] < '1' || line.start[7] > '5') {
-        return ms_text_fail(err, text, "'%s' stands where NRRD0001 to NRRD0005 belongs", ms_word_quote(&line).text);
+    if (!ms_text_word_is(&magic, "nrrd000") || line.length != 8 || line.start[7] < '1' || line.start[7] > '5') {
+        return ms_text_fail(err, text, "'%s' stands where NRRD0001 to NRRD0005 belongs", ms_text_quote(&line).text);
     }
     while (line.length > 0 && text->at < text->end) {
         text->at++;
@@ -346,6 +346,6 @@ ms_status ms_volume_parse_nrrd(ms_volume *volume, const ms_bytes *bytes, const c
     if (!status) {
         status = fill(volume, &image, beside.data, beside.size, path, err);
     }
-    ms_bytes_free(&beside);
+    ms_file_free(&beside);
     return status;
 }

@@ -155,7 +155,7 @@ static ms_status read_rows(ms_csv *csv, const char *header, ms_error *err)
     ms_status status = ms_file_read(&bytes, csv->path, err);
     if (status == MS_OK) {
         status = take_rows(csv, &bytes, header, err);
-        ms_bytes_free(&bytes);
+        ms_file_free(&bytes);
     }
     return status;
 }

@@ -8,7 +8,7 @@
 #include "base/ms_file.h"
 #include "base/ms_vector.h"
 
-ms_status ms_picture_alloc(ms_picture *picture, int width, int height, ms_error *err)
+ms_status ms_render_picture_alloc(ms_picture *picture, int width, int height, ms_error *err)
 {
     const size_t pixels = (size_t)width * (size_t)height;
     *picture = (ms_picture){.width = width,
@@ -17,7 +17,7 @@ ms_status ms_picture_alloc(ms_picture *picture, int width, int height, ms_error 
                             .depth = malloc(pixels * sizeof(float)),
                             .part = calloc(pixels, sizeof(uint32_t))};
     if (!picture->grey || !picture->depth || !picture->part) {
-        ms_picture_free(picture);
+        ms_render_picture_free(picture);
         return ms_fail(err, MS_ERR_NOMEM, "no memory for a picture of %dx%d pixels", width, height);
     }
     memset(picture->grey, 255, pixels);
@@ -27,7 +27,7 @@ ms_status ms_picture_alloc(ms_picture *picture, int width, int height, ms_error 
     return MS_OK;
 }
 
-void ms_picture_free(ms_picture *picture)
+void ms_render_picture_free(ms_picture *picture)
 {
     free(picture->grey);
     free(picture->depth);
@@ -69,7 +69,7 @@ static void find_box(double lo[3], double hi[3], const ms_target *target)
     }
 }
 
-ms_status ms_view_of(ms_view *view, const ms_target *target, int x, int y, int size, ms_error *err)
+ms_status ms_render_view(ms_view *view, const ms_target *target, int x, int y, int size, ms_error *err)
 {
     ms_principal principal;
     double lo[3], hi[3], reach = 0;
@@ -274,7 +274,7 @@ static void put_png(FILE *stream, const ms_picture *picture, const uint8_t *pack
     put_chunk(stream, "IEND", NULL, 0);
 }
 
-ms_status ms_picture_write(const ms_picture *picture, const char *path, ms_error *err)
+ms_status ms_render_picture_write(const ms_picture *picture, const char *path, ms_error *err)
 {
     const size_t width = (size_t)picture->width, height = (size_t)picture->height, raw_size = (width + 1) * height;
     uLongf size = compressBound((uLong)raw_size);

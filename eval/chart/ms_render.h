@@ -24,14 +24,14 @@ typedef struct ms_view {
 } ms_view;
 
 /** A white picture. @param[out] picture the caller frees it @return MS_OK; MS_ERR_NOMEM */
-ms_status ms_picture_alloc(ms_picture *picture, int width, int height, ms_error *err);
+ms_status ms_render_picture_alloc(ms_picture *picture, int width, int height, ms_error *err);
 
 /**
  * A view of all of a target: its longest principal axis to the right, its shortest side towards the viewer, turned a
  * little about both so that depth is seen.
  * @return MS_OK; as ms_inertia_principal
  */
-ms_status ms_view_of(ms_view *view, const ms_target *target, int x, int y, int size, ms_error *err);
+ms_status ms_render_view(ms_view *view, const ms_target *target, int x, int y, int size, ms_error *err);
 
 /** The mesh of the target, or the faces of its voxels. Cost: triangles + pixels. */
 void ms_render_target(ms_picture *picture, const ms_view *view, const ms_target *target);
@@ -40,8 +40,8 @@ void ms_render_target(ms_picture *picture, const ms_view *view, const ms_target 
 void ms_render_clump(ms_picture *picture, const ms_view *view, const ms_clump *clump);
 
 /** Writes a PNG. @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM */
-ms_status ms_picture_write(const ms_picture *picture, const char *path, ms_error *err);
+ms_status ms_render_picture_write(const ms_picture *picture, const char *path, ms_error *err);
 
-void ms_picture_free(ms_picture *picture);
+void ms_render_picture_free(ms_picture *picture);
 
 #endif

@@ -114,7 +114,7 @@ int ms_flags_parse(int *first_word, const ms_command *command, int generator_opt
         }
         const char *flag = found == 0 ? t.longs[at].name : name_of_letter(command, found);
         if (handler(context, flag, optarg, &err) != MS_OK) {
-            ms_wrong_usage(command, err.text);
+            ms_flags_wrong_usage(command, err.text);
             return EXIT_USAGE;
         }
     }
@@ -122,30 +122,30 @@ int ms_flags_parse(int *first_word, const ms_command *command, int generator_opt
     return MS_FLAGS_GO_ON;
 }
 
-int ms_fail_command(const ms_command *command, const ms_error *err)
+int ms_flags_fail(const ms_command *command, const ms_error *err)
 {
     fprintf(stderr, "mskit %s: %s\n", command->name, err->text);
     return EXIT_FAILED;
 }
 
-int ms_wrong_usage(const ms_command *command, const char *message)
+int ms_flags_wrong_usage(const ms_command *command, const char *message)
 {
     fprintf(stderr, "mskit %s: %s\nusage: mskit %s %s\n", command->name, message, command->name, command->usage);
     return EXIT_USAGE;
 }
 
-ms_status ms_flag_number(double *value, const char *name, const char *text, double lo, double hi, ms_error *err)
+ms_status ms_flags_number(double *value, const char *name, const char *text, double lo, double hi, ms_error *err)
 {
     const ms_word word = {text, strlen(text)};
-    if (word.length == 0 || !ms_word_double(value, &word) || !(*value >= lo && *value <= hi)) {
+    if (word.length == 0 || !ms_text_to_double(value, &word) || !(*value >= lo && *value <= hi)) {
         return ms_fail(err, MS_ERR_ARG, "--%s '%s' is not a number from %.16g to %.16g", name, text, lo, hi);
     }
     return MS_OK;
 }
 
-ms_status ms_flag_whole(double *value, const char *name, const char *text, double lo, double hi, ms_error *err)
+ms_status ms_flags_whole(double *value, const char *name, const char *text, double lo, double hi, ms_error *err)
 {
-    ms_status status = ms_flag_number(value, name, text, lo, hi, err);
+    ms_status status = ms_flags_number(value, name, text, lo, hi, err);
     if (status == MS_OK && *value != floor(*value)) {
         status = ms_fail(err, MS_ERR_ARG, "--%s '%s' is not a whole number", name, text);
     }

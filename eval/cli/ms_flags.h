@@ -48,15 +48,15 @@ int ms_flags_parse(int *first_word, const ms_command *command, int generator_opt
                    ms_flag_handler handler, void *context);
 
 /** Prints "mskit NAME: message" to stderr. @return EXIT_FAILED */
-int ms_fail_command(const ms_command *command, const ms_error *err);
+int ms_flags_fail(const ms_command *command, const ms_error *err);
 
 /** The same with the usage of the command. @return EXIT_USAGE */
-int ms_wrong_usage(const ms_command *command, const char *message);
+int ms_flags_wrong_usage(const ms_command *command, const char *message);
 
 /** A number that the user wrote. @return MS_OK; MS_ERR_ARG if it is none from lo to hi */
-ms_status ms_flag_number(double *value, const char *name, const char *text, double lo, double hi, ms_error *err);
+ms_status ms_flags_number(double *value, const char *name, const char *text, double lo, double hi, ms_error *err);
 
 /** The same, a whole number. */
-ms_status ms_flag_whole(double *value, const char *name, const char *text, double lo, double hi, ms_error *err);
+ms_status ms_flags_whole(double *value, const char *name, const char *text, double lo, double hi, ms_error *err);
 
 #endif

@@ -33,7 +33,7 @@ static ms_status parse_size(double *bytes, const char *text, ms_error *err)
     for (const char *u = UNITS; unit && u <= unit; u++) {
         factor *= 1000;
     }
-    if (number.length == 0 || !ms_word_double(&value, &number) || !(value * factor <= 1e18) || value < 0) {
+    if (number.length == 0 || !ms_text_to_double(&value, &number) || !(value * factor <= 1e18) || value < 0) {
         return ms_fail(err, MS_ERR_ARG, "--max-memory '%s' is not a size like 500M or 8G (k, M, G or T bytes)", text);
     }
     *bytes = value * factor;
@@ -58,13 +58,13 @@ ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, con
     ms_status status = MS_OK;
     *taken = 1;
     if (strcmp(name, "cells") == 0) {
-        return ms_flag_whole(&flags->cells, name, value, 1, MS_GRID_MAX_EXTENT, err);
+        return ms_flags_whole(&flags->cells, name, value, 1, MS_GRID_MAX_EXTENT, err);
     }
     if (strcmp(name, "deq") == 0) {
-        return ms_flag_number(&flags->deq, name, value, 1, MS_GRID_MAX_EXTENT, err);
+        return ms_flags_number(&flags->deq, name, value, 1, MS_GRID_MAX_EXTENT, err);
     }
     if (strcmp(name, "voxel-size") == 0) {
-        return ms_flag_number(&flags->voxel_size, name, value, 1e-300, 1e300, err);
+        return ms_flags_number(&flags->voxel_size, name, value, 1e-300, 1e300, err);
     }
     if (strcmp(name, "rule") == 0) {
         return parse_rule(&flags->rule, value, err);
@@ -77,10 +77,10 @@ ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, con
         return parse_size(&flags->max_memory, value, err);
     }
     if (strcmp(name, "label") == 0) {
-        status = ms_flag_whole(&number, name, value, 1, UINT32_MAX, err);
+        status = ms_flags_whole(&number, name, value, 1, UINT32_MAX, err);
         flags->label = status == MS_OK ? (uint32_t)number : 0;
     } else if (strcmp(name, "threads") == 0) {
-        status = ms_flag_whole(&number, name, value, 1, 1024, err);
+        status = ms_flags_whole(&number, name, value, 1, 1024, err);
         flags->threads = status == MS_OK ? (int)number : 0;
     } else {
         *taken = 0;
@@ -153,10 +153,10 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
     if (status != MS_OK) {
         return status;
     }
-    input->checksum = ms_bytes_checksum(&bytes);
+    input->checksum = ms_file_checksum(&bytes);
     if (ms_volume_is_volume_path(path)) {
         status = ms_volume_parse(&input->volume, &bytes, path, ms_input_max_voxels(flags), err);
-    } else if (ms_mesh_is_mesh_path(path)) {
+    } else if (ms_mesh_read_is_mesh_path(path)) {
         status = parse_mesh(input, &bytes, err);
     } else {
         status = ms_fail(err, MS_ERR_FORMAT,
@@ -164,7 +164,7 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
                          ".npy, .mhd, .mha, .nrrd and .nhdr",
                          path);
     }
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     input->read_seconds = omp_get_wtime() - start;
     if (status != MS_OK) {
         ms_input_free(input);

@@ -32,7 +32,7 @@ ms_status ms_mass_flag(int *taken, ms_mass_flags *flags, const char *name, const
     for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++) {
         if (strcmp(name, numbers[n].name) == 0) {
             flags->any = 1;
-            return ms_flag_number(numbers[n].value, name, value, numbers[n].lo, numbers[n].hi, err);
+            return ms_flags_number(numbers[n].value, name, value, numbers[n].lo, numbers[n].hi, err);
         }
     }
     flags->any |= strcmp(name, "unit") == 0 || strcmp(name, "properties") == 0 || strcmp(name, "axes") == 0;
@@ -50,7 +50,7 @@ ms_status ms_mass_flag(int *taken, ms_mass_flags *flags, const char *name, const
     return MS_OK;
 }
 
-ms_status ms_mass_settle(ms_mass_flags *flags, ms_error *err)
+ms_status ms_mass_resolve(ms_mass_flags *flags, ms_error *err)
 {
     static const struct {
         const char *name;

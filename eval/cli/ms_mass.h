@@ -35,7 +35,7 @@ typedef struct ms_mass_flags {
 ms_status ms_mass_flag(int *taken, ms_mass_flags *flags, const char *name, const char *value, ms_error *err);
 
 /** What follows from the flags together: the scale, 1 by default. @return MS_OK; MS_ERR_ARG */
-ms_status ms_mass_settle(ms_mass_flags *flags, ms_error *err);
+ms_status ms_mass_resolve(ms_mass_flags *flags, ms_error *err);
 
 /** The particle, and how well the spheres stand for it. */
 typedef struct ms_mass {

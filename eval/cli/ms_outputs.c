@@ -8,7 +8,7 @@
 
 static ms_status take_format(ms_outputs *outputs, const char *name, ms_error *err)
 {
-    const ms_format *format = ms_format_find(name, err);
+    const ms_format *format = ms_write_format_find(name, err);
     if (!format) {
         return MS_ERR_ARG;
     }
@@ -55,7 +55,7 @@ static ms_status check_need(const ms_format *format, ms_need need, ms_error *err
 static ms_status add_asked(ms_outputs *outputs, const char *path, ms_need need, ms_error *err)
 {
     ms_error cause;
-    const ms_format *format = outputs->n_formats ? outputs->format[0] : ms_format_of_path(path, &cause);
+    const ms_format *format = outputs->n_formats ? outputs->format[0] : ms_write_format_of_path(path, &cause);
     if (path[0] == '\0') {
         return ms_fail(err, MS_ERR_ARG, "--output '' names no file; use - for standard output");
     }
@@ -104,8 +104,8 @@ static void free_files(ms_outputs *outputs)
     outputs->n_files = 0;
 }
 
-ms_status ms_outputs_settle(ms_outputs *outputs, const char *source, const char *behind, ms_need need, int defaults,
-                            ms_error *err)
+ms_status ms_outputs_resolve(ms_outputs *outputs, const char *source, const char *behind, ms_need need, int defaults,
+                             ms_error *err)
 {
     ms_status status = MS_OK;
     free_files(outputs);
@@ -180,7 +180,7 @@ ms_status ms_outputs_try(const ms_outputs *outputs, const char *source, ms_error
 {
     ms_status status = outputs->folder ? ms_outputs_make_folder(outputs->folder, err) : MS_OK;
     for (size_t f = 0; f < outputs->n_files && status == MS_OK; f++) {
-        if (!ms_format_is_folder(outputs->file[f].format)) {
+        if (!ms_write_format_is_folder(outputs->file[f].format)) {
             status = ms_outputs_try_file(source, outputs->file[f].path, err);
         }
     }

@@ -44,8 +44,8 @@ ms_status ms_outputs_flag(int *taken, ms_outputs *outputs, const char *name, con
  * @param defaults nonzero: without any output, csv, json and vtk are written; zero: some output must be given
  * @return MS_OK; MS_ERR_ARG; MS_ERR_NOMEM. ms_outputs_free in any case
  */
-ms_status ms_outputs_settle(ms_outputs *outputs, const char *source, const char *behind, ms_need need, int defaults,
-                            ms_error *err);
+ms_status ms_outputs_resolve(ms_outputs *outputs, const char *source, const char *behind, ms_need need, int defaults,
+                             ms_error *err);
 
 /** Number of files that go to standard output. */
 int ms_outputs_to_stdout(const ms_outputs *outputs);

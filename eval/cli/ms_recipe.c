@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-ms_status ms_flag_assignment(char name[64], const char **value, const char *text, ms_error *err)
+ms_status ms_recipe_assignment(char name[64], const char **value, const char *text, ms_error *err)
 {
     const char *equals = strchr(text, '=');
     const size_t length = equals ? (size_t)(equals - text) : strlen(text);
@@ -43,7 +43,7 @@ ms_status ms_recipe_flag(int *taken, ms_recipe *recipe, const char *name, const 
         return MS_OK;
     }
     if (strcmp(name, "seed") == 0) {
-        return ms_flag_whole(&recipe->seed, name, value, 0, 9007199254740992.0, err);
+        return ms_flags_whole(&recipe->seed, name, value, 0, 9007199254740992.0, err);
     }
     if (strcmp(name, "set") == 0) {
         return take_wish(recipe, NULL, value, err);
@@ -55,20 +55,20 @@ ms_status ms_recipe_flag(int *taken, ms_recipe *recipe, const char *name, const 
     return MS_OK;
 }
 
-ms_status ms_recipe_settle(ms_recipe *recipe, ms_error *err)
+ms_status ms_recipe_resolve(ms_recipe *recipe, ms_error *err)
 {
     recipe->generator = ms_generator_find(recipe->name, err);
     ms_status status =
-        recipe->generator ? ms_settings_init(&recipe->settings, recipe->generator->options, err) : MS_ERR_ARG;
+        recipe->generator ? ms_option_settings_init(&recipe->settings, recipe->generator->options, err) : MS_ERR_ARG;
     for (int w = 0; w < recipe->n_wishes && status == MS_OK; w++) {
         const ms_wish *wish = &recipe->wish[w];
         char name[64];
         const char *value = wish->text;
         if (!wish->name) {
-            status = ms_flag_assignment(name, &value, wish->text, err);
+            status = ms_recipe_assignment(name, &value, wish->text, err);
         }
         if (status == MS_OK) {
-            status = ms_settings_set(&recipe->settings, wish->name ? wish->name : name, value, err);
+            status = ms_option_settings_set(&recipe->settings, wish->name ? wish->name : name, value, err);
         }
     }
     return status;
@@ -76,5 +76,5 @@ ms_status ms_recipe_settle(ms_recipe *recipe, ms_error *err)
 
 void ms_recipe_free(ms_recipe *recipe)
 {
-    ms_settings_free(&recipe->settings);
+    ms_option_settings_free(&recipe->settings);
 }

@@ -27,7 +27,7 @@ typedef struct ms_recipe {
     ms_wish wish[MS_RECIPE_MAX_OPTIONS];
     int n_wishes;
     double seed;
-    const ms_generator *generator; /* after ms_recipe_settle */
+    const ms_generator *generator; /* after ms_recipe_resolve */
     ms_settings settings;
 } ms_recipe;
 
@@ -38,11 +38,11 @@ typedef struct ms_recipe {
 ms_status ms_recipe_flag(int *taken, ms_recipe *recipe, const char *name, const char *value, ms_error *err);
 
 /** Finds the generator and gives it its options. ms_recipe_free in any case. @return MS_OK; MS_ERR_ARG; MS_ERR_NOMEM */
-ms_status ms_recipe_settle(ms_recipe *recipe, ms_error *err);
+ms_status ms_recipe_resolve(ms_recipe *recipe, ms_error *err);
 
 void ms_recipe_free(ms_recipe *recipe);
 
 /** Cuts "name=value" in two. @param[out] value NULL without '=' @return MS_OK; MS_ERR_ARG without a name */
-ms_status ms_flag_assignment(char name[64], const char **value, const char *text, ms_error *err);
+ms_status ms_recipe_assignment(char name[64], const char **value, const char *text, ms_error *err);
 
 #endif

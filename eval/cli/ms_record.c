@@ -11,7 +11,7 @@ json_t *ms_record_settings_json(const ms_settings *settings)
     for (size_t o = 0; settings->options[o].name; o++) {
         char text[64];
         if (settings->options[o].type != MS_OPTION_PLANE) {
-            ms_settings_text(text, sizeof text, settings, o);
+            ms_option_settings_text(text, sizeof text, settings, o);
             json_object_set_new(json, settings->options[o].name, json_string(text));
             continue;
         }

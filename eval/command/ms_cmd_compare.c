@@ -58,7 +58,7 @@ static ms_status take_numbers(ms_numbers *list, const char *name, const char *te
             return ms_fail(err, MS_ERR_ARG, "--%s takes up to %d numbers, separated by commas", name, MS_NUMBERS_MAX);
         }
         snprintf(word, sizeof word, "%.*s", (int)length, at);
-        const ms_status status = ms_flag_whole(&value, name, word, 1, most, err);
+        const ms_status status = ms_flags_whole(&value, name, word, 1, most, err);
         if (status != MS_OK) {
             return status;
         }
@@ -83,19 +83,19 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
         return status;
     }
     if (strcmp(name, "generator") == 0) {
-        return ms_methods_add(&c->methods, value, err);
+        return ms_compare_methods_add(&c->methods, value, err);
     }
     if (strcmp(name, "clump") == 0) {
-        return ms_methods_add_clump(&c->methods, value, err);
+        return ms_compare_methods_add_clump(&c->methods, value, err);
     }
     if (strcmp(name, "spheres") == 0) {
         return take_numbers(&c->asked, name, value, MS_CLUMP_MAX_SPHERES, err);
     }
     if (strcmp(name, "repeat") == 0) {
-        return ms_flag_whole(&c->repeats, name, value, 1, 1000, err);
+        return ms_flags_whole(&c->repeats, name, value, 1, 1000, err);
     }
     if (strcmp(name, "seed") == 0) {
-        return ms_flag_whole(&c->seed, name, value, 0, 9007199254740992.0, err);
+        return ms_flags_whole(&c->seed, name, value, 0, 9007199254740992.0, err);
     }
     if (strcmp(name, "resume") == 0) {
         a->resume = 1;
@@ -131,7 +131,7 @@ static int work(const ms_command *command, const arguments *a)
         ms_csv_close(&csv);
     }
     free(header);
-    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+    return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
 /* What follows from all flags together. */
@@ -145,10 +145,10 @@ static ms_status settle(ms_comparison *c, ms_error *err)
     if (c->cells.count == 0) {
         insert(&c->cells, 100);
     }
-    if (ms_methods_clumps(&c->methods) > 0 && c->n_shapes > 1) {
+    if (ms_compare_methods_clumps(&c->methods) > 0 && c->n_shapes > 1) {
         return ms_fail(err, MS_ERR_ARG, "--clump belongs to one shape; compare the others by themselves");
     }
-    return ms_methods_check(&c->methods, err);
+    return ms_compare_methods_check(&c->methods, err);
 }
 
 static int run(const ms_command *command, int argc, char **argv)
@@ -159,14 +159,14 @@ static int run(const ms_command *command, int argc, char **argv)
     ms_input_defaults(&a.comparison.input);
     int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
     if (code == MS_FLAGS_GO_ON && first >= argc) {
-        code = ms_wrong_usage(command, "takes one or more shapes");
+        code = ms_flags_wrong_usage(command, "takes one or more shapes");
     }
     if (code == MS_FLAGS_GO_ON) {
         a.comparison.shape = argv + first;
         a.comparison.n_shapes = (size_t)(argc - first);
-        code = settle(&a.comparison, &err) == MS_OK ? work(command, &a) : ms_wrong_usage(command, err.text);
+        code = settle(&a.comparison, &err) == MS_OK ? work(command, &a) : ms_flags_wrong_usage(command, err.text);
     }
-    ms_methods_free(&a.comparison.methods);
+    ms_compare_methods_free(&a.comparison.methods);
     return code;
 }
 

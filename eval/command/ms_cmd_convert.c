@@ -77,7 +77,7 @@ static ms_status work(arguments *a, ms_error *err)
         const int known = particle.mass > 0 && particle.density > 0;
         const ms_need need = !known ? MS_NEED_SPHERES : clump.mass ? MS_NEED_MASSES : MS_NEED_PARTICLE;
         const ms_content content = {.clump = &clump, .particle = particle.mass > 0 ? &particle : NULL};
-        status = ms_outputs_settle(&a->outputs, a->clump, "", need, 0, err);
+        status = ms_outputs_resolve(&a->outputs, a->clump, "", need, 0, err);
         if (status == MS_OK) {
             status = ms_outputs_try(&a->outputs, a->clump, err);
         }
@@ -93,8 +93,8 @@ static ms_status work(arguments *a, ms_error *err)
 static ms_status settle(arguments *a, ms_error *err)
 {
     const int unit_given = a->mass.unit || a->mass.scale > 0;
-    ms_status status = unit_given ? ms_mass_settle(&a->mass, err) : MS_OK;
-    return status == MS_OK ? ms_outputs_settle(&a->outputs, a->clump, "", MS_NEED_MASSES, 0, err) : status;
+    ms_status status = unit_given ? ms_mass_resolve(&a->mass, err) : MS_OK;
+    return status == MS_OK ? ms_outputs_resolve(&a->outputs, a->clump, "", MS_NEED_MASSES, 0, err) : status;
 }
 
 static int run(const ms_command *command, int argc, char **argv)
@@ -107,13 +107,13 @@ static int run(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1) {
-        return ms_wrong_usage(command, "takes one clump file");
+        return ms_flags_wrong_usage(command, "takes one clump file");
     }
     a.clump = argv[first];
     if (settle(&a, &err) != MS_OK) {
-        code = ms_wrong_usage(command, err.text);
+        code = ms_flags_wrong_usage(command, err.text);
     } else {
-        code = work(&a, &err) == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+        code = work(&a, &err) == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
     }
     ms_outputs_free(&a.outputs);
     return code;

@@ -86,7 +86,7 @@ static ms_status report(const arguments *a, const ms_clump *clump, const ms_mass
     if (status == MS_OK && a->json) {
         status = ms_report_print(
             stdout,
-            json_pack("{s:o,s:o}", "particle", ms_particle_to_json(&mass->particle), "masses", ms_mass_json(mass)),
+            json_pack("{s:o,s:o}", "particle", ms_particle_json_write(&mass->particle), "masses", ms_mass_json(mass)),
             err);
     }
     return status;
@@ -128,10 +128,10 @@ static ms_status settle(arguments *a, ms_error *err)
     if (!(a->mass.density > 0)) {
         return ms_fail(err, MS_ERR_ARG, "takes --density RHO, in kg/m^3");
     }
-    ms_status status = ms_mass_settle(&a->mass, err);
+    ms_status status = ms_mass_resolve(&a->mass, err);
     if (status == MS_OK) {
         const int only_json = a->json && !a->outputs.n_asked && !a->outputs.n_formats && !a->outputs.folder;
-        status = only_json ? MS_OK : ms_outputs_settle(&a->outputs, a->clump, "", MS_NEED_MASSES, 0, err);
+        status = only_json ? MS_OK : ms_outputs_resolve(&a->outputs, a->clump, "", MS_NEED_MASSES, 0, err);
     }
     return status == MS_OK && ms_outputs_to_stdout(&a->outputs) + a->json > 1
                ? ms_fail(err, MS_ERR_ARG, "--json and each - write to standard output; choose one of them")
@@ -149,13 +149,13 @@ static int run(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1) {
-        return ms_wrong_usage(command, "takes one clump file");
+        return ms_flags_wrong_usage(command, "takes one clump file");
     }
     a.clump = argv[first];
     if (settle(&a, &err) != MS_OK) {
-        code = ms_wrong_usage(command, err.text);
+        code = ms_flags_wrong_usage(command, err.text);
     } else {
-        code = work(&a, &err) == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+        code = work(&a, &err) == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
     }
     ms_outputs_free(&a.outputs);
     return code;

@@ -50,14 +50,14 @@ static ms_status take_until(arguments *a, const char *text, ms_error *err)
     char name[64];
     const char *value = NULL;
     double number;
-    ms_status status = ms_flag_assignment(name, &value, text, err);
+    ms_status status = ms_recipe_assignment(name, &value, text, err);
     if (status != MS_OK) {
         return status;
     }
     const ms_word word = {value, value ? strlen(value) : 0};
     ms_stop known = ms_stop_none();
     status = ms_stop_set(&known, name, 0, err); /* is there such a measure? */
-    if (status == MS_OK && (word.length == 0 || !ms_word_double(&number, &word))) {
+    if (status == MS_OK && (word.length == 0 || !ms_text_to_double(&number, &word))) {
         return ms_fail(err, MS_ERR_ARG, "--until '%s' is not of the form MEASURE=VALUE, as %s=0.05", text, name);
     }
     return status == MS_OK ? ms_stop_set(&a->stop, name, number, err) : status;
@@ -79,7 +79,7 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
         return status;
     }
     if (strcmp(name, "spheres") == 0) {
-        status = ms_flag_whole(&number, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
+        status = ms_flags_whole(&number, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
         a->stop.spheres = status == MS_OK ? (size_t)number : 0;
         return status;
     }
@@ -109,18 +109,18 @@ static int outputs_to_stdout(const arguments *a)
 }
 
 /* Checks before the work what can be known of the outputs. */
-static ms_status settle_outputs(arguments *a, ms_error *err)
+static ms_status resolve_outputs(arguments *a, ms_error *err)
 {
     char behind[64];
     snprintf(behind, sizeof behind, "-%s", a->recipe.generator->name);
     const ms_need known = a->correct ? MS_NEED_MASSES : MS_NEED_SPHERES;
-    ms_status status = ms_outputs_settle(&a->outputs, a->shape, behind, known, 1, err);
+    ms_status status = ms_outputs_resolve(&a->outputs, a->shape, behind, known, 1, err);
     return status == MS_OK && a->json + outputs_to_stdout(a) > 1
                ? ms_fail(err, MS_ERR_ARG, "--json and each - write to standard output; choose one of them")
                : status;
 }
 
-static ms_status settle_masses(arguments *a, ms_error *err)
+static ms_status resolve_masses(arguments *a, ms_error *err)
 {
     if (!a->correct && a->mass.any) {
         return ms_fail(err, MS_ERR_ARG, "flags about masses take --correct beside them");
@@ -128,7 +128,7 @@ static ms_status settle_masses(arguments *a, ms_error *err)
     if (a->correct && !(a->mass.density > 0)) {
         return ms_fail(err, MS_ERR_ARG, "--correct takes --density RHO, in kg/m^3");
     }
-    return ms_mass_settle(&a->mass, err);
+    return ms_mass_resolve(&a->mass, err);
 }
 
 static ms_status try_outputs(const arguments *a, ms_error *err)
@@ -264,7 +264,7 @@ static int work(const ms_command *command, const arguments *a)
     memset(&r, 0, sizeof r);
     ms_status status = ms_input_read(&input, a->shape, &a->input, &err);
     if (status != MS_OK) {
-        return ms_fail_command(command, &err);
+        return ms_flags_fail(command, &err);
     }
     status = try_outputs(a, &err);
     if (status == MS_OK) {
@@ -278,7 +278,7 @@ static int work(const ms_command *command, const arguments *a)
     }
     ms_clump_free(&r.clump);
     ms_input_free(&input);
-    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+    return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
 /* What follows from all flags together. */
@@ -287,11 +287,11 @@ static ms_status settle(arguments *a, ms_error *err)
     if (ms_stop_is_none(&a->stop)) {
         a->stop.spheres = DEFAULT_SPHERES;
     }
-    ms_status status = ms_recipe_settle(&a->recipe, err);
+    ms_status status = ms_recipe_resolve(&a->recipe, err);
     if (status == MS_OK) {
-        status = settle_masses(a, err);
+        status = resolve_masses(a, err);
     }
-    return status == MS_OK ? settle_outputs(a, err) : status;
+    return status == MS_OK ? resolve_outputs(a, err) : status;
 }
 
 static int run(const ms_command *command, int argc, char **argv)
@@ -305,10 +305,10 @@ static int run(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1) {
-        return ms_wrong_usage(command, "takes one shape");
+        return ms_flags_wrong_usage(command, "takes one shape");
     }
     a.shape = argv[first];
-    code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_wrong_usage(command, err.text);
+    code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_flags_wrong_usage(command, err.text);
     ms_outputs_free(&a.outputs);
     ms_recipe_free(&a.recipe);
     return code;

@@ -34,7 +34,7 @@ static int run_generators(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (first < argc) {
-        return ms_wrong_usage(command, "takes no words");
+        return ms_flags_wrong_usage(command, "takes no words");
     }
     json_t *list = json ? json_array() : NULL;
     for (const ms_generator *const *g = ms_generators; *g; g++) {
@@ -46,7 +46,7 @@ static int run_generators(const ms_command *command, int argc, char **argv)
         }
     }
     if (json && ms_report_print(stdout, list, &err) != MS_OK) {
-        return ms_fail_command(command, &err);
+        return ms_flags_fail(command, &err);
     }
     return EXIT_DONE;
 }
@@ -65,7 +65,7 @@ static void print_option(const ms_option *o)
     char text[64];
     double value = o->fallback;
     const ms_settings one = {.options = o, .value = &value};
-    ms_settings_text(text, sizeof text, &one, 0);
+    ms_option_settings_text(text, sizeof text, &one, 0);
     printf("  %s", o->name);
     switch (o->type) {
     case MS_OPTION_FLAG:
@@ -97,11 +97,11 @@ static int run_help(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1) {
-        return ms_wrong_usage(command, "takes the name of one generator or command");
+        return ms_flags_wrong_usage(command, "takes the name of one generator or command");
     }
     const ms_generator *generator = ms_generator_find(argv[first], &err);
     if (!generator) {
-        return ms_wrong_usage(command, err.text);
+        return ms_flags_wrong_usage(command, err.text);
     }
     printf("%s: %s\n%s\nprefixes are clumps themselves: %s\n\n"
            "options (--set NAME=VALUE, or --NAME VALUE):\n",

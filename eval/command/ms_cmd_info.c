@@ -171,11 +171,11 @@ static int run(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1) {
-        return ms_wrong_usage(command, "takes one shape");
+        return ms_flags_wrong_usage(command, "takes one shape");
     }
     ms_status status = ms_input_read(&input, argv[first], &a.input, &err);
     if (status != MS_OK) {
-        return ms_fail_command(command, &err);
+        return ms_flags_fail(command, &err);
     }
     status = gather(&f, &input, &a.input, &err);
     if (status == MS_OK && a.json) {
@@ -184,7 +184,7 @@ static int run(const ms_command *command, int argc, char **argv)
         print_facts(&f);
     }
     ms_input_free(&input);
-    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+    return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
 const ms_command ms_command_info = {

@@ -60,7 +60,7 @@ static ms_status take_tolerance(ms_goal *goal, const char *flag, const char *tex
     const char *value = NULL;
     double number;
     const int mean = strcmp(flag, "mean-tolerance") == 0;
-    ms_status status = ms_flag_assignment(name, &value, text, err);
+    ms_status status = ms_recipe_assignment(name, &value, text, err);
     const ms_scene_measure *measure = status == MS_OK ? ms_scene_measure_find(name, err) : NULL;
     if (!measure) {
         return MS_ERR_ARG;
@@ -68,7 +68,7 @@ static ms_status take_tolerance(ms_goal *goal, const char *flag, const char *tex
     if (mean && strcmp(name, "dice") != 0) {
         return ms_fail(err, MS_ERR_ARG, "--mean-tolerance takes dice=VALUE alone, not %s", name);
     }
-    status = ms_flag_number(&number, flag, value ? value : "", 0, 1, err);
+    status = ms_flags_number(&number, flag, value ? value : "", 0, 1, err);
     if (status == MS_OK) {
         status = set_goal(goal, mean ? MS_GOAL_MEAN : MS_GOAL_TOLERANCE, number, err);
         goal->measure = measure;
@@ -82,11 +82,11 @@ static ms_status take_goal(int *taken, ms_goal *goal, const char *name, const ch
     ms_status status;
     *taken = 1;
     if (strcmp(name, "budget") == 0) {
-        status = ms_flag_whole(&number, name, value, 1, MAX_BUDGET, err);
+        status = ms_flags_whole(&number, name, value, 1, MAX_BUDGET, err);
         return status == MS_OK ? set_goal(goal, MS_GOAL_BUDGET, number, err) : status;
     }
     if (strcmp(name, "knee") == 0) {
-        status = ms_flag_number(&number, name, value, 1e-9, 1, err);
+        status = ms_flags_number(&number, name, value, 1e-9, 1, err);
         return status == MS_OK ? set_goal(goal, MS_GOAL_KNEE, number, err) : status;
     }
     if (strcmp(name, "tolerance") == 0 || strcmp(name, "mean-tolerance") == 0) {
@@ -98,7 +98,7 @@ static ms_status take_goal(int *taken, ms_goal *goal, const char *name, const ch
 
 static ms_status take_format(arguments *a, const char *name, ms_error *err)
 {
-    a->format = ms_format_find(name, err);
+    a->format = ms_write_format_find(name, err);
     if (a->format && a->format->need != MS_NEED_SPHERES) {
         return ms_fail(err, MS_ERR_ARG, "a %s template needs the mass of the particle: use mskit correct on each",
                        name);
@@ -118,10 +118,10 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
         return status;
     }
     if (strcmp(name, "max-spheres") == 0) {
-        return ms_flag_whole(&a->max_spheres, name, value, 1, MS_SCENE_MAX_SPHERES, err);
+        return ms_flags_whole(&a->max_spheres, name, value, 1, MS_SCENE_MAX_SPHERES, err);
     }
     if (strcmp(name, "min-radius") == 0) {
-        return ms_flag_number(&a->min_radius, name, value, 1e-300, 1e300, err);
+        return ms_flags_number(&a->min_radius, name, value, 1e-300, 1e300, err);
     }
     if (strcmp(name, "output") == 0) {
         a->folder = value;
@@ -138,7 +138,7 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
 }
 
 /* What flags and manifest say together. */
-static ms_status settle_goal(ms_goal *goal, const ms_manifest *manifest, const char *source, ms_error *err)
+static ms_status resolve_goal(ms_goal *goal, const ms_manifest *manifest, const char *source, ms_error *err)
 {
     size_t tolerances = 0;
     double particles = 0;
@@ -255,7 +255,7 @@ static ms_status work(arguments *a, const ms_manifest *manifest, ms_outputs *out
     if (status != MS_OK) {
         return status;
     }
-    status = ms_scene_settle(&scene, &a->goal, err);
+    status = ms_scene_choose(&scene, &a->goal, err);
     if (status == MS_OK) {
         status = report(a, &scene, err);
     }
@@ -275,12 +275,12 @@ static ms_status read_manifest(ms_manifest *manifest, const char *source, ms_err
                                       : ms_manifest_of_shape(manifest, source, err);
 }
 
-static int settle_and_work(const ms_command *command, arguments *a, const ms_manifest *manifest)
+static int resolve_and_work(const ms_command *command, arguments *a, const ms_manifest *manifest)
 {
     ms_error err;
-    ms_status status = settle_goal(&a->goal, manifest, a->source, &err);
+    ms_status status = resolve_goal(&a->goal, manifest, a->source, &err);
     if (status == MS_ERR_ARG) {
-        return ms_wrong_usage(command, err.text);
+        return ms_flags_wrong_usage(command, err.text);
     }
     ms_outputs *outputs = calloc(manifest->count, sizeof *outputs);
     if (!outputs) {
@@ -293,7 +293,7 @@ static int settle_and_work(const ms_command *command, arguments *a, const ms_man
         ms_outputs_free(&outputs[r]);
     }
     free(outputs);
-    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+    return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
 static int read_and_work(const ms_command *command, arguments *a)
@@ -301,9 +301,9 @@ static int read_and_work(const ms_command *command, arguments *a)
     ms_manifest manifest;
     ms_error err;
     if (read_manifest(&manifest, a->source, &err) != MS_OK) {
-        return ms_fail_command(command, &err);
+        return ms_flags_fail(command, &err);
     }
-    const int code = settle_and_work(command, a, &manifest);
+    const int code = resolve_and_work(command, a, &manifest);
     ms_manifest_free(&manifest);
     return code;
 }
@@ -319,14 +319,15 @@ static int run(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1) {
-        return ms_wrong_usage(command, "takes one manifest (.csv: shape,count) or one shape");
+        return ms_flags_wrong_usage(command, "takes one manifest (.csv: shape,count) or one shape");
     }
     if (a.format && !a.folder) {
-        return ms_wrong_usage(command, "--format is that of the templates; give -o DIR beside it");
+        return ms_flags_wrong_usage(command, "--format is that of the templates; give -o DIR beside it");
     }
     a.source = argv[first];
-    a.format = a.format ? a.format : ms_format_find("csv", &err);
-    code = ms_recipe_settle(&a.recipe, &err) == MS_OK ? read_and_work(command, &a) : ms_wrong_usage(command, err.text);
+    a.format = a.format ? a.format : ms_write_format_find("csv", &err);
+    code = ms_recipe_resolve(&a.recipe, &err) == MS_OK ? read_and_work(command, &a)
+                                                       : ms_flags_wrong_usage(command, err.text);
     ms_recipe_free(&a.recipe);
     return code;
 }

@@ -75,14 +75,14 @@ static int run(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1 || !a.target) {
-        return ms_wrong_usage(command, "takes one clump file and --target SHAPE");
+        return ms_flags_wrong_usage(command, "takes one clump file and --target SHAPE");
     }
     if (a.json && a.curve) {
-        return ms_wrong_usage(command, "--curve prints CSV and --json JSON; choose one of them");
+        return ms_flags_wrong_usage(command, "--curve prints CSV and --json JSON; choose one of them");
     }
     ms_status status = ms_read_clump(&clump, &unused, argv[first], &err);
     if (status != MS_OK) {
-        return ms_fail_command(command, &err);
+        return ms_flags_fail(command, &err);
     }
     status = ms_input_read(&input, a.target, &a.input, &err);
     if (status == MS_OK) {
@@ -93,7 +93,7 @@ static int run(const ms_command *command, int argc, char **argv)
         ms_input_free(&input);
     }
     ms_clump_free(&clump);
-    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+    return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
 const ms_command ms_command_score = {

@@ -48,7 +48,7 @@ static ms_status set_value(double *value, const ms_shape_kind *kind, const char 
         const size_t length = (size_t)(equals - assignment);
         if (strlen(p->name) == length && memcmp(p->name, assignment, length) == 0) {
             const ms_word word = {equals + 1, strlen(equals + 1)};
-            if (word.length == 0 || !ms_word_double(&value[p - kind->parameters], &word)) {
+            if (word.length == 0 || !ms_text_to_double(&value[p - kind->parameters], &word)) {
                 return ms_fail(err, MS_ERR_ARG, "%s is not a number in %s", equals + 1, assignment);
             }
             return MS_OK;
@@ -65,14 +65,14 @@ static int make(const ms_command *command, const char *output, int n_words, char
     ms_mesh mesh;
     const ms_shape_kind *kind = ms_shape_find(word[0], &err);
     if (!kind) {
-        return ms_wrong_usage(command, err.text);
+        return ms_flags_wrong_usage(command, err.text);
     }
     for (size_t p = 0; kind->parameters[p].name; p++) {
         value[p] = kind->parameters[p].fallback;
     }
     for (int w = 1; w < n_words; w++) {
         if (set_value(value, kind, word[w], &err) != MS_OK) {
-            return ms_wrong_usage(command, err.text);
+            return ms_flags_wrong_usage(command, err.text);
         }
     }
     ms_status status = ms_shape_make(&mesh, kind, value, &err);
@@ -83,7 +83,7 @@ static int make(const ms_command *command, const char *output, int n_words, char
         }
         ms_mesh_free(&mesh);
     }
-    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+    return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
 static int run(const ms_command *command, int argc, char **argv)
@@ -99,11 +99,11 @@ static int run(const ms_command *command, int argc, char **argv)
         return EXIT_DONE;
     }
     if (first >= argc || !a.output) {
-        return ms_wrong_usage(command, "takes a kind of shape and -o FILE; --list shows the kinds");
+        return ms_flags_wrong_usage(command, "takes a kind of shape and -o FILE; --list shows the kinds");
     }
-    if (strcmp(a.output, "-") != 0 && !ms_mesh_is_mesh_path(a.output)) {
-        return ms_wrong_usage(command,
-                              "a mesh is written as .stl, .obj, .ply or .off; give -o FILE one of these endings");
+    if (strcmp(a.output, "-") != 0 && !ms_mesh_read_is_mesh_path(a.output)) {
+        return ms_flags_wrong_usage(command,
+                                    "a mesh is written as .stl, .obj, .ply or .off; give -o FILE one of these endings");
     }
     return make(command, a.output, argc - first, argv + first);
 }

@@ -53,7 +53,7 @@ typedef struct progress {
 static ms_status take_change(arguments *a, const char *name, ms_error *err)
 {
     ms_change change = MS_CHANGE_NONE;
-    ms_status status = ms_change_find(&change, name, err);
+    ms_status status = ms_stability_change_find(&change, name, err);
     a->wanted[change] = 1;
     return status;
 }
@@ -67,22 +67,22 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
         return status;
     }
     if (strcmp(name, "generator") == 0) {
-        return ms_methods_add(&a->methods, value, err);
+        return ms_compare_methods_add(&a->methods, value, err);
     }
     if (strcmp(name, "spheres") == 0) {
-        return ms_flag_whole(&a->spheres, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
+        return ms_flags_whole(&a->spheres, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
     }
     if (strcmp(name, "until-dice") == 0) {
-        return ms_flag_number(&a->until_dice, name, value, 0, 1, err);
+        return ms_flags_number(&a->until_dice, name, value, 0, 1, err);
     }
     if (strcmp(name, "perturb") == 0) {
         return take_change(a, value, err);
     }
     if (strcmp(name, "runs") == 0) {
-        return ms_flag_whole(&a->runs, name, value, 1, MOST_RUNS, err);
+        return ms_flags_whole(&a->runs, name, value, 1, MOST_RUNS, err);
     }
     if (strcmp(name, "seed") == 0) {
-        return ms_flag_whole(&a->seed, name, value, 0, 9007199254740992.0, err);
+        return ms_flags_whole(&a->seed, name, value, 0, 9007199254740992.0, err);
     }
     if (strcmp(name, "json") == 0) {
         a->json = 1;
@@ -102,7 +102,7 @@ static ms_status settle(arguments *a, ms_error *err)
     for (int c = 0; c < MS_CHANGES; c++) {
         a->wanted[c] |= !any || c == MS_CHANGE_NONE;
     }
-    ms_status status = ms_methods_check(&a->methods, err);
+    ms_status status = ms_compare_methods_check(&a->methods, err);
     for (size_t m = 0; m < a->methods.count && status == MS_OK; m++) {
         const ms_settings *settings = &a->methods.method[m].settings;
         if (settings->n_planes || settings->clump.n_spheres) {
@@ -141,7 +141,7 @@ static ms_status make_input(ms_input *input, const char *name, const ms_input_fl
 {
     const ms_hard_shape *built_in = find_built_in(name);
     if (built_in) {
-        return ms_hard_shape_make(input, built_in, flags, err);
+        return ms_hard_shapes_make(input, built_in, flags, err);
     }
     ms_status status = read_shape(input, name, flags, err);
     if (status == MS_OK) {
@@ -182,7 +182,7 @@ static void show(const progress *p, const ms_stability *s, ms_change change)
 {
     if (isatty(STDERR_FILENO)) {
         fprintf(stderr, "\r\033[K%zu of %zu: %s, %s, %s ", p->n_runs + 1, p->planned, s->input->path,
-                ms_stability_label(s->method).text, ms_change_name(change));
+                ms_stability_label(s->method).text, ms_stability_change_name(change));
     }
 }
 
@@ -214,7 +214,7 @@ static ms_status try_shape(progress *p, const arguments *a, const char *name, ms
                                 .threads = omp_get_max_threads(),
                                 .flags = &a->input};
         for (int c = 0; c < MS_CHANGES && status == MS_OK; c++) {
-            const int runs = a->wanted[c] ? ms_change_runs((ms_change)c, s.runs) : 0;
+            const int runs = a->wanted[c] ? ms_stability_change_runs((ms_change)c, s.runs) : 0;
             for (int number = 1; number <= runs && status == MS_OK; number++) {
                 status = add_run(p, &s, (ms_change)c, number, err);
             }
@@ -242,14 +242,14 @@ static ms_status try_all(progress *p, const arguments *a, ms_error *err)
 
 static ms_status report(const arguments *a, const progress *p, ms_error *err)
 {
-    ms_spread_group *groups;
+    ms_statistics_group *groups;
     size_t count;
-    ms_status status = ms_spread_group_runs(&groups, &count, p->run, p->n_runs, err);
+    ms_status status = ms_statistics_group_runs(&groups, &count, p->run, p->n_runs, err);
     if (status == MS_OK && a->json) {
-        status = ms_report_print(stdout, ms_spread_json(groups, count), err);
+        status = ms_report_print(stdout, ms_statistics_json(groups, count), err);
     } else if (status == MS_OK) {
         FILE *words = p->rows == stdout ? stderr : stdout;
-        ms_spread_print(words, groups, count, a->until_dice >= 0);
+        ms_statistics_print(words, groups, count, a->until_dice >= 0);
     }
     free(groups);
     return status == MS_OK && a->charts ? ms_stability_charts(a->charts, p->run, p->n_runs, err) : status;
@@ -259,7 +259,7 @@ static size_t count_runs(const arguments *a)
 {
     size_t each = 0, shapes = (size_t)a->n_shapes;
     for (int c = 0; c < MS_CHANGES; c++) {
-        each += a->wanted[c] ? (size_t)ms_change_runs((ms_change)c, (int)a->runs) : 0;
+        each += a->wanted[c] ? (size_t)ms_stability_change_runs((ms_change)c, (int)a->runs) : 0;
     }
     for (const ms_hard_shape *shape = ms_hard_shapes; !a->n_shapes && shape->name; shape++) {
         shapes++;
@@ -288,7 +288,7 @@ static int work(const ms_command *command, const arguments *a)
         status = try_outputs(a, &err);
     }
     if (status != MS_OK) {
-        return ms_fail_command(command, &err);
+        return ms_flags_fail(command, &err);
     }
     status = begin(&p, a, &err);
     if (status == MS_OK) {
@@ -301,7 +301,7 @@ static int work(const ms_command *command, const arguments *a)
         status = ms_fail(&err, MS_ERR_IO, "%s: could not be written; is the disk full?", a->output);
     }
     free(p.run);
-    return status == MS_OK ? EXIT_DONE : ms_fail_command(command, &err);
+    return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
 static int run(const ms_command *command, int argc, char **argv)
@@ -315,9 +315,9 @@ static int run(const ms_command *command, int argc, char **argv)
     if (code == MS_FLAGS_GO_ON) {
         a.shape = argv + first;
         a.n_shapes = argc - first;
-        code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_wrong_usage(command, err.text);
+        code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_flags_wrong_usage(command, err.text);
     }
-    ms_methods_free(&a.methods);
+    ms_compare_methods_free(&a.methods);
     return code;
 }
 

@@ -32,7 +32,7 @@ static char *make_text(const ms_compare_row *row, int columns)
         if (row->text[c]) {
             ms_csv_put(stream, row->text[c]);
         } else if (isfinite(row->number[c])) {
-            fputs(ms_number_text(row->number[c]).text, stream);
+            fputs(ms_text_of_number(row->number[c]).text, stream);
         }
         if (c < MS_COLUMNS - 1) {
             putc(',', stream);

@@ -25,7 +25,7 @@ static double number(const record *r, ms_column column)
 {
     double value;
     const ms_word word = {r->field[column], strlen(r->field[column])};
-    return word.length > 0 && ms_word_double(&value, &word) ? value : (double)NAN;
+    return word.length > 0 && ms_text_to_double(&value, &word) ? value : (double)NAN;
 }
 
 static int same_field(const record *a, const record *b, ms_column column)

@@ -14,7 +14,7 @@
 enum { TILE = 220, MOST_ROWS = 4, HEAD = 40 };
 
 /* FOLDER/SHAPE-NAME; the caller frees it. */
-static char *make_path(const ms_sheet *sheet, const char *name, ms_error *err)
+static char *make_path(const ms_compare_sheet *sheet, const char *name, ms_error *err)
 {
     const size_t room = strlen(sheet->folder) + strlen(sheet->shape) + strlen(name) + 3;
     char *path = malloc(room);
@@ -26,7 +26,7 @@ static char *make_path(const ms_sheet *sheet, const char *name, ms_error *err)
     return path;
 }
 
-static char *clump_path(const ms_sheet *sheet, const ms_method *method, double asked, ms_error *err)
+static char *clump_path(const ms_compare_sheet *sheet, const ms_method *method, double asked, ms_error *err)
 {
     char name[256];
     snprintf(name, sizeof name, "%.80s%s%.120s-%g.csv", method->name, method->options[0] ? "-" : "", method->options,
@@ -39,30 +39,31 @@ static char *clump_path(const ms_sheet *sheet, const ms_method *method, double a
     return make_path(sheet, name, err);
 }
 
-ms_status ms_sheet_keep(const ms_sheet *sheet, const ms_method *method, double asked, const ms_clump *clump,
-                        ms_error *err)
+ms_status ms_compare_sheet_keep(const ms_compare_sheet *sheet, const ms_method *method, double asked,
+                                const ms_clump *clump, ms_error *err)
 {
     const ms_content content = {.clump = clump};
     char *path = clump_path(sheet, method, asked, err);
-    const ms_status status = path ? ms_write_clump(&content, path, ms_format_find("csv", err), err) : MS_ERR_NOMEM;
+    const ms_status status =
+        path ? ms_write_clump(&content, path, ms_write_format_find("csv", err), err) : MS_ERR_NOMEM;
     free(path);
     return status;
 }
 
-static size_t count_rows(const ms_sheet *sheet)
+static size_t count_rows(const ms_compare_sheet *sheet)
 {
     return sheet->n_asked < MOST_ROWS ? sheet->n_asked : MOST_ROWS;
 }
 
 /* Which number a row shows: the first, the last, and others between. */
-static double row_number(const ms_sheet *sheet, size_t row)
+static double row_number(const ms_compare_sheet *sheet, size_t row)
 {
     const size_t rows = count_rows(sheet);
     return sheet->asked[rows > 1 ? row * (sheet->n_asked - 1) / (rows - 1) : 0];
 }
 
-static ms_status draw_clump(ms_picture *picture, const ms_view *view, const ms_sheet *sheet, const ms_method *method,
-                            double asked, ms_error *err)
+static ms_status draw_clump(ms_picture *picture, const ms_view *view, const ms_compare_sheet *sheet,
+                            const ms_method *method, double asked, ms_error *err)
 {
     ms_clump clump;
     if (!method->generator) {
@@ -81,10 +82,10 @@ static ms_status draw_clump(ms_picture *picture, const ms_view *view, const ms_s
     return status;
 }
 
-static ms_status draw_tiles(ms_picture *picture, const ms_sheet *sheet, const ms_target *target, ms_error *err)
+static ms_status draw_tiles(ms_picture *picture, const ms_compare_sheet *sheet, const ms_target *target, ms_error *err)
 {
     ms_view view;
-    ms_status status = ms_view_of(&view, target, 0, 0, TILE, err);
+    ms_status status = ms_render_view(&view, target, 0, 0, TILE, err);
     if (status == MS_OK) {
         ms_render_target(picture, &view, target);
     }
@@ -111,7 +112,7 @@ static void put_label(FILE *stream, const char *text, double x, double y, const 
 }
 
 /* Puts words to the tiles; y of gnuplot's picture goes upward. */
-static void put_script(FILE *stream, const ms_sheet *sheet, const ms_picture *picture)
+static void put_script(FILE *stream, const ms_compare_sheet *sheet, const ms_picture *picture)
 {
     fprintf(stream,
             "# `gnuplot %s-sheet.gp`, here, draws %s-sheet.png from %s-tiles.png\n"
@@ -138,7 +139,7 @@ static void put_script(FILE *stream, const ms_sheet *sheet, const ms_picture *pi
     fprintf(stream, "plot '%s-tiles.png' binary filetype=png with rgbimage\n", sheet->shape);
 }
 
-static ms_status write_script(const ms_sheet *sheet, const ms_picture *picture, ms_error *err)
+static ms_status write_script(const ms_compare_sheet *sheet, const ms_picture *picture, ms_error *err)
 {
     ms_output output;
     char *path = make_path(sheet, "sheet.gp", err);
@@ -151,18 +152,18 @@ static ms_status write_script(const ms_sheet *sheet, const ms_picture *picture, 
     return status;
 }
 
-ms_status ms_sheet_draw(const ms_sheet *sheet, const ms_target *target, ms_error *err)
+ms_status ms_compare_sheet_draw(const ms_compare_sheet *sheet, const ms_target *target, ms_error *err)
 {
     ms_picture picture = {0};
     char *tiles = make_path(sheet, "tiles.png", err), *stem = make_path(sheet, "sheet", err);
-    ms_status status = tiles && stem ? ms_picture_alloc(&picture, (int)(sheet->methods->count + 1) * TILE,
-                                                        (int)count_rows(sheet) * TILE, err)
+    ms_status status = tiles && stem ? ms_render_picture_alloc(&picture, (int)(sheet->methods->count + 1) * TILE,
+                                                               (int)count_rows(sheet) * TILE, err)
                                      : MS_ERR_NOMEM;
     if (status == MS_OK) {
         status = draw_tiles(&picture, sheet, target, err);
     }
     if (status == MS_OK) {
-        status = ms_picture_write(&picture, tiles, err);
+        status = ms_render_picture_write(&picture, tiles, err);
     }
     if (status == MS_OK) {
         status = write_script(sheet, &picture, err);
@@ -173,7 +174,7 @@ ms_status ms_sheet_draw(const ms_sheet *sheet, const ms_target *target, ms_error
     if (status == MS_OK) {
         printf("drew %s.png\n", stem);
     }
-    ms_picture_free(&picture);
+    ms_render_picture_free(&picture);
     free(tiles);
     free(stem);
     return status;

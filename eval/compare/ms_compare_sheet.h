@@ -6,16 +6,16 @@
 #include "voxel/ms_target.h"
 
 /** What is on a sheet; all borrowed. */
-typedef struct ms_sheet {
+typedef struct ms_compare_sheet {
     const char *folder, *shape; /* shape: begins the names of its files */
     const ms_methods *methods;
     const double *asked; /* numbers of spheres, ascending */
     size_t n_asked;
-} ms_sheet;
+} ms_compare_sheet;
 
 /** Keeps a clump for the sheet as FOLDER/SHAPE-METHOD-N.csv. @return as ms_write_clump */
-ms_status ms_sheet_keep(const ms_sheet *sheet, const ms_method *method, double asked, const ms_clump *clump,
-                        ms_error *err);
+ms_status ms_compare_sheet_keep(const ms_compare_sheet *sheet, const ms_method *method, double asked,
+                                const ms_clump *clump, ms_error *err);
 
 /**
  * Draws FOLDER/SHAPE-sheet.png: the shape, then a column for each method, a row for each number of spheres, four rows
@@ -23,6 +23,6 @@ ms_status ms_sheet_keep(const ms_sheet *sheet, const ms_method *method, double a
  *
  * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM; as ms_chart_draw
  */
-ms_status ms_sheet_draw(const ms_sheet *sheet, const ms_target *target, ms_error *err);
+ms_status ms_compare_sheet_draw(const ms_compare_sheet *sheet, const ms_target *target, ms_error *err);
 
 #endif

@@ -24,8 +24,8 @@ typedef struct walk {
     ms_status status; /* of the shape, then of the target */
     ms_error cause;
     char checksum[20], label[20], name[256];
-    ms_sheet sheet;  /* of the shape, at its last resolution */
-    ms_status drawn; /* of the first chart that failed; the comparison goes on */
+    ms_compare_sheet sheet; /* of the shape, at its last resolution */
+    ms_status drawn;        /* of the first chart that failed; the comparison goes on */
     ms_error why_not;
 } walk;
 
@@ -141,7 +141,7 @@ static void keep_clump(walk *w, const ms_method *method, double asked, const ms_
     const ms_clump prefix = {.n_spheres = n, .capacity = n, .sphere = clump->sphere};
     const double finest = w->a->cells.value[w->a->cells.count - 1];
     if (w->a->charts && method->generator && !(w->cells < finest)) {
-        note_drawn(w, ms_sheet_keep(&w->sheet, method, asked, &prefix, &err), &err);
+        note_drawn(w, ms_compare_sheet_keep(&w->sheet, method, asked, &prefix, &err), &err);
     }
 }
 
@@ -240,7 +240,7 @@ static void draw_sheet(walk *w)
     ms_error err;
     need_target(w);
     if (w->status == MS_OK) {
-        note_drawn(w, ms_sheet_draw(&w->sheet, &w->input.target, &err), &err);
+        note_drawn(w, ms_compare_sheet_draw(&w->sheet, &w->input.target, &err), &err);
     }
 }
 
@@ -250,11 +250,11 @@ static ms_status compare_shape(walk *w, const char *shape, ms_error *err)
     ms_status status = MS_OK;
     w->shape = shape;
     ms_compare_name(w->name, sizeof w->name, shape, w->label);
-    w->sheet = (ms_sheet){.folder = w->a->charts,
-                          .shape = w->name,
-                          .methods = &w->a->methods,
-                          .asked = w->a->asked.value,
-                          .n_asked = w->a->asked.count};
+    w->sheet = (ms_compare_sheet){.folder = w->a->charts,
+                                  .shape = w->name,
+                                  .methods = &w->a->methods,
+                                  .asked = w->a->asked.value,
+                                  .n_asked = w->a->asked.count};
     const ms_status read = ms_input_read(&w->input, shape, &w->a->input, &w->cause);
     snprintf(w->checksum, sizeof w->checksum, "%016llx", (unsigned long long)w->input.checksum);
     const int is_volume = w->input.volume.label != NULL;

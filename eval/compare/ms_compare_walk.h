@@ -31,7 +31,7 @@ typedef struct ms_comparison {
  *
  * @param csv with ms_compare_header
  * @return MS_OK, also where runs failed: that is in their rows; MS_ERR_ARG for rows of another comparison; as
- *         ms_csv_add; of charts, as ms_compare_charts and ms_sheet_draw, when all else is done
+ *         ms_csv_add; of charts, as ms_compare_charts and ms_compare_sheet_draw, when all else is done
  */
 ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error *err);
 

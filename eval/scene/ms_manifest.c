@@ -50,11 +50,11 @@ static ms_status read_header(int *columns, ms_text *text, ms_error *err)
     *columns = split(field, &line);
     int known = *columns >= 2 && *columns <= COLUMNS;
     for (int c = 0; c < *columns && known; c++) {
-        known = ms_word_is(&field[c], NAMES[c]);
+        known = ms_text_word_is(&field[c], NAMES[c]);
     }
     return known ? MS_OK
                  : ms_text_fail(err, text, "the header is '%s', not shape,count or shape,count,tolerance",
-                                ms_word_quote(&line).text);
+                                ms_text_quote(&line).text);
 }
 
 /* The path of a shape, from where the program runs. The caller frees it; NULL without memory. */
@@ -85,8 +85,8 @@ static ms_status check_shape(const ms_manifest *manifest, const char *path, cons
 static ms_status read_count(uint64_t *particles, const ms_word *word, const ms_text *text, ms_error *err)
 {
     int64_t count;
-    if (!ms_word_integer(&count, word) || count < 1 || count > MS_MANIFEST_MAX_PARTICLES) {
-        return ms_text_fail(err, text, "the count '%s' is not a whole number from 1 to %d", ms_word_quote(word).text,
+    if (!ms_text_to_integer(&count, word) || count < 1 || count > MS_MANIFEST_MAX_PARTICLES) {
+        return ms_text_fail(err, text, "the count '%s' is not a whole number from 1 to %d", ms_text_quote(word).text,
                             MS_MANIFEST_MAX_PARTICLES);
     }
     *particles = (uint64_t)count;
@@ -96,8 +96,8 @@ static ms_status read_count(uint64_t *particles, const ms_word *word, const ms_t
 static ms_status read_tolerance(double *tolerance, const ms_word *word, const ms_text *text, ms_error *err)
 {
     *tolerance = (double)NAN;
-    if (word->length > 0 && (!ms_word_double(tolerance, word) || !(*tolerance >= 0 && *tolerance <= 1))) {
-        return ms_text_fail(err, text, "the tolerance '%s' is not a number from 0 to 1", ms_word_quote(word).text);
+    if (word->length > 0 && (!ms_text_to_double(tolerance, word) || !(*tolerance >= 0 && *tolerance <= 1))) {
+        return ms_text_fail(err, text, "the tolerance '%s' is not a number from 0 to 1", ms_text_quote(word).text);
     }
     return MS_OK;
 }
@@ -113,7 +113,7 @@ static ms_status read_row(ms_manifest *manifest, int columns, ms_text *text, ms_
     }
     if (fields != columns || field[SHAPE].length == 0) {
         return ms_text_fail(err, text, "'%s' is not a shape and %d more columns, as the header says",
-                            ms_word_quote(&line).text, columns - 1);
+                            ms_text_quote(&line).text, columns - 1);
     }
     if (manifest->count == MS_MANIFEST_MAX_SHAPES) {
         return ms_text_fail(err, text, "more than %d shapes", MS_MANIFEST_MAX_SHAPES);
@@ -160,7 +160,7 @@ ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *er
         manifest->row ? ms_file_read(&bytes, path, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the manifest");
     if (status == MS_OK) {
         status = parse(manifest, &bytes, path, err);
-        ms_bytes_free(&bytes);
+        ms_file_free(&bytes);
     }
     if (status != MS_OK) {
         ms_manifest_free(manifest);

@@ -108,7 +108,7 @@ static ms_status choose_alone(ms_scene_shape *shape, const ms_goal *goal, ms_err
 }
 
 /* Where a method gave fewer spheres than asked for, the better of both clumps stands at their number. */
-static void settle_numbers(ms_scene_shape *shape)
+static void choose_numbers(ms_scene_shape *shape)
 {
     for (size_t n = shape->most; n >= 1; n--) {
         const size_t have = shape->clump[n - 1].n_spheres;
@@ -139,7 +139,7 @@ static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const 
     shape->most = count;
     const ms_status status = ms_curve_clumps(shape->score, shape->clump, clump, generator, run, max_voxels, err);
     if (status == MS_OK) {
-        settle_numbers(shape);
+        choose_numbers(shape);
     }
     return status;
 }
@@ -236,7 +236,7 @@ static ms_status choose_together(ms_scene *scene, const ms_share *share, size_t 
     return status;
 }
 
-ms_status ms_scene_settle(ms_scene *scene, const ms_goal *goal, ms_error *err)
+ms_status ms_scene_choose(ms_scene *scene, const ms_goal *goal, ms_error *err)
 {
     size_t *n = malloc(scene->count * sizeof *n);
     ms_share *share = malloc(scene->count * sizeof *share);

@@ -46,7 +46,7 @@ typedef struct ms_scene_shape {
     ms_score *score;
     double *dice;  /* D alone */
     json_t *input; /* as ms_report_input_json */
-    size_t chosen; /* number of spheres, after ms_scene_settle */
+    size_t chosen; /* number of spheres, after ms_scene_choose */
 } ms_scene_shape;
 
 /** A zeroed struct is empty. */
@@ -80,7 +80,7 @@ ms_status ms_scene_make(ms_scene *scene, const ms_manifest *manifest, const ms_s
                         ms_error *err);
 
 /** Chooses a template of each shape. @return MS_OK; MS_ERR_LIMIT; MS_ERR_NOMEM; as ms_allocate_budget and _error */
-ms_status ms_scene_settle(ms_scene *scene, const ms_goal *goal, ms_error *err);
+ms_status ms_scene_choose(ms_scene *scene, const ms_goal *goal, ms_error *err);
 
 const ms_clump *ms_scene_clump(const ms_scene_shape *shape);
 const ms_score *ms_scene_score(const ms_scene_shape *shape);

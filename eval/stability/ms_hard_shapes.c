@@ -23,7 +23,7 @@ const ms_hard_shape ms_hard_shapes[] = {
     {0}};
 
 /* The flags with a voxel size in the place of a diameter. */
-static ms_status settle_voxels(ms_input_flags *flags, const ms_hard_shape *shape, const ms_mesh *mesh, ms_error *err)
+static ms_status choose_voxels(ms_input_flags *flags, const ms_hard_shape *shape, const ms_mesh *mesh, ms_error *err)
 {
     ms_body body;
     ms_status status = ms_inertia_mesh(&body, mesh, err);
@@ -36,14 +36,14 @@ static ms_status settle_voxels(ms_input_flags *flags, const ms_hard_shape *shape
     return MS_OK;
 }
 
-ms_status ms_hard_shape_make(ms_input *input, const ms_hard_shape *shape, const ms_input_flags *flags, ms_error *err)
+ms_status ms_hard_shapes_make(ms_input *input, const ms_hard_shape *shape, const ms_input_flags *flags, ms_error *err)
 {
     ms_input_flags own = *flags;
     memset(input, 0, sizeof *input);
     input->path = shape->name;
     ms_status status = ms_shape_make(&input->mesh, ms_shape_find(shape->kind, err), shape->value, err);
     if (status == MS_OK) {
-        status = settle_voxels(&own, shape, &input->mesh, err);
+        status = choose_voxels(&own, shape, &input->mesh, err);
     }
     if (status == MS_OK && shape->holes > 0) {
         own.allow_open = 1;
@@ -54,7 +54,7 @@ ms_status ms_hard_shape_make(ms_input *input, const ms_hard_shape *shape, const 
     }
     if (status == MS_OK) {
         const ms_bytes bytes = {(uint8_t *)input->mesh.vertex, input->mesh.n_vertices * sizeof *input->mesh.vertex};
-        input->checksum = ms_bytes_checksum(&bytes);
+        input->checksum = ms_file_checksum(&bytes);
         status = ms_input_target(input, &own, err);
     }
     if (status != MS_OK) {

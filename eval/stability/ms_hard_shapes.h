@@ -22,6 +22,6 @@ extern const ms_hard_shape ms_hard_shapes[];
  * @param[out] input freed by ms_input_free; empty on failure
  * @return MS_OK; as ms_shape_make, ms_input_target
  */
-ms_status ms_hard_shape_make(ms_input *input, const ms_hard_shape *shape, const ms_input_flags *flags, ms_error *err);
+ms_status ms_hard_shapes_make(ms_input *input, const ms_hard_shape *shape, const ms_input_flags *flags, ms_error *err);
 
 #endif

@@ -20,12 +20,12 @@ static gsl_rng *make_random(uint64_t seed, ms_error *err)
     return random;
 }
 
-ms_motion ms_motion_none(void)
+ms_motion ms_perturb_motion_none(void)
 {
     return (ms_motion){.turn = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 }
 
-ms_motion ms_motion_axis_turn(int which)
+ms_motion ms_perturb_motion_axis_turn(int which)
 {
     static const int order[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
     const int *to = order[which / 4];
@@ -38,11 +38,11 @@ ms_motion ms_motion_axis_turn(int which)
     return motion;
 }
 
-ms_status ms_motion_random_turn(ms_motion *motion, uint64_t seed, ms_error *err)
+ms_status ms_perturb_motion_random_turn(ms_motion *motion, uint64_t seed, ms_error *err)
 {
     double q[4];
     gsl_rng *random = make_random(seed, err);
-    *motion = ms_motion_none();
+    *motion = ms_perturb_motion_none();
     if (!random) {
         return MS_ERR_NOMEM;
     }
@@ -56,7 +56,7 @@ ms_status ms_motion_random_turn(ms_motion *motion, uint64_t seed, ms_error *err)
     return MS_OK;
 }
 
-void ms_motion_apply(ms_mesh *mesh, const ms_motion *motion)
+void ms_perturb_motion_apply(ms_mesh *mesh, const ms_motion *motion)
 {
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         double *p = mesh->vertex[v], moved[3];
@@ -67,7 +67,7 @@ void ms_motion_apply(ms_mesh *mesh, const ms_motion *motion)
     }
 }
 
-void ms_motion_undo(ms_clump *clump, const ms_motion *motion)
+void ms_perturb_motion_undo(ms_clump *clump, const ms_motion *motion)
 {
     for (size_t s = 0; s < clump->n_spheres; s++) {
         double *p = clump->sphere[s].centre, moved[3];

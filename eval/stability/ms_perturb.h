@@ -19,10 +19,10 @@ typedef struct ms_motion {
 enum { MS_MOTION_AXIS_TURNS = 24 };
 
 /** Leaves everything where it is. */
-ms_motion ms_motion_none(void);
+ms_motion ms_perturb_motion_none(void);
 
 /** One of the rotations of the cube; 0 leaves everything where it is. Exact. @param which 0 to 23 */
-ms_motion ms_motion_axis_turn(int which);
+ms_motion ms_perturb_motion_axis_turn(int which);
 
 /**
  * A random rotation, uniform over all of them.
@@ -32,13 +32,13 @@ ms_motion ms_motion_axis_turn(int which);
  *
  * Source: unit quaternions uniform on the sphere of four dimensions (gsl_ran_dir_nd).
  */
-ms_status ms_motion_random_turn(ms_motion *motion, uint64_t seed, ms_error *err);
+ms_status ms_perturb_motion_random_turn(ms_motion *motion, uint64_t seed, ms_error *err);
 
 /** Moves the vertices. */
-void ms_motion_apply(ms_mesh *mesh, const ms_motion *motion);
+void ms_perturb_motion_apply(ms_mesh *mesh, const ms_motion *motion);
 
-/** Moves the centres of the spheres back: what ms_motion_apply did is undone, exactly where turn and sums are exact. */
-void ms_motion_undo(ms_clump *clump, const ms_motion *motion);
+/** Moves the centres of the spheres back: what ms_perturb_motion_apply did is undone, exactly where turn and sums are exact. */
+void ms_perturb_motion_undo(ms_clump *clump, const ms_motion *motion);
 
 /** A copy of its own. @param[out] out the caller frees it; empty on failure @return MS_OK; MS_ERR_ARG; MS_ERR_NOMEM */
 ms_status ms_perturb_copy(ms_mesh *out, const ms_mesh *mesh, ms_error *err);

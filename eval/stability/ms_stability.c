@@ -18,12 +18,12 @@ static const char *const OUTCOMES[] = {MS_OUTCOME_LIST(OUTCOME_NAME)};
 /* What --until-dice allows, over the number of spheres asked for. */
 enum { UNTIL_FACTOR = 10, MOST_REFINED = 2 };
 
-const char *ms_change_name(ms_change change)
+const char *ms_stability_change_name(ms_change change)
 {
     return CHANGES[change];
 }
 
-ms_status ms_change_find(ms_change *change, const char *name, ms_error *err)
+ms_status ms_stability_change_find(ms_change *change, const char *name, ms_error *err)
 {
     char names[256] = "";
     for (int c = MS_CHANGE_NONE + 1; c < MS_CHANGES; c++) {
@@ -36,7 +36,7 @@ ms_status ms_change_find(ms_change *change, const char *name, ms_error *err)
     return ms_fail(err, MS_ERR_ARG, "there is no perturbation '%.40s'; choose from %s", name, names);
 }
 
-int ms_change_runs(ms_change change, int runs)
+int ms_stability_change_runs(ms_change change, int runs)
 {
     const int most = change == MS_CHANGE_NONE     ? 1
                      : change == MS_CHANGE_AXES   ? MS_MOTION_AXIS_TURNS - 1
@@ -57,7 +57,7 @@ static double level_of(const ms_stability *s, ms_change change, int number)
     case MS_CHANGE_NONE:
         return 0;
     case MS_CHANGE_AXES:
-        return 1 + (number - 1) * (MS_MOTION_AXIS_TURNS - 1) / ms_change_runs(change, s->runs);
+        return 1 + (number - 1) * (MS_MOTION_AXIS_TURNS - 1) / ms_stability_change_runs(change, s->runs);
     case MS_CHANGE_RESOLUTION:
         return ladder(0.5, 2, number, s->runs);
     case MS_CHANGE_NOISE:
@@ -124,17 +124,17 @@ static ms_status change_mesh(changed *c, const ms_stability_run *run, const ms_i
 {
     const double diameter = 2 * ms_target_equivalent_radius(&input->target);
     const uint64_t seed = (uint64_t)run->level;
-    c->motion = ms_motion_none();
+    c->motion = ms_perturb_motion_none();
     ms_status status = ms_perturb_copy(&c->mesh, &input->mesh, err);
     if (status != MS_OK) {
         return status;
     }
     switch (run->change) {
     case MS_CHANGE_AXES:
-        c->motion = ms_motion_axis_turn((int)run->level);
+        c->motion = ms_perturb_motion_axis_turn((int)run->level);
         break;
     case MS_CHANGE_ROTATION:
-        status = ms_motion_random_turn(&c->motion, seed, err);
+        status = ms_perturb_motion_random_turn(&c->motion, seed, err);
         break;
     case MS_CHANGE_SHIFT:
         choose_shift(c->motion.shift, run->voxel_size, run->level);
@@ -154,7 +154,7 @@ static ms_status change_mesh(changed *c, const ms_stability_run *run, const ms_i
     default: /* the mesh stays */
         break;
     }
-    ms_motion_apply(&c->mesh, &c->motion);
+    ms_perturb_motion_apply(&c->mesh, &c->motion);
     return status;
 }
 
@@ -183,7 +183,7 @@ static void free_changed(changed *c)
 static uint64_t sum_spheres(const ms_clump *clump)
 {
     const ms_bytes bytes = {(uint8_t *)clump->sphere, clump->n_spheres * sizeof *clump->sphere};
-    return ms_bytes_checksum(&bytes);
+    return ms_file_checksum(&bytes);
 }
 
 /* The number of spheres at fixed D, by the method's own stop rule on the shape as it was changed. */
@@ -210,7 +210,7 @@ static ms_status run_method(ms_stability_run *run, const changed *c, const ms_st
     ms_status status = ms_generator_run(&clump, &run->reason, s->method->generator, &job, err);
     run->seconds = omp_get_wtime() - start;
     if (status == MS_OK) {
-        ms_motion_undo(&clump, &c->motion);
+        ms_perturb_motion_undo(&clump, &c->motion);
         run->checksum = sum_spheres(&clump);
         status = ms_metrics_compute(&run->metrics, NULL, &s->input->target, &clump, ms_input_max_voxels(s->flags), err);
     }
@@ -281,7 +281,7 @@ void ms_stability_header(FILE *stream)
 /* Empty where there is none. */
 static void put_number(FILE *stream, double value)
 {
-    fprintf(stream, ",%s", isfinite(value) ? ms_number_text(value).text : "");
+    fprintf(stream, ",%s", isfinite(value) ? ms_text_of_number(value).text : "");
 }
 
 static void put_results(FILE *stream, const ms_stability_run *run)

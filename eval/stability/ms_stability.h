@@ -27,13 +27,13 @@ typedef enum ms_change { MS_CHANGE_LIST(MS_CHANGE_ENUM) MS_CHANGES } ms_change;
 #undef MS_CHANGE_ENUM
 
 /** "none", "axes", ... */
-const char *ms_change_name(ms_change change);
+const char *ms_stability_change_name(ms_change change);
 
 /** @return MS_OK; MS_ERR_ARG with the names */
-ms_status ms_change_find(ms_change *change, const char *name, ms_error *err);
+ms_status ms_stability_change_find(ms_change *change, const char *name, ms_error *err);
 
 /** How many different levels there are, of so many asked for: not all changes have as many. */
-int ms_change_runs(ms_change change, int runs);
+int ms_stability_change_runs(ms_change change, int runs);
 
 /** How a run ended. */
 #define MS_OUTCOME_LIST(X)                                                  \
@@ -84,7 +84,7 @@ typedef struct ms_stability_run {
  * Changes the shape, runs the method on it, moves the spheres back and judges them on the grid of the unchanged shape.
  * A failure is a result: it stands in the run.
  *
- * @param number from 1 to ms_change_runs
+ * @param number from 1 to ms_stability_change_runs
  */
 void ms_stability_try(ms_stability_run *run, const ms_stability *s, ms_change change, int number);
 

@@ -80,7 +80,7 @@ static ms_status draw_all(album *a, ms_error *err)
         .x_label = "D of the unchanged shape", .y_label = "D of the changed shape", .x_log = 1, .y_log = 1};
     a->n_points = a->n_series = 0;
     for (int c = 0; c < MS_CHANGES; c++) {
-        begin_series(a, ms_change_name((ms_change)c), MS_CHART_POINTS);
+        begin_series(a, ms_stability_change_name((ms_change)c), MS_CHART_POINTS);
         for (size_t r = 0; r < a->n_runs; r++) {
             const ms_stability_run *run = &a->runs[r];
             if (is_of(a, run, (ms_change)c)) {
@@ -107,7 +107,7 @@ static ms_status draw_levels(album *a, ms_change change, const char *x_label, ms
         }
         add_point(a, run->level, run->metrics.score.dice / unchanged_dice(a, run), "");
     }
-    return a->n_points ? draw(a, ms_change_name(change), chart, err) : MS_OK;
+    return a->n_points ? draw(a, ms_stability_change_name(change), chart, err) : MS_OK;
 }
 
 static ms_status draw_method(album *a, ms_error *err)

@@ -8,7 +8,7 @@
 
 #include "cli/ms_report.h"
 
-ms_spread ms_spread_of(double *values, size_t count)
+ms_statistics ms_statistics_of(double *values, size_t count)
 {
     size_t n = 0;
     for (size_t v = 0; v < count; v++) {
@@ -17,20 +17,20 @@ ms_spread ms_spread_of(double *values, size_t count)
         }
     }
     if (n == 0) {
-        return (ms_spread){0, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
+        return (ms_statistics){0, (double)NAN, (double)NAN, (double)NAN, (double)NAN};
     }
     gsl_sort(values, 1, n);
-    return (ms_spread){n, values[0], gsl_stats_median_from_sorted_data(values, 1, n), values[n - 1],
-                       n > 1 ? gsl_stats_sd(values, 1, n) : 0};
+    return (ms_statistics){n, values[0], gsl_stats_median_from_sorted_data(values, 1, n), values[n - 1],
+                           n > 1 ? gsl_stats_sd(values, 1, n) : 0};
 }
 
-static int is_of(const ms_spread_group *group, const ms_stability_run *run)
+static int is_of(const ms_statistics_group *group, const ms_stability_run *run)
 {
     return run->change == group->change && run->method == group->method &&
            (!group->shape || strcmp(run->shape, group->shape) == 0);
 }
 
-static void count_outcome(ms_spread_group *g, const ms_stability_run *run)
+static void count_outcome(ms_statistics_group *g, const ms_stability_run *run)
 {
     const int was_failed = g->failed > 0;
     g->unusable += run->outcome == MS_OUTCOME_UNUSABLE;
@@ -43,7 +43,7 @@ static void count_outcome(ms_spread_group *g, const ms_stability_run *run)
 }
 
 /* D of a run in a group: that of all shapes sets it over D of the unchanged shape. */
-static double weigh_dice(ms_spread_group *g, double *largest, const ms_stability_run *run,
+static double weigh_dice(ms_statistics_group *g, double *largest, const ms_stability_run *run,
                          const ms_stability_run *unchanged)
 {
     const double dice = run->metrics.score.dice;
@@ -59,7 +59,7 @@ static double weigh_dice(ms_spread_group *g, double *largest, const ms_stability
 }
 
 /* `room` has three numbers for each run. */
-static void measure(ms_spread_group *g, const ms_stability_run *runs, size_t n_runs, double *room)
+static void measure(ms_statistics_group *g, const ms_stability_run *runs, size_t n_runs, double *room)
 {
     double *dice = room, *inertia = room + n_runs, *until = room + 2 * n_runs, largest = 1;
     size_t n = 0;
@@ -78,17 +78,17 @@ static void measure(ms_spread_group *g, const ms_stability_run *runs, size_t n_r
             until[n++] = run->spheres_until ? (double)run->spheres_until : (double)NAN;
         }
     }
-    g->dice = ms_spread_of(dice, n);
-    g->inertia = ms_spread_of(inertia, n);
-    g->until = ms_spread_of(until, n);
+    g->dice = ms_statistics_of(dice, n);
+    g->inertia = ms_statistics_of(inertia, n);
+    g->until = ms_statistics_of(until, n);
 }
 
 /* The groups that the runs fall into, not yet measured. @return how many */
-static size_t list_groups(ms_spread_group *groups, const ms_stability_run *runs, size_t n_runs, int all_shapes)
+static size_t list_groups(ms_statistics_group *groups, const ms_stability_run *runs, size_t n_runs, int all_shapes)
 {
     size_t count = 0;
     for (size_t r = 0; r < n_runs; r++) {
-        const ms_spread_group next = {
+        const ms_statistics_group next = {
             .shape = all_shapes ? NULL : runs[r].shape, .method = runs[r].method, .change = runs[r].change};
         int known = 0;
         for (size_t g = count; g-- > 0 && !known;) {
@@ -101,8 +101,8 @@ static size_t list_groups(ms_spread_group *groups, const ms_stability_run *runs,
     return count;
 }
 
-ms_status ms_spread_group_runs(ms_spread_group **groups, size_t *count, const ms_stability_run *runs, size_t n_runs,
-                               ms_error *err)
+ms_status ms_statistics_group_runs(ms_statistics_group **groups, size_t *count, const ms_stability_run *runs,
+                                   size_t n_runs, ms_error *err)
 {
     double *room = malloc((3 * n_runs + 1) * sizeof *room);
     *groups = malloc((2 * n_runs + 1) * sizeof **groups);
@@ -133,7 +133,7 @@ static void print_number(FILE *stream, int width, int digits, double value)
     }
 }
 
-static void print_head(FILE *stream, const ms_spread_group *g, int until)
+static void print_head(FILE *stream, const ms_statistics_group *g, int until)
 {
     fprintf(stream, "%s\n  %-22s %-10s %4s %5s %6s %5s %8s %31s %17s%s\n", g->shape ? g->shape : "all shapes", "method",
             "changed", "runs", "same", "failed", "short", "unusable",
@@ -141,11 +141,11 @@ static void print_head(FILE *stream, const ms_spread_group *g, int until)
             until ? "    n at fixed D" : "");
 }
 
-static void print_group(FILE *stream, const ms_spread_group *g, int until)
+static void print_group(FILE *stream, const ms_statistics_group *g, int until)
 {
-    const ms_spread *d = &g->dice;
+    const ms_statistics *d = &g->dice;
     fprintf(stream, "  %-22s %-10s %4zu %5zu %6zu %5zu %8zu", ms_stability_label(g->method).text,
-            ms_change_name(g->change), g->runs, g->identical, g->failed, g->shorter, g->unusable);
+            ms_stability_change_name(g->change), g->runs, g->identical, g->failed, g->shorter, g->unusable);
     print_number(stream, 7, 4, d->least);
     print_number(stream, 7, 4, d->median);
     print_number(stream, 7, 4, d->most);
@@ -163,12 +163,12 @@ static void print_group(FILE *stream, const ms_spread_group *g, int until)
     fprintf(stream, "%s%s\n", g->worst ? "  worst: " : "", g->worst ? g->worst : "");
 }
 
-static int same_table(const ms_spread_group *a, const ms_spread_group *b)
+static int same_table(const ms_statistics_group *a, const ms_statistics_group *b)
 {
     return a->shape == b->shape || (a->shape && b->shape && strcmp(a->shape, b->shape) == 0);
 }
 
-void ms_spread_print(FILE *stream, const ms_spread_group *groups, size_t count, int until)
+void ms_statistics_print(FILE *stream, const ms_statistics_group *groups, size_t count, int until)
 {
     for (size_t g = 0; g < count; g++) {
         if (g == 0 || !same_table(&groups[g], &groups[g - 1])) {
@@ -177,36 +177,36 @@ void ms_spread_print(FILE *stream, const ms_spread_group *groups, size_t count, 
         print_group(stream, &groups[g], until);
     }
     for (size_t g = 0; g < count; g++) {
-        const ms_spread_group *at = &groups[g];
+        const ms_statistics_group *at = &groups[g];
         if (at->shape && at->cause) {
             fprintf(stream, "%s, %s, %s: %zu failed, %zu unusable: %s\n", at->shape,
-                    ms_stability_label(at->method).text, ms_change_name(at->change), at->failed, at->unusable,
+                    ms_stability_label(at->method).text, ms_stability_change_name(at->change), at->failed, at->unusable,
                     at->cause->text);
         }
     }
 }
 
-static json_t *spread_json(const ms_spread *s)
+static json_t *spread_json(const ms_statistics *s)
 {
     return json_pack("{s:I,s:o,s:o,s:o,s:o}", "count", (json_int_t)s->count, "min", ms_report_number(s->least),
                      "median", ms_report_number(s->median), "max", ms_report_number(s->most), "deviation",
                      ms_report_number(s->deviation));
 }
 
-static json_t *group_json(const ms_spread_group *g)
+static json_t *group_json(const ms_statistics_group *g)
 {
-    return json_pack("{s:o,s:o,s:s,s:I,s:I,s:I,s:I,s:I,s:I,s:o,s:o,s:o,s:o,s:o}", "shape",
-                     g->shape ? ms_report_text(g->shape) : json_null(), "method",
-                     ms_report_text(ms_stability_label(g->method).text), "perturbation", ms_change_name(g->change),
-                     "runs", (json_int_t)g->runs, "identical", (json_int_t)g->identical, "failed",
-                     (json_int_t)g->failed, "short", (json_int_t)g->shorter, "unusable", (json_int_t)g->unusable,
-                     "not_reached", (json_int_t)g->not_reached, g->shape ? "dice" : "dice_ratio", spread_json(&g->dice),
-                     "inertia_error_spread", spread_json(&g->inertia), "n_until", spread_json(&g->until), "worst",
-                     g->worst ? ms_report_text(g->worst) : json_null(), "cause",
-                     g->cause ? ms_report_text(g->cause->text) : json_null());
+    return json_pack(
+        "{s:o,s:o,s:s,s:I,s:I,s:I,s:I,s:I,s:I,s:o,s:o,s:o,s:o,s:o}", "shape",
+        g->shape ? ms_report_text(g->shape) : json_null(), "method", ms_report_text(ms_stability_label(g->method).text),
+        "perturbation", ms_stability_change_name(g->change), "runs", (json_int_t)g->runs, "identical",
+        (json_int_t)g->identical, "failed", (json_int_t)g->failed, "short", (json_int_t)g->shorter, "unusable",
+        (json_int_t)g->unusable, "not_reached", (json_int_t)g->not_reached, g->shape ? "dice" : "dice_ratio",
+        spread_json(&g->dice), "inertia_error_spread", spread_json(&g->inertia), "n_until", spread_json(&g->until),
+        "worst", g->worst ? ms_report_text(g->worst) : json_null(), "cause",
+        g->cause ? ms_report_text(g->cause->text) : json_null());
 }
 
-json_t *ms_spread_json(const ms_spread_group *groups, size_t count)
+json_t *ms_statistics_json(const ms_statistics_group *groups, size_t count)
 {
     json_t *json = json_array();
     for (size_t g = 0; g < count && json; g++) {

@@ -8,17 +8,17 @@
 #include "ms_stability.h"
 
 /** Of values; all NAN if there are none. */
-typedef struct ms_spread {
+typedef struct ms_statistics {
     size_t count;
     double least, median, most;
     double deviation; /* standard deviation, of a sample; 0 of a single value */
-} ms_spread;
+} ms_statistics;
 
 /** Leaves out what is not finite; sorts `values`. */
-ms_spread ms_spread_of(double *values, size_t count);
+ms_statistics ms_statistics_of(double *values, size_t count);
 
 /** The runs of one method with one change, on one shape or on all. */
-typedef struct ms_spread_group {
+typedef struct ms_statistics_group {
     const char *shape;       /* borrowed; NULL: all */
     const ms_method *method; /* borrowed */
     ms_change change;
@@ -26,12 +26,12 @@ typedef struct ms_spread_group {
     size_t failed, shorter, unusable;
     size_t identical;      /* the spheres of the unchanged shape, to the last bit */
     size_t not_reached;    /* of --until-dice */
-    ms_spread dice;        /* D; of all shapes: D over that of the unchanged shape */
-    ms_spread inertia;     /* weighted mean error */
-    ms_spread until;       /* numbers of spheres */
+    ms_statistics dice;    /* D; of all shapes: D over that of the unchanged shape */
+    ms_statistics inertia; /* weighted mean error */
+    ms_statistics until;   /* numbers of spheres */
     const char *worst;     /* of all shapes: where D over the unchanged one is largest; NULL without */
     const ms_error *cause; /* of the first run that failed, or else was unusable; NULL without */
-} ms_spread_group;
+} ms_statistics_group;
 
 /**
  * Groups runs.
@@ -42,13 +42,13 @@ typedef struct ms_spread_group {
  * @param      runs   borrowed while the groups are used; those of one group stand together
  * @return MS_OK; MS_ERR_NOMEM
  */
-ms_status ms_spread_group_runs(ms_spread_group **groups, size_t *count, const ms_stability_run *runs, size_t n_runs,
-                               ms_error *err);
+ms_status ms_statistics_group_runs(ms_statistics_group **groups, size_t *count, const ms_stability_run *runs,
+                                   size_t n_runs, ms_error *err);
 
 /** A table for people; the columns of --until-dice only if `until` is nonzero. */
-void ms_spread_print(FILE *stream, const ms_spread_group *groups, size_t count, int until);
+void ms_statistics_print(FILE *stream, const ms_statistics_group *groups, size_t count, int until);
 
 /** The same for machines; the caller owns it; NULL without memory. */
-json_t *ms_spread_json(const ms_spread_group *groups, size_t count);
+json_t *ms_statistics_json(const ms_statistics_group *groups, size_t count);
 
 #endif

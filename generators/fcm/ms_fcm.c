@@ -80,7 +80,7 @@ static const double SAME = 0.01;
 
 typedef struct fcm {
     const ms_run *run;
-    ms_fill_rule rule;
+    ms_random_spheres_rule rule;
     ms_nodes nodes;
     ms_cluster *cluster;
     size_t filled;     /* spheres to cluster */
@@ -140,19 +140,19 @@ static ms_status make_points(fcm *f, const ms_ball *ball, size_t count, ms_error
 
 static ms_status fill(fcm *f, ms_error *err)
 {
-    f->rule = (ms_fill_rule){.nodes_covered = option(f, NODES_COVERED),
-                             .least = (size_t)option(f, FILLING),
-                             .norm = (ms_norm)option(f, NORM),
-                             .offset = option(f, OFFSET),
-                             .tries = (size_t)option(f, TRIES),
-                             .seed = f->run->seed,
-                             .progress = f->run->progress,
-                             .progress_context = f->run->progress_context};
+    f->rule = (ms_random_spheres_rule){.nodes_covered = option(f, NODES_COVERED),
+                                       .least = (size_t)option(f, FILLING),
+                                       .norm = (ms_norm)option(f, NORM),
+                                       .offset = option(f, OFFSET),
+                                       .tries = (size_t)option(f, TRIES),
+                                       .seed = f->run->seed,
+                                       .progress = f->run->progress,
+                                       .progress_context = f->run->progress_context};
     ms_ball *ball = NULL;
     size_t count = 0;
     ms_status status = ms_nodes_of_target(&f->nodes, f->run->target, err);
     if (status == MS_OK) {
-        status = ms_fill(&ball, &count, f->run->target, &f->nodes, &f->rule, err);
+        status = ms_random_spheres(&ball, &count, f->run->target, &f->nodes, &f->rule, err);
     }
     if (status == MS_OK) {
         drop_small(ball, &count, f);
@@ -192,7 +192,7 @@ static double free_radius(const fcm *f, const double centre[3])
 {
     const ms_grid *grid = &f->run->target->grid;
     const size_t voxel = ms_grid_index(grid, (int)rint(centre[0]), (int)rint(centre[1]), (int)rint(centre[2]));
-    return grid->inside[voxel] ? ms_fill_radius(NULL, centre, f->run->target, &f->nodes, &f->rule) : 0;
+    return grid->inside[voxel] ? ms_random_spheres_radius(NULL, centre, f->run->target, &f->nodes, &f->rule) : 0;
 }
 
 static int is_new(const ms_ball *ball, const attempt *a)
@@ -232,7 +232,7 @@ static ms_status judge(attempt *a, const fcm *f, ms_error *err)
     ms_tally sum;
     const ms_status status = ms_raster_union(&sum, &target->grid, target->rule, a->ball, a->count, err);
     if (status == MS_OK) {
-        const ms_score score = ms_score_of(&sum, target->voxels);
+        const ms_score score = ms_metrics_score(&sum, target->voxels);
         a->dice = score.dice;
         a->reason = ms_stop_reached(&f->run->stop, target, &sum, a->count);
         if (a->reason == MS_STOP_NOT && f->off_volume > 0 && score.off_volume >= f->off_volume) {
@@ -356,7 +356,7 @@ static void remember(fcm *f, trials *t)
     t->first = swap;
 }
 
-/* The clump of n spheres; ms_solve. */
+/* The clump of n spheres; ms_bisect_count_solve. */
 static ms_status solve(void *context, ms_clump *clump, ms_stop_reason *reason, size_t n, ms_error *err)
 {
     fcm *f = context;
@@ -391,7 +391,7 @@ static ms_status make_clump(ms_clump *clump, ms_stop_reason *reason, fcm *f, ms_
     }
     if (ms_stop_has_measure(stop) || f->off_volume > 0) {
         const size_t most = stop->spheres > 0 ? stop->spheres : MS_CLUMP_MAX_SPHERES;
-        return ms_search(clump, reason, most, solve, f, err);
+        return ms_bisect_count(clump, reason, most, solve, f, err);
     }
     const ms_status status = solve(f, clump, reason, stop->spheres, err);
     if (*reason == MS_STOP_NOT) {

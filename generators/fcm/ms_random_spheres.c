@@ -72,8 +72,8 @@ static int draw(double centre[3], filling *f)
     return grid->inside[ms_grid_index(grid, voxel[0], voxel[1], voxel[2])];
 }
 
-double ms_fill_radius(size_t *touched, const double centre[3], const ms_target *target, const ms_nodes *nodes,
-                      const ms_fill_rule *rule)
+double ms_random_spheres_radius(size_t *touched, const double centre[3], const ms_target *target, const ms_nodes *nodes,
+                                const ms_random_spheres_rule *rule)
 {
     double distance;
     const size_t nearest = ms_nodes_nearest(&distance, nodes, centre, rule->norm);
@@ -97,13 +97,13 @@ static ms_status make_room(filling *f, ms_error *err)
     return MS_OK;
 }
 
-static int is_full(const filling *f, const ms_fill_rule *rule)
+static int is_full(const filling *f, const ms_random_spheres_rule *rule)
 {
     return f->count >= rule->least && (double)f->n_covered >= rule->nodes_covered * (double)f->nodes->count;
 }
 
 /* Keeps the spheres of a batch, one after the other, until the shape is full. */
-static void keep(filling *f, size_t drawn, const size_t *touched, const ms_fill_rule *rule)
+static void keep(filling *f, size_t drawn, const size_t *touched, const ms_random_spheres_rule *rule)
 {
     for (size_t b = 0; b < drawn && !is_full(f, rule); b++) {
         f->n_covered += !f->covered[touched[b]];
@@ -112,7 +112,7 @@ static void keep(filling *f, size_t drawn, const size_t *touched, const ms_fill_
     }
 }
 
-static void draw_batch(filling *f, size_t tries, const ms_fill_rule *rule)
+static void draw_batch(filling *f, size_t tries, const ms_random_spheres_rule *rule)
 {
     size_t drawn = 0, touched[BATCH];
     ms_ball *ball = f->ball + f->count;
@@ -121,12 +121,12 @@ static void draw_batch(filling *f, size_t tries, const ms_fill_rule *rule)
     }
 #pragma omp parallel for schedule(dynamic, 64)
     for (size_t b = 0; b < drawn; b++) {
-        ball[b].radius = ms_fill_radius(&touched[b], ball[b].centre, f->target, f->nodes, rule);
+        ball[b].radius = ms_random_spheres_radius(&touched[b], ball[b].centre, f->target, f->nodes, rule);
     }
     keep(f, drawn, touched, rule);
 }
 
-static ms_status out_of_tries(const filling *f, const ms_fill_rule *rule, ms_error *err)
+static ms_status out_of_tries(const filling *f, const ms_random_spheres_rule *rule, ms_error *err)
 {
     const double share = 100 * (double)f->n_covered / (double)f->nodes->count;
     return ms_fail(err, MS_ERR_LIMIT,
@@ -135,8 +135,8 @@ static ms_status out_of_tries(const filling *f, const ms_fill_rule *rule, ms_err
                    rule->tries, f->count, share, f->nodes->count, 100 * rule->nodes_covered);
 }
 
-ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,
-                  const ms_fill_rule *rule, ms_error *err)
+ms_status ms_random_spheres(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,
+                            const ms_random_spheres_rule *rule, ms_error *err)
 {
     filling f;
     *ball = NULL;

@@ -8,7 +8,7 @@
 MS_C_BEGIN
 
 /** When the filling is complete, and when it is given up. */
-typedef struct ms_fill_rule {
+typedef struct ms_random_spheres_rule {
     double nodes_covered; /* share of the nodes that have to be touched by a sphere, from 0 to 1 */
     size_t least;         /* as many spheres at least */
     ms_norm norm;         /* of the distance to a node */
@@ -17,7 +17,7 @@ typedef struct ms_fill_rule {
     uint64_t seed;
     ms_progress progress; /* told the number of filling spheres, D unknown; NULL: nobody listens */
     void *progress_context;
-} ms_fill_rule;
+} ms_random_spheres_rule;
 
 /**
  * Draws centres in the box of the shape. Those inside become spheres whose radius is the distance to the
@@ -35,16 +35,16 @@ typedef struct ms_fill_rule {
  * Source: MT19937 of GSL for the random numbers. Cost: tries * O(log nodes), all cores; the same spheres at any
  * number of threads.
  */
-ms_status ms_fill(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,
-                  const ms_fill_rule *rule, ms_error *err);
+ms_status ms_random_spheres(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,
+                            const ms_random_spheres_rule *rule, ms_error *err);
 
 /**
  * The radius that a sphere about a centre inside has.
  *
  * @param[out] touched the node that it touches; may be NULL
  */
-double ms_fill_radius(size_t *touched, const double centre[3], const ms_target *target, const ms_nodes *nodes,
-                      const ms_fill_rule *rule);
+double ms_random_spheres_radius(size_t *touched, const double centre[3], const ms_target *target, const ms_nodes *nodes,
+                                const ms_random_spheres_rule *rule);
 
 MS_C_END
 

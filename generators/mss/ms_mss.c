@@ -39,8 +39,8 @@ static const ms_option OPTIONS[] = {
 
 typedef struct mss {
     const ms_run *run;
-    mss_field field;
-    mss_candidate *candidates; /* maxima of E* where a sphere may be placed */
+    ms_mss_field field;
+    ms_mss_candidate *candidates; /* maxima of E* where a sphere may be placed */
     size_t n_candidates, room;
     double spacing; /* delta_min, in voxels */
     int too_small;  /* a maximum was passed over because its sphere would be too small */
@@ -61,7 +61,7 @@ static int confine(ms_ball *ball, mss *m)
     if (option(m, CONFINE) != 0) {
         allowed = -ms_closest_signed_distance(target->closest, centre);
     }
-    allowed = fmin(allowed, planes_distance(m->run->settings, centre));
+    allowed = fmin(allowed, ms_planes_distance(m->run->settings, centre));
     if (allowed < radius) {
         radius = allowed;
         ball->radius = allowed / target->grid.h;
@@ -74,7 +74,7 @@ static int confine(ms_ball *ball, mss *m)
 }
 
 /* The sphere at a maximum of E*: centre from E*, radius from E (3.4 iv). 0 if there is no room for one. */
-static int place_candidate(mss_candidate *c, mss *m, size_t voxel)
+static int place_candidate(ms_mss_candidate *c, mss *m, size_t voxel)
 {
     const ms_target *target = m->run->target;
     ms_peak peak;
@@ -124,7 +124,7 @@ static ms_status add_candidates(mss *m, const size_t *voxel, size_t count, ms_er
     const size_t first = m->n_candidates;
     if (m->n_candidates + count > m->room) {
         const size_t room = m->n_candidates + m->n_candidates / 2 + count;
-        mss_candidate *grown = realloc(m->candidates, room * sizeof *grown);
+        ms_mss_candidate *grown = realloc(m->candidates, room * sizeof *grown);
         if (!grown) {
             return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu maxima; use fewer cells", room);
         }
@@ -132,15 +132,15 @@ static ms_status add_candidates(mss *m, const size_t *voxel, size_t count, ms_er
         m->room = room;
     }
     for (size_t p = 0; p < count; p++) {
-        mss_candidate *next = &m->candidates[m->n_candidates];
+        ms_mss_candidate *next = &m->candidates[m->n_candidates];
         if (place_candidate(next, m, voxel[p])) {
             next->apart = HUGE_VAL;
             m->n_candidates++;
         }
     }
-    mss_candidate *added = m->candidates + first;
+    ms_mss_candidate *added = m->candidates + first;
     for (size_t s = 0; s < m->field.raster.n_balls; s++) {
-        mss_keep_apart(added, m->n_candidates - first, &m->field.raster.ball[s]);
+        ms_mss_select_keep_apart(added, m->n_candidates - first, &m->field.raster.ball[s]);
     }
     return MS_OK;
 }
@@ -158,7 +158,7 @@ static ms_status update_candidates(mss *m, size_t first_new, ms_error *err)
     }
     forget_candidates(m, lo, hi);
     for (size_t s = first_new; s < m->field.raster.n_balls; s++) {
-        mss_keep_apart(m->candidates, m->n_candidates, &m->field.raster.ball[s]);
+        ms_mss_select_keep_apart(m->candidates, m->n_candidates, &m->field.raster.ball[s]);
     }
     if (!changed) {
         return MS_OK;
@@ -189,7 +189,7 @@ static ms_status accept(ms_clump *clump, ms_stop_reason *reason, mss *m, size_t 
     return MS_OK;
 }
 
-/* The radius at the mean of several maxima: that of E there, if that is less (mss_rule). */
+/* The radius at the mean of several maxima: that of E there, if that is less (ms_mss_select_rule). */
 static int fit_mean(ms_ball *ball, void *context)
 {
     mss *m = context;
@@ -211,7 +211,7 @@ static void report(size_t chosen, void *context)
     const mss *m = context;
     if (m->run->progress) {
         m->run->progress(m->run->progress_context, m->field.raster.n_balls + chosen,
-                         ms_score_of(&m->sum, m->run->target->voxels).dice);
+                         ms_metrics_score(&m->sum, m->run->target->voxels).dice);
     }
 }
 
@@ -221,17 +221,17 @@ static void report(size_t chosen, void *context)
 static size_t choose(ms_ball *chosen, size_t limit, mss *m)
 {
     const int automatic = option(m, SPACING) == 0;
-    const mss_rule rule = {.spacing = m->spacing,
-                           .least_radius = automatic ? m->spacing / 2 : 0,
-                           .one_set = option(m, ORDER) == ORDER_GAIN,
-                           .may_wait = automatic && m->spacing > 1,
-                           .fit = fit_mean,
-                           .report = report,
-                           .context = m};
+    const ms_mss_select_rule rule = {.spacing = m->spacing,
+                                     .least_radius = automatic ? m->spacing / 2 : 0,
+                                     .one_set = option(m, ORDER) == ORDER_GAIN,
+                                     .may_wait = automatic && m->spacing > 1,
+                                     .fit = fit_mean,
+                                     .report = report,
+                                     .context = m};
     double centroid[3], unused;
     ms_target_to_voxels(centroid, &unused, &m->run->target->grid, m->run->target->body.centroid, 0);
-    return mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball, m->field.raster.n_balls,
-                      centroid, &rule);
+    return ms_mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball, m->field.raster.n_balls,
+                         centroid, &rule);
 }
 
 /* Adds the spheres of a step to S~ and to the clump, and finds the new maxima. */
@@ -239,7 +239,7 @@ static ms_status add_spheres(ms_clump *clump, ms_stop_reason *reason, mss *m, co
                              ms_error *err)
 {
     const size_t before = m->field.raster.n_balls;
-    ms_status status = mss_field_add(&m->field, chosen, count, err);
+    ms_status status = ms_mss_field_add(&m->field, chosen, count, err);
     if (status == MS_OK) {
         status = accept(clump, reason, m, before, err);
     }
@@ -268,7 +268,7 @@ static ms_status look_closer(ms_stop_reason *reason, mss *m, ms_error *err)
     }
     if ((double)m->field.weight < option(m, BOOST)) {
         m->spacing = first_spacing(m);
-        ms_status status = mss_field_set_weight(&m->field, m->field.weight + 1, err);
+        ms_status status = ms_mss_field_set_weight(&m->field, m->field.weight + 1, err);
         return status == MS_OK ? update_candidates(m, m->field.raster.n_balls, err) : status;
     }
     *reason = m->too_small ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
@@ -301,7 +301,7 @@ static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run 
     if (run->settings->value[CONFINE] != 0 && (!run->target->closest || !run->target->closed)) {
         return ms_fail(err, MS_ERR_ARG, "confine needs a closed mesh; this shape is a volume or an open mesh");
     }
-    ms_status status = mss_field_init(&m.field, run->target, run->settings, err);
+    ms_status status = ms_mss_field_init(&m.field, run->target, run->settings, err);
     if (status == MS_OK) {
         m.spacing = first_spacing(&m);
         status = update_candidates(&m, 0, err);
@@ -310,7 +310,7 @@ static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run 
         status = step(clump, reason, &m, err);
         report(0, &m);
     }
-    mss_field_free(&m.field);
+    ms_mss_field_free(&m.field);
     free(m.candidates);
     return status;
 }

@@ -38,7 +38,7 @@ static void box_include(box *b, int from, int to, int j, int k)
     }
 }
 
-ms_status mss_field_init(mss_field *field, const ms_target *target, const ms_settings *settings, ms_error *err)
+ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const ms_settings *settings, ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(&target->grid);
     float deepest = 0;
@@ -51,7 +51,7 @@ ms_status mss_field_init(mss_field *field, const ms_target *target, const ms_set
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the field E* of %zu voxels; use fewer cells", voxels);
     }
     if (settings->n_planes) {
-        planes_cut(field->own_e, target, settings);
+        ms_planes_cut(field->own_e, target, settings);
     }
     field->e = settings->n_planes ? field->own_e : target->distance;
 #pragma omp parallel for reduction(max : deepest)
@@ -64,7 +64,7 @@ ms_status mss_field_init(mss_field *field, const ms_target *target, const ms_set
     return ms_raster_alloc(&field->raster, &target->grid, target->rule, err);
 }
 
-void mss_field_free(mss_field *field)
+void ms_mss_field_free(ms_mss_field *field)
 {
     ms_raster_free(&field->raster);
     free(field->star);
@@ -72,18 +72,18 @@ void mss_field_free(mss_field *field)
 }
 
 /* E* = E + w (E - E~), and back. */
-static float star_of(const mss_field *field, float e, float e_union)
+static float star_of(const ms_mss_field *field, float e, float e_union)
 {
     return (1 + field->weight) * e - field->weight * e_union;
 }
 
-static float union_of(const mss_field *field, float e, float star)
+static float union_of(const ms_mss_field *field, float e, float star)
 {
     return ((1 + field->weight) * e - star) / field->weight;
 }
 
 /* Which voxels of a part S~ covers. */
-static void copy_covered(uint8_t *covered, const mss_field *field, const box *part)
+static void copy_covered(uint8_t *covered, const ms_mss_field *field, const box *part)
 {
     const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
 #pragma omp parallel for
@@ -98,7 +98,7 @@ static void copy_covered(uint8_t *covered, const mss_field *field, const box *pa
     }
 }
 
-static ms_status update_whole(mss_field *field, ms_error *err)
+static ms_status update_whole(ms_mss_field *field, ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(&field->target->grid);
     box all = {{0, 0, 0}, {0, 0, 0}};
@@ -131,7 +131,7 @@ static double gap(int at, int lo, int hi)
  * The voxels whose E~ may change: those that are covered now, and those that had their
  * nearest background voxel among these, which then was within their old E~.
  */
-static box changed_box(const mss_field *field)
+static box changed_box(const ms_mss_field *field)
 {
     const ms_grid *grid = &field->target->grid;
     box covered, changed;
@@ -172,7 +172,7 @@ static box changed_box(const mss_field *field)
     return changed;
 }
 
-static float deepest_in(const mss_field *field, const box *b)
+static float deepest_in(const ms_mss_field *field, const box *b)
 {
     float deepest = 0;
     for (int k = b->lo[2]; k < b->hi[2]; k++) {
@@ -203,7 +203,7 @@ static int depth_in_part(const box *part, const int n[3], int i, int j, int k)
 }
 
 /* Writes E* of the changed voxels; 0 if a distance may be to background beyond the part. */
-static int write_star(mss_field *field, const float *distance, const box *part, const box *changed)
+static int write_star(ms_mss_field *field, const float *distance, const box *part, const box *changed)
 {
     const ms_grid *grid = &field->target->grid;
     const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
@@ -227,7 +227,7 @@ static int write_star(mss_field *field, const float *distance, const box *part, 
 }
 
 /* @param[out] done 0 if the part proved too small */
-static ms_status update_part(int *done, mss_field *field, const box *part, const box *changed, ms_error *err)
+static ms_status update_part(int *done, ms_mss_field *field, const box *part, const box *changed, ms_error *err)
 {
     const size_t voxels = box_voxels(part);
     const int n[3] = {part->hi[0] - part->lo[0], part->hi[1] - part->lo[1], part->hi[2] - part->lo[2]};
@@ -251,7 +251,7 @@ static ms_status update_part(int *done, mss_field *field, const box *part, const
     return status;
 }
 
-ms_status mss_field_add(mss_field *field, const ms_ball *balls, size_t count, ms_error *err)
+ms_status ms_mss_field_add(ms_mss_field *field, const ms_ball *balls, size_t count, ms_error *err)
 {
     const int *n = field->target->grid.n;
     ms_status status = ms_raster_add(&field->raster, balls, count, err);
@@ -271,7 +271,7 @@ ms_status mss_field_add(mss_field *field, const ms_ball *balls, size_t count, ms
     return done || status != MS_OK ? status : update_whole(field, err);
 }
 
-ms_status mss_field_set_weight(mss_field *field, float weight, ms_error *err)
+ms_status ms_mss_field_set_weight(ms_mss_field *field, float weight, ms_error *err)
 {
     field->weight = weight;
     return update_whole(field, err);

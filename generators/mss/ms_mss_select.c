@@ -10,7 +10,7 @@ static const double EQUAL = 1e-6;
 
 static int by_rank(const void *first, const void *second)
 {
-    const mss_candidate *a = first, *b = second;
+    const ms_mss_candidate *a = first, *b = second;
     if (a->rank != b->rank) {
         return a->rank > b->rank ? -1 : 1;
     }
@@ -19,7 +19,7 @@ static int by_rank(const void *first, const void *second)
 
 static int by_voxel(const void *first, const void *second)
 {
-    const mss_candidate *a = first, *b = second;
+    const ms_mss_candidate *a = first, *b = second;
     return a->voxel < b->voxel ? -1 : a->voxel > b->voxel;
 }
 
@@ -30,7 +30,7 @@ static double least_square(double spacing)
 }
 
 /* The mean of a cluster, with the least radius of its members. */
-static ms_ball mean_ball(const mss_candidate *cluster, size_t count)
+static ms_ball mean_ball(const ms_mss_candidate *cluster, size_t count)
 {
     ms_ball mean = {{0, 0, 0}, cluster[0].ball.radius};
     for (size_t m = 0; m < count; m++) {
@@ -43,7 +43,7 @@ static ms_ball mean_ball(const mss_candidate *cluster, size_t count)
 }
 
 /* Refined maxima of a plateau of two voxels stand in one place. */
-static int in_one_place(const mss_candidate *cluster, size_t count)
+static int in_one_place(const ms_mss_candidate *cluster, size_t count)
 {
     for (size_t m = 1; m < count; m++) {
         if (ms_squared_distance(cluster[m].ball.centre, cluster[0].ball.centre) > EQUAL) {
@@ -55,13 +55,13 @@ static int in_one_place(const mss_candidate *cluster, size_t count)
 
 /* Moves all that hang together with the first candidate by steps below `spacing` to the
  * front; how many they are. */
-static size_t gather_cluster(mss_candidate *c, size_t count, double spacing)
+static size_t gather_cluster(ms_mss_candidate *c, size_t count, double spacing)
 {
     size_t size = 1;
     for (size_t done = 0; done < size; done++) {
         for (size_t m = size; m < count; m++) {
             if (ms_squared_distance(c[done].ball.centre, c[m].ball.centre) < least_square(spacing)) {
-                const mss_candidate swap = c[m];
+                const ms_mss_candidate swap = c[m];
                 c[m] = c[size];
                 c[size++] = swap;
             }
@@ -70,14 +70,14 @@ static size_t gather_cluster(mss_candidate *c, size_t count, double spacing)
     return size;
 }
 
-void mss_keep_apart(mss_candidate *candidates, size_t count, const ms_ball *sphere)
+void ms_mss_select_keep_apart(ms_mss_candidate *candidates, size_t count, const ms_ball *sphere)
 {
     for (size_t m = 0; m < count; m++) {
         candidates[m].apart = fmin(candidates[m].apart, ms_squared_distance(candidates[m].ball.centre, sphere->centre));
     }
 }
 
-static void keep_apart_now(mss_candidate *c, size_t count, const ms_ball *sphere)
+static void keep_apart_now(ms_mss_candidate *c, size_t count, const ms_ball *sphere)
 {
     for (size_t m = 0; m < count; m++) {
         c[m].now = fmin(c[m].now, ms_squared_distance(c[m].ball.centre, sphere->centre));
@@ -85,7 +85,7 @@ static void keep_apart_now(mss_candidate *c, size_t count, const ms_ball *sphere
 }
 
 /* Moves to the front those that are farthest from all spheres; how many they are. */
-static size_t gather_farthest(mss_candidate *c, size_t count)
+static size_t gather_farthest(ms_mss_candidate *c, size_t count)
 {
     double most = -HUGE_VAL;
     size_t size = 0;
@@ -94,7 +94,7 @@ static size_t gather_farthest(mss_candidate *c, size_t count)
     }
     for (size_t m = 0; m < count; m++) {
         if (!(c[m].now < most - EQUAL * (1 + fabs(most)))) {
-            const mss_candidate swap = c[m];
+            const ms_mss_candidate swap = c[m];
             c[m] = c[size];
             c[size++] = swap;
         }
@@ -103,12 +103,12 @@ static size_t gather_farthest(mss_candidate *c, size_t count)
 }
 
 /* Moves to the front those that keep their distance and are large enough; how many they are. */
-static size_t gather_eligible(mss_candidate *c, size_t count, double spacing, double least_radius)
+static size_t gather_eligible(ms_mss_candidate *c, size_t count, double spacing, double least_radius)
 {
     size_t size = 0;
     for (size_t m = 0; m < count; m++) {
         if (c[m].now >= least_square(spacing) && c[m].ball.radius >= least_radius) {
-            const mss_candidate swap = c[m];
+            const ms_mss_candidate swap = c[m];
             c[m] = c[size];
             c[size++] = swap;
         }
@@ -134,7 +134,7 @@ static int too_close(const ms_ball *ball, const placed *p, double spacing)
 }
 
 /* Of equals, the first sphere of all is the one nearest to the centroid. */
-static size_t gather_central(mss_candidate *c, size_t count, const double centroid[3])
+static size_t gather_central(ms_mss_candidate *c, size_t count, const double centroid[3])
 {
     for (size_t m = 0; m < count; m++) {
         c[m].now = -ms_squared_distance(c[m].ball.centre, centroid);
@@ -148,7 +148,7 @@ static size_t gather_central(mss_candidate *c, size_t count, const double centro
 
 /* Places balls behind p->step that keep their distance. */
 static void place(ms_ball *chosen, size_t *taken, size_t limit, const ms_ball *ball, const placed *p,
-                  const mss_rule *rule)
+                  const ms_mss_select_rule *rule)
 {
     const placed now = {p->earlier, p->step, p->n_earlier, p->n_step + *taken};
     if (*taken < limit && !too_close(ball, &now, rule->spacing)) {
@@ -157,8 +157,8 @@ static void place(ms_ball *chosen, size_t *taken, size_t limit, const ms_ball *b
 }
 
 /* Places the first `count` candidates, equals in rank and distance: clusters as their mean. */
-static size_t place_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size_t count, const placed *p,
-                           const mss_rule *rule)
+static size_t place_equals(ms_ball *chosen, size_t limit, ms_mss_candidate *c, size_t count, const placed *p,
+                           const ms_mss_select_rule *rule)
 {
     size_t taken = 0;
     qsort(c, count, sizeof *c, by_voxel);
@@ -177,8 +177,8 @@ static size_t place_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size
 }
 
 /* Chooses among candidates of one rank; `chosen` is the end of p.step. */
-static size_t select_equals(ms_ball *chosen, size_t limit, mss_candidate *c, size_t count, placed p,
-                            const double centroid[3], const mss_rule *rule)
+static size_t select_equals(ms_ball *chosen, size_t limit, ms_mss_candidate *c, size_t count, placed p,
+                            const double centroid[3], const ms_mss_select_rule *rule)
 {
     size_t taken = 0;
     for (size_t s = 0; s < p.n_step; s++) {
@@ -199,8 +199,8 @@ static size_t select_equals(ms_ball *chosen, size_t limit, mss_candidate *c, siz
     return taken;
 }
 
-size_t mss_select(ms_ball *chosen, size_t limit, mss_candidate *candidates, size_t count, const ms_ball *spheres,
-                  size_t n_spheres, const double centroid[3], const mss_rule *rule)
+size_t ms_mss_select(ms_ball *chosen, size_t limit, ms_mss_candidate *candidates, size_t count, const ms_ball *spheres,
+                     size_t n_spheres, const double centroid[3], const ms_mss_select_rule *rule)
 {
     size_t taken = 0;
     for (size_t m = 0; m < count; m++) {

@@ -5,16 +5,16 @@
 #include "voxel/ms_raster.h"
 
 /** A maximum of E* where a sphere may be placed; in voxels. */
-typedef struct mss_candidate {
+typedef struct ms_mss_candidate {
     ms_ball ball;
     double rank;  /* the larger, the earlier */
     size_t voxel; /* the maximum at voxel resolution */
     double apart; /* squared distance to the nearest sphere so far; HUGE_VAL if there is none */
     double now;   /* work space: the same, within a step */
-} mss_candidate;
+} ms_mss_candidate;
 
 /** What is demanded of the spheres of a step. */
-typedef struct mss_rule {
+typedef struct ms_mss_select_rule {
     double spacing;      /* delta_min, in voxels */
     double least_radius; /* smaller ones wait for a later step; in voxels */
     int one_set;         /* only the first set of equals (mirror images of one another) */
@@ -26,10 +26,10 @@ typedef struct mss_rule {
     int (*fit)(ms_ball *ball, void *context);
     void (*report)(size_t chosen, void *context); /* how many spheres the step has so far */
     void *context;
-} mss_rule;
+} ms_mss_select_rule;
 
 /** Takes note of a new sphere in the distances `apart`. */
-void mss_keep_apart(mss_candidate *candidates, size_t count, const ms_ball *sphere);
+void ms_mss_select_keep_apart(ms_mss_candidate *candidates, size_t count, const ms_ball *sphere);
 
 /**
  * Chooses spheres in descending rank, none closer than the spacing to another.
@@ -47,7 +47,7 @@ void mss_keep_apart(mss_candidate *candidates, size_t count, const ms_ball *sphe
  * @param         centroid   of the target, in voxels
  * @return how many were chosen
  */
-size_t mss_select(ms_ball *chosen, size_t limit, mss_candidate *candidates, size_t count, const ms_ball *spheres,
-                  size_t n_spheres, const double centroid[3], const mss_rule *rule);
+size_t ms_mss_select(ms_ball *chosen, size_t limit, ms_mss_candidate *candidates, size_t count, const ms_ball *spheres,
+                     size_t n_spheres, const double centroid[3], const ms_mss_select_rule *rule);
 
 #endif

@@ -60,7 +60,7 @@ static ms_status accept(ms_clump *clump, ms_stop_reason *reason, ms_tally *sum, 
         ms_tally_add(sum, &raster->tally[raster->n_balls - 1]);
         *reason = ms_stop_reached(&run->stop, run->target, sum, clump->n_spheres);
         if (run->progress) {
-            run->progress(run->progress_context, clump->n_spheres, ms_score_of(sum, run->target->voxels).dice);
+            run->progress(run->progress_context, clump->n_spheres, ms_metrics_score(sum, run->target->voxels).dice);
         }
     }
     return status;
@@ -89,14 +89,14 @@ static ms_status cover_greedily(ms_clump *clump, ms_stop_reason *reason, ms_cove
 
 static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
 {
-    const setcover_lattice lattice = {.deq = option(run, SKELETON_DEQ),
-                                      .centres = (setcover_centres)option(run, CANDIDATES),
-                                      .kind = (ms_skeleton)option(run, SKELETON),
-                                      .align = option(run, ALIGN) != 0};
+    const ms_setcover_lattice lattice = {.deq = option(run, SKELETON_DEQ),
+                                         .centres = (ms_setcover_centres)option(run, CANDIDATES),
+                                         .kind = (ms_skeleton)option(run, SKELETON),
+                                         .align = option(run, ALIGN) != 0};
     ms_ball *candidate;
     ms_cover *cover = NULL;
     size_t count;
-    ms_status status = setcover_candidates(&candidate, &count, run->target, &lattice, err);
+    ms_status status = ms_setcover_candidates(&candidate, &count, run->target, &lattice, err);
     const size_t found = count;
     if (status == MS_OK) {
         drop_small(candidate, &count, run);

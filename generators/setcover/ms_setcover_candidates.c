@@ -66,7 +66,8 @@ static void to_target(double out[3], const ms_grid *skeleton, const frame *f, si
     ms_target_to_voxels(out, &unused, grid, p, 0);
 }
 
-static ms_status check_size(const double n[3], const ms_target *target, const setcover_lattice *lattice, ms_error *err)
+static ms_status check_size(const double n[3], const ms_target *target, const ms_setcover_lattice *lattice,
+                            ms_error *err)
 {
     const double voxels = n[0] * n[1] * n[2];
     if (voxels > ALWAYS_FINE && voxels > (double)ms_grid_voxels(&target->grid)) {
@@ -80,7 +81,7 @@ static ms_status check_size(const double n[3], const ms_target *target, const se
 
 /* Voxelises the mesh, turned into the frame. */
 static ms_status grid_of_mesh(ms_grid *out, const ms_target *target, const frame *f, double h,
-                              const setcover_lattice *lattice, ms_error *err)
+                              const ms_setcover_lattice *lattice, ms_error *err)
 {
     ms_mesh turned = *target->mesh;
     double n[3];
@@ -141,7 +142,7 @@ static size_t nearest_voxel(double place[3], const ms_grid *grid)
 
 /* Samples the target's voxels on a lattice whose first point is on the first of them. */
 static ms_status grid_of_voxels(ms_grid *out, const ms_target *target, const frame *f, double h,
-                                const setcover_lattice *lattice, ms_error *err)
+                                const ms_setcover_lattice *lattice, ms_error *err)
 {
     double lo[3], hi[3], extent[3], origin[3], place[3];
     int n[3];
@@ -252,7 +253,7 @@ static ms_status thin(ms_grid *skeleton, ms_skeleton kind, int and_border, ms_er
 }
 
 /* The step of the skeleton's lattice, in the shape's unit. */
-static double choose_step(const ms_target *target, const setcover_lattice *lattice)
+static double choose_step(const ms_target *target, const ms_setcover_lattice *lattice)
 {
     const double h = target->grid.h, wanted = 2 * ms_target_equivalent_radius(target) / lattice->deq;
     if (is_by_mesh(target)) {
@@ -261,8 +262,8 @@ static double choose_step(const ms_target *target, const setcover_lattice *latti
     return lattice->align ? fmax(h, wanted) : h * fmax(1, floor(wanted / h));
 }
 
-ms_status setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target, const setcover_lattice *lattice,
-                              ms_error *err)
+ms_status ms_setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target,
+                                 const ms_setcover_lattice *lattice, ms_error *err)
 {
     const double step = choose_step(target, lattice);
     const int medial =

@@ -9,19 +9,19 @@
 #include "voxel/ms_target.h"
 
 /** Which voxels of the lattice become candidates. */
-typedef enum setcover_centres {
+typedef enum ms_setcover_centres {
     SETCOVER_MEDIAL,   /* of the skeleton, and of the border of the shape, where the skeleton stops short */
     SETCOVER_SKELETON, /* of the skeleton (the paper) */
     SETCOVER_ALL       /* all that are inside (the paper's reference) */
-} setcover_centres;
+} ms_setcover_centres;
 
 /** Where the centres come from. */
-typedef struct setcover_lattice {
+typedef struct ms_setcover_lattice {
     double deq; /* voxels per diameter of the ball of equal volume */
-    setcover_centres centres;
+    ms_setcover_centres centres;
     ms_skeleton kind;
     int align; /* nonzero: the lattice lies along the principal axes (2.4) */
-} setcover_lattice;
+} ms_setcover_lattice;
 
 /**
  * One maximal inscribed sphere for each of the voxels (Yuan 2019, section 3), on a lattice of
@@ -41,7 +41,7 @@ typedef struct setcover_lattice {
  * @return MS_OK; MS_ERR_LIMIT if the lattice would be larger than the target's grid and than
  *         16 million voxels; MS_ERR_SHAPE if no voxel of it is inside; MS_ERR_NOMEM
  */
-ms_status setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target, const setcover_lattice *lattice,
-                              ms_error *err);
+ms_status ms_setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target,
+                                 const ms_setcover_lattice *lattice, ms_error *err);
 
 #endif

@@ -14,7 +14,7 @@ static void replace(ms_clump *clump, ms_clump *by)
 }
 
 static ms_status double_up(ms_clump *clump, ms_stop_reason *reason, size_t *few, size_t *enough, size_t most,
-                           ms_solve solve, void *context, ms_error *err)
+                           ms_bisect_count_solve solve, void *context, ms_error *err)
 {
     ms_status status = MS_OK;
     *few = *enough = 0;
@@ -32,7 +32,8 @@ static ms_status double_up(ms_clump *clump, ms_stop_reason *reason, size_t *few,
     return status;
 }
 
-ms_status ms_search(ms_clump *clump, ms_stop_reason *reason, size_t most, ms_solve solve, void *context, ms_error *err)
+ms_status ms_bisect_count(ms_clump *clump, ms_stop_reason *reason, size_t most, ms_bisect_count_solve solve,
+                          void *context, ms_error *err)
 {
     size_t few, enough;
     ms_status status = double_up(clump, reason, &few, &enough, most, solve, context, err);

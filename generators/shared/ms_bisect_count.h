@@ -13,7 +13,8 @@ MS_C_BEGIN
  * @param[out] reason MS_STOP_NOT: more spheres are needed; MS_STOP_RADIUS or MS_STOP_EXHAUSTED: more
  *                    would not help; any other: they are enough
  */
-typedef ms_status (*ms_solve)(void *context, ms_clump *clump, ms_stop_reason *reason, size_t n, ms_error *err);
+typedef ms_status (*ms_bisect_count_solve)(void *context, ms_clump *clump, ms_stop_reason *reason, size_t n,
+                                           ms_error *err);
 
 /**
  * Doubles the number of spheres until it is enough, then halves the step between the last that was not and
@@ -22,7 +23,8 @@ typedef ms_status (*ms_solve)(void *context, ms_clump *clump, ms_stop_reason *re
  * @param most no more spheres than this: the run ends with MS_STOP_SPHERES
  * @return MS_OK; as solve
  */
-ms_status ms_search(ms_clump *clump, ms_stop_reason *reason, size_t most, ms_solve solve, void *context, ms_error *err);
+ms_status ms_bisect_count(ms_clump *clump, ms_stop_reason *reason, size_t most, ms_bisect_count_solve solve,
+                          void *context, ms_error *err);
 
 MS_C_END
 

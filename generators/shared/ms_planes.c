@@ -8,7 +8,7 @@ static double side_of(const double plane[4], const double place[3])
     return plane[0] * place[0] + plane[1] * place[1] + plane[2] * place[2] - plane[3];
 }
 
-double planes_distance(const ms_settings *settings, const double place[3])
+double ms_planes_distance(const ms_settings *settings, const double place[3])
 {
     double least = HUGE_VAL;
     for (size_t p = 0; p < settings->n_planes; p++) {
@@ -17,7 +17,7 @@ double planes_distance(const ms_settings *settings, const double place[3])
     return least;
 }
 
-double planes_beyond(const ms_settings *settings, const double from[3], const double place[3])
+double ms_planes_beyond(const ms_settings *settings, const double from[3], const double place[3])
 {
     double most = -HUGE_VAL;
     for (size_t p = 0; p < settings->n_planes; p++) {
@@ -27,7 +27,7 @@ double planes_beyond(const ms_settings *settings, const double from[3], const do
     return most;
 }
 
-void planes_cut(float *e, const ms_target *target, const ms_settings *settings)
+void ms_planes_cut(float *e, const ms_target *target, const ms_settings *settings)
 {
     const ms_grid *grid = &target->grid;
 #pragma omp parallel for
@@ -37,7 +37,7 @@ void planes_cut(float *e, const ms_target *target, const ms_settings *settings)
             for (int i = 0; i < grid->n[0]; i++) {
                 const double place[3] = {grid->origin[0] + grid->h * i, grid->origin[1] + grid->h * j,
                                          grid->origin[2] + grid->h * k};
-                const double least = planes_distance(settings, place) / grid->h;
+                const double least = ms_planes_distance(settings, place) / grid->h;
                 e[start + (size_t)i] = (float)fmin((double)target->distance[start + (size_t)i], least);
             }
         }

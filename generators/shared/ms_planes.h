@@ -6,10 +6,10 @@
 #include "voxel/ms_target.h"
 
 /** How far a place in the mesh's frame is from the nearest plane, in the mesh's unit; HUGE_VAL without planes. */
-double planes_distance(const ms_settings *settings, const double place[3]);
+double ms_planes_distance(const ms_settings *settings, const double place[3]);
 
 /** How far a place is beyond the planes as seen from `from`: at most 0 if it is on the same side of each. */
-double planes_beyond(const ms_settings *settings, const double from[3], const double place[3]);
+double ms_planes_beyond(const ms_settings *settings, const double from[3], const double place[3]);
 
 /**
  * E cut down to the distance to the nearest plane, so that it has its maxima on either side.
@@ -18,6 +18,6 @@ double planes_beyond(const ms_settings *settings, const double from[3], const do
  *
  * Cost: one pass over the grid; all cores.
  */
-void planes_cut(float *e, const ms_target *target, const ms_settings *settings);
+void ms_planes_cut(float *e, const ms_target *target, const ms_settings *settings);
 
 #endif

@@ -43,12 +43,13 @@ static void count_plane(uint16_t *covers, const ms_grid *grid, const ms_ball *ba
     }
 }
 
-ms_status overlap_open(overlap *out, const ms_grid *grid, const ms_ball *ball, size_t count, ms_error *err)
+ms_status ms_coverage_count_open(ms_coverage_count *out, const ms_grid *grid, const ms_ball *ball, size_t count,
+                                 ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(grid), plane = (size_t)grid->n[0] * (size_t)grid->n[1];
     uint16_t *covers = calloc(voxels, sizeof *covers);
     int64_t sum = 0;
-    *out = (overlap){.grid = grid, .covers = covers};
+    *out = (ms_coverage_count){.grid = grid, .covers = covers};
     if (!covers) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory to compare spheres on %zu voxels; use fewer cells", voxels);
     }
@@ -63,14 +64,14 @@ ms_status overlap_open(overlap *out, const ms_grid *grid, const ms_ball *ball, s
     return MS_OK;
 }
 
-void overlap_close(overlap *o)
+void ms_coverage_count_close(ms_coverage_count *o)
 {
     free(o->covers);
     memset(o, 0, sizeof *o);
 }
 
 /* Of the sphere's voxels that so many spheres cover: those inside less those outside. */
-static inline int64_t balance(const overlap *o, const ms_ball *ball, uint16_t covered)
+static inline int64_t balance(const ms_coverage_count *o, const ms_ball *ball, uint16_t covered)
 {
     const ms_grid *grid = o->grid;
     int planes[2], rows[2], run[2];
@@ -95,17 +96,17 @@ static inline int64_t balance(const overlap *o, const ms_ball *ball, uint16_t co
     return sum;
 }
 
-int64_t overlap_loss(const overlap *o, const ms_ball *ball)
+int64_t ms_coverage_count_loss(const ms_coverage_count *o, const ms_ball *ball)
 {
     return balance(o, ball, 1);
 }
 
-int64_t overlap_gain(const overlap *o, const ms_ball *ball)
+int64_t ms_coverage_count_gain(const ms_coverage_count *o, const ms_ball *ball)
 {
     return balance(o, ball, 0);
 }
 
-static void change(overlap *o, const ms_ball *ball, int by)
+static void change(ms_coverage_count *o, const ms_ball *ball, int by)
 {
     int planes[2], rows[2], run[2];
     span_of(planes, ball, o->grid, 2);
@@ -122,19 +123,19 @@ static void change(overlap *o, const ms_ball *ball, int by)
     }
 }
 
-void overlap_add(overlap *o, const ms_ball *ball)
+void ms_coverage_count_add(ms_coverage_count *o, const ms_ball *ball)
 {
-    o->mismatch -= overlap_gain(o, ball);
+    o->mismatch -= ms_coverage_count_gain(o, ball);
     change(o, ball, 1);
 }
 
-void overlap_remove(overlap *o, const ms_ball *ball)
+void ms_coverage_count_remove(ms_coverage_count *o, const ms_ball *ball)
 {
-    o->mismatch += overlap_loss(o, ball);
+    o->mismatch += ms_coverage_count_loss(o, ball);
     change(o, ball, -1);
 }
 
-void overlap_clear(ms_grid *grid, const ms_ball *ball, size_t count)
+void ms_coverage_count_clear(ms_grid *grid, const ms_ball *ball, size_t count)
 {
     for (size_t b = 0; b < count; b++) {
         int planes[2], rows[2], run[2];

@@ -8,11 +8,11 @@
 #include "voxel/ms_raster.h"
 
 /** Voxels are covered by a sphere that holds their centres. */
-typedef struct overlap {
+typedef struct ms_coverage_count {
     const ms_grid *grid; /* S; borrowed */
     uint16_t *covers;    /* spheres that cover each voxel */
     int64_t mismatch;    /* |S xor U| */
-} overlap;
+} ms_coverage_count;
 
 /**
  * Counts the spheres over each voxel.
@@ -24,21 +24,22 @@ typedef struct overlap {
  * Cost: one pass over the spheres' voxels and one over the grid; all cores, the same numbers at
  * any number of threads.
  */
-ms_status overlap_open(overlap *out, const ms_grid *grid, const ms_ball *ball, size_t count, ms_error *err);
+ms_status ms_coverage_count_open(ms_coverage_count *out, const ms_grid *grid, const ms_ball *ball, size_t count,
+                                 ms_error *err);
 
 /** By how many voxels |S xor U| would grow without this sphere, one of those counted. Cost: its voxels. */
-int64_t overlap_loss(const overlap *o, const ms_ball *ball);
+int64_t ms_coverage_count_loss(const ms_coverage_count *o, const ms_ball *ball);
 
 /** By how many voxels |S xor U| would shrink with one more sphere. Cost: its voxels. */
-int64_t overlap_gain(const overlap *o, const ms_ball *ball);
+int64_t ms_coverage_count_gain(const ms_coverage_count *o, const ms_ball *ball);
 
 /** Adds a sphere, or takes away one of those counted. */
-void overlap_add(overlap *o, const ms_ball *ball);
-void overlap_remove(overlap *o, const ms_ball *ball);
+void ms_coverage_count_add(ms_coverage_count *o, const ms_ball *ball);
+void ms_coverage_count_remove(ms_coverage_count *o, const ms_ball *ball);
 
 /** Takes the voxels whose centres a sphere holds out of the grid. */
-void overlap_clear(ms_grid *grid, const ms_ball *ball, size_t count);
+void ms_coverage_count_clear(ms_grid *grid, const ms_ball *ball, size_t count);
 
-void overlap_close(overlap *o);
+void ms_coverage_count_close(ms_coverage_count *o);
 
 #endif

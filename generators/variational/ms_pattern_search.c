@@ -9,11 +9,11 @@
 static const double FIRST_STEP = 2, LAST_STEP = 0.1;
 
 /* The sphere after one of 8 moves; 0 if there is none such. */
-static int try_move(ms_ball *out, const ms_ball *ball, int which, double step, const exposed_fit *fit)
+static int try_move(ms_ball *out, const ms_ball *ball, int which, double step, const ms_surface_fit *fit)
 {
     const double by = which % 2 ? -step : step;
     *out = *ball;
-    if (which < 6 && mirrors_holds(&fit->mirrors, ball, which / 2)) {
+    if (which < 6 && ms_mirror_holds(&fit->ms_mirror, ball, which / 2)) {
         return 0;
     }
     if (which < 6) {
@@ -23,12 +23,12 @@ static int try_move(ms_ball *out, const ms_ball *ball, int which, double step, c
     } else {
         out->radius += by;
     }
-    const double most = exposed_most_radius(fit, out->centre);
+    const double most = ms_surface_fit_most_radius(fit, out->centre);
     if (fit->bounds.equal) {
         return out->radius <= most;
     }
     if (most < HUGE_VAL && which < 6) {
-        const int was_tight = ball->radius > exposed_most_radius(fit, ball->centre) - step;
+        const int was_tight = ball->radius > ms_surface_fit_most_radius(fit, ball->centre) - step;
         out->radius = was_tight ? most : out->radius;
     }
     out->radius = fmin(out->radius, most);
@@ -36,11 +36,12 @@ static int try_move(ms_ball *out, const ms_ball *ball, int which, double step, c
 }
 
 /* Adds a sphere and its images, or takes them away; returns by how much the mismatch shrinks. */
-static int64_t change(overlap *o, const ms_ball *ball, const mirrors *m, void (*by)(overlap *, const ms_ball *))
+static int64_t change(ms_coverage_count *o, const ms_ball *ball, const ms_mirror *m,
+                      void (*by)(ms_coverage_count *, const ms_ball *))
 {
     ms_ball image[8];
     const int64_t before = o->mismatch;
-    const size_t images = mirrors_expand(image, ball, 1, m);
+    const size_t images = ms_mirror_expand(image, ball, 1, m);
     for (size_t i = 0; i < images; i++) {
         by(o, &image[i]);
     }
@@ -48,44 +49,44 @@ static int64_t change(overlap *o, const ms_ball *ball, const mirrors *m, void (*
 }
 
 /* By how much the mismatch would shrink with a sphere and its images. */
-static int64_t gain_of(overlap *o, const ms_ball *ball, const mirrors *m)
+static int64_t gain_of(ms_coverage_count *o, const ms_ball *ball, const ms_mirror *m)
 {
-    if (mirrors_images(m, ball) == 1) {
-        return overlap_gain(o, ball);
+    if (ms_mirror_images(m, ball) == 1) {
+        return ms_coverage_count_gain(o, ball);
     }
-    const int64_t gain = change(o, ball, m, overlap_add);
-    change(o, ball, m, overlap_remove);
+    const int64_t gain = change(o, ball, m, ms_coverage_count_add);
+    change(o, ball, m, ms_coverage_count_remove);
     return gain;
 }
 
 /* The best move of one sphere; 0 if none is better than to stay. */
-static int move_one(ms_ball *ball, overlap *o, double step, const exposed_fit *fit)
+static int move_one(ms_ball *ball, ms_coverage_count *o, double step, const ms_surface_fit *fit)
 {
     ms_ball best = *ball, tried;
-    const int64_t before = -change(o, ball, &fit->mirrors, overlap_remove);
+    const int64_t before = -change(o, ball, &fit->ms_mirror, ms_coverage_count_remove);
     int64_t most = before;
     for (int which = 0; which < 8; which++) {
-        const int64_t gain = try_move(&tried, ball, which, step, fit) ? gain_of(o, &tried, &fit->mirrors) : before;
+        const int64_t gain = try_move(&tried, ball, which, step, fit) ? gain_of(o, &tried, &fit->ms_mirror) : before;
         if (gain > most) {
             most = gain;
             best = tried;
         }
     }
     *ball = best;
-    change(o, ball, &fit->mirrors, overlap_add);
+    change(o, ball, &fit->ms_mirror, ms_coverage_count_add);
     return most > before;
 }
 
-ms_status pattern_search(ms_ball *ball, size_t count, const ms_grid *grid, const exposed_fit *fit, int rounds,
-                         ms_error *err)
+ms_status ms_pattern_search(ms_ball *ball, size_t count, const ms_grid *grid, const ms_surface_fit *fit, int rounds,
+                            ms_error *err)
 {
-    overlap o;
+    ms_coverage_count o;
     double step = FIRST_STEP;
     ms_ball *all = malloc((8 * count + 1) * sizeof *all);
     if (!all) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     }
-    ms_status status = overlap_open(&o, grid, all, mirrors_expand(all, ball, count, &fit->mirrors), err);
+    ms_status status = ms_coverage_count_open(&o, grid, all, ms_mirror_expand(all, ball, count, &fit->ms_mirror), err);
     for (int round = 0; status == MS_OK && round < rounds && step > LAST_STEP; round++) {
         size_t moved = 0;
         for (size_t b = 0; b < count; b++) {
@@ -95,7 +96,7 @@ ms_status pattern_search(ms_ball *ball, size_t count, const ms_grid *grid, const
             step /= 2;
         }
     }
-    overlap_close(&o);
+    ms_coverage_count_close(&o);
     free(all);
     return status;
 }

@@ -18,7 +18,7 @@
  *
  * Cost: rounds x count x 8 x voxels of a sphere; one core.
  */
-ms_status pattern_search(ms_ball *ball, size_t count, const ms_grid *grid, const exposed_fit *fit, int rounds,
-                         ms_error *err);
+ms_status ms_pattern_search(ms_ball *ball, size_t count, const ms_grid *grid, const ms_surface_fit *fit, int rounds,
+                            ms_error *err);
 
 #endif

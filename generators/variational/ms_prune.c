@@ -7,55 +7,56 @@
 #include "ms_variational_start.h"
 
 /* Counts all spheres and their images on the grid; `all` is how many there are. */
-static ms_status count_all(overlap *out, size_t *all, const ms_ball *ball, size_t count, const ms_grid *grid, int step,
-                           const mirrors *m, ms_error *err)
+static ms_status count_all(ms_coverage_count *out, size_t *all, const ms_ball *ball, size_t count, const ms_grid *grid,
+                           int step, const ms_mirror *m, ms_error *err)
 {
     ms_ball *image = malloc((8 * count + 1) * sizeof *image);
     if (!image) {
-        *out = (overlap){0};
+        *out = (ms_coverage_count){0};
         return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", count);
     }
-    *all = mirrors_expand(image, ball, count, m);
+    *all = ms_mirror_expand(image, ball, count, m);
     for (size_t i = 0; i < *all; i++) {
-        image[i] = start_to_coarse(&image[i], step);
+        image[i] = ms_variational_start_to_coarse(&image[i], step);
     }
-    const ms_status status = overlap_open(out, grid, image, *all, err);
+    const ms_status status = ms_coverage_count_open(out, grid, image, *all, err);
     free(image);
     return status;
 }
 
 /* Takes away a sphere and its images; returns by how much the mismatch grows. */
-static int64_t take(overlap *o, ms_ball image[8], size_t *images, const ms_ball *ball, int step, const mirrors *m)
+static int64_t take(ms_coverage_count *o, ms_ball image[8], size_t *images, const ms_ball *ball, int step,
+                    const ms_mirror *m)
 {
     const int64_t before = o->mismatch;
-    *images = mirrors_expand(image, ball, 1, m);
+    *images = ms_mirror_expand(image, ball, 1, m);
     for (size_t i = 0; i < *images; i++) {
-        image[i] = start_to_coarse(&image[i], step);
-        overlap_remove(o, &image[i]);
+        image[i] = ms_variational_start_to_coarse(&image[i], step);
+        ms_coverage_count_remove(o, &image[i]);
     }
     return o->mismatch - before;
 }
 
-static void put_back(overlap *o, const ms_ball image[8], size_t images)
+static void put_back(ms_coverage_count *o, const ms_ball image[8], size_t images)
 {
     for (size_t i = 0; i < images; i++) {
-        overlap_add(o, &image[i]);
+        ms_coverage_count_add(o, &image[i]);
     }
 }
 
 /* What the mismatch would grow by without each sphere; of images together, for each of them: as they overlap. */
 static ms_status find_losses(int64_t *loss, const ms_ball *ball, size_t count, const ms_grid *grid, int step,
-                             const mirrors *m, ms_error *err)
+                             const ms_mirror *m, ms_error *err)
 {
-    overlap o;
+    ms_coverage_count o;
     size_t all = 0;
     const ms_status status = count_all(&o, &all, ball, count, grid, step, m, err);
     const size_t alone = status == MS_OK && all == count ? count : 0;
     const size_t paired = status == MS_OK && all > count ? count : 0;
 #pragma omp parallel for schedule(dynamic, 4)
     for (size_t b = 0; b < alone; b++) {
-        const ms_ball coarse = start_to_coarse(&ball[b], step);
-        loss[b] = overlap_loss(&o, &coarse);
+        const ms_ball coarse = ms_variational_start_to_coarse(&ball[b], step);
+        loss[b] = ms_coverage_count_loss(&o, &coarse);
     }
     for (size_t b = 0; b < paired; b++) {
         ms_ball image[8];
@@ -64,17 +65,17 @@ static ms_status find_losses(int64_t *loss, const ms_ball *ball, size_t count, c
         put_back(&o, image, images);
         loss[b] /= (int64_t)images;
     }
-    overlap_close(&o);
+    ms_coverage_count_close(&o);
     return status;
 }
 
-static void move_nearest_onto_plane(ms_ball *ball, size_t count, const mirrors *m)
+static void move_nearest_onto_plane(ms_ball *ball, size_t count, const ms_mirror *m)
 {
     size_t nearest = 0;
     int axis = -1;
     double least = HUGE_VAL, part;
     for (size_t b = 0; b < count; b++) {
-        const int across = mirrors_nearest(&part, m, &ball[b]);
+        const int across = ms_mirror_nearest(&part, m, &ball[b]);
         if (part < least) {
             least = part;
             axis = across;
@@ -93,12 +94,12 @@ static int do_overlap(const ms_ball *a, const ms_ball *b)
 }
 
 /* The cheapest sphere that overlaps none of those dropped already and has no more than that many images. */
-static size_t cheapest(const ms_ball *ball, size_t count, const int64_t *loss, size_t images, const mirrors *m,
+static size_t cheapest(const ms_ball *ball, size_t count, const int64_t *loss, size_t images, const ms_mirror *m,
                        const ms_ball *dropped, size_t n_dropped)
 {
     size_t best = SIZE_MAX;
     for (size_t b = 0; b < count; b++) {
-        int passed = (best != SIZE_MAX && loss[b] >= loss[best]) || mirrors_images(m, &ball[b]) > images;
+        int passed = (best != SIZE_MAX && loss[b] >= loss[best]) || ms_mirror_images(m, &ball[b]) > images;
         for (size_t d = 0; d < n_dropped && !passed; d++) {
             passed = do_overlap(&ball[b], &dropped[d]);
         }
@@ -109,8 +110,8 @@ static size_t cheapest(const ms_ball *ball, size_t count, const int64_t *loss, s
     return best;
 }
 
-ms_status drop_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_grid *grid, int step, const mirrors *m,
-                        ms_error *err)
+ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_grid *grid, int step,
+                            const ms_mirror *m, ms_error *err)
 {
     ms_ball *dropped = malloc((most + 1) * sizeof *dropped);
     int64_t *loss = malloc((*count + 1) * sizeof *loss);
@@ -120,7 +121,7 @@ ms_status drop_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_grid
     while (status == MS_OK && gone < most &&
            (b = cheapest(ball, *count, loss, most - gone, m, dropped, n_dropped)) != SIZE_MAX) {
         dropped[n_dropped++] = ball[b];
-        gone += mirrors_images(m, &ball[b]);
+        gone += ms_mirror_images(m, &ball[b]);
         ball[b] = ball[--*count];
         loss[b] = loss[*count];
     }
@@ -133,7 +134,7 @@ ms_status drop_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_grid
 }
 
 /* Once; a sphere that stays may become idle when a later one goes. Returns how many went. */
-static size_t drop_once(ms_ball *ball, size_t *count, overlap *o, const mirrors *m)
+static size_t drop_once(ms_ball *ball, size_t *count, ms_coverage_count *o, const ms_mirror *m)
 {
     size_t kept = 0;
     for (size_t b = 0; b < *count; b++) {
@@ -149,13 +150,13 @@ static size_t drop_once(ms_ball *ball, size_t *count, overlap *o, const mirrors 
     return gone;
 }
 
-ms_status drop_idle(ms_ball *ball, size_t *count, const ms_grid *grid, const mirrors *m, ms_error *err)
+ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_grid *grid, const ms_mirror *m, ms_error *err)
 {
-    overlap o;
+    ms_coverage_count o;
     size_t all;
     const ms_status status = count_all(&o, &all, ball, *count, grid, 1, m, err);
     while (status == MS_OK && drop_once(ball, count, &o, m) > 0) {
     }
-    overlap_close(&o);
+    ms_coverage_count_close(&o);
     return status;
 }

@@ -15,16 +15,16 @@
  * @param         grid  where it is counted: every step-th voxel of the target's grid
  * @return MS_OK; MS_ERR_NOMEM
  *
- * Cost: overlap_open, and the voxels of all spheres; all cores.
+ * Cost: ms_coverage_count_open, and the voxels of all spheres; all cores.
  */
-ms_status drop_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_grid *grid, int step, const mirrors *m,
-                        ms_error *err);
+ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_grid *grid, int step,
+                            const ms_mirror *m, ms_error *err);
 
 /**
  * Drops spheres without which |S xor U| is no larger: inside others, or where nothing is left to gain.
  *
  * @return, cost: as above
  */
-ms_status drop_idle(ms_ball *ball, size_t *count, const ms_grid *grid, const mirrors *m, ms_error *err);
+ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_grid *grid, const ms_mirror *m, ms_error *err);
 
 #endif

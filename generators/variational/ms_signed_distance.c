@@ -6,7 +6,7 @@
 
 #include "voxel/ms_distance.h"
 
-void ms_field_free(ms_field *field)
+void ms_signed_distance_free(ms_signed_distance *field)
 {
     if (field) {
         free(field->phi);
@@ -14,13 +14,13 @@ void ms_field_free(ms_field *field)
     }
 }
 
-static size_t node_index(const ms_field *field, int i, int j, int k)
+static size_t node_index(const ms_signed_distance *field, int i, int j, int k)
 {
     return (size_t)i + (size_t)field->n[0] * ((size_t)j + (size_t)field->n[1] * (size_t)k);
 }
 
 /* The surface lies half-way between the centres of voxels inside and outside. */
-static ms_status fill_from_voxels(ms_field *field, ms_error *err)
+static ms_status fill_from_voxels(ms_signed_distance *field, ms_error *err)
 {
     const ms_grid *grid = &field->target->grid;
     const size_t voxels = ms_grid_voxels(grid);
@@ -53,9 +53,9 @@ static ms_status fill_from_voxels(ms_field *field, ms_error *err)
     return status;
 }
 
-ms_status ms_field_alloc(ms_field *field, const ms_target *target, int step, ms_error *err)
+ms_status ms_signed_distance_alloc(ms_signed_distance *field, const ms_target *target, int step, ms_error *err)
 {
-    *field = (ms_field){.target = target, .step = step};
+    *field = (ms_signed_distance){.target = target, .step = step};
     size_t nodes = 1;
     for (int a = 0; a < 3; a++) {
         field->n[a] = (target->grid.n[a] + step - 2) / step + 1;
@@ -70,12 +70,12 @@ ms_status ms_field_alloc(ms_field *field, const ms_target *target, int step, ms_
     }
     const ms_status status = target->mesh && target->closed ? MS_OK : fill_from_voxels(field, err);
     if (status != MS_OK) {
-        ms_field_free(field);
+        ms_signed_distance_free(field);
     }
     return status;
 }
 
-static float compute_node(const ms_field *field, size_t node)
+static float compute_node(const ms_signed_distance *field, size_t node)
 {
     const ms_grid *grid = &field->target->grid;
     const size_t nx = (size_t)field->n[0], ny = (size_t)field->n[1], step = (size_t)field->step;
@@ -86,7 +86,7 @@ static float compute_node(const ms_field *field, size_t node)
 }
 
 /* Two threads may compute a node at once: they find the same. */
-static inline double node_value(const ms_field *field, size_t node)
+static inline double node_value(const ms_signed_distance *field, size_t node)
 {
     float phi;
 #pragma omp atomic read
@@ -99,7 +99,7 @@ static inline double node_value(const ms_field *field, size_t node)
     return (double)phi;
 }
 
-double ms_field_at(const ms_field *field, const double place[3])
+double ms_signed_distance_at(const ms_signed_distance *field, const double place[3])
 {
     const size_t nx = (size_t)field->n[0], stride[3] = {1, nx, nx * (size_t)field->n[1]};
     size_t node = 0;

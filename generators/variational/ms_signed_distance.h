@@ -7,12 +7,12 @@
 MS_C_BEGIN
 
 /** In voxels of the target's grid, as all lengths here; negative inside. */
-typedef struct ms_field {
+typedef struct ms_signed_distance {
     const ms_target *target; /* borrowed */
     int step;                /* between nodes */
     int n[3];                /* nodes: node i lies on voxel i * step */
     float *phi;              /* at the nodes; NAN: not asked for yet */
-} ms_field;
+} ms_signed_distance;
 
 /**
  * Of a closed mesh nothing is computed yet: each node is, exactly, when it is first needed, so that
@@ -25,16 +25,16 @@ typedef struct ms_field {
  *
  * Cost: one pass over the nodes; for voxels a distance transform.
  */
-ms_status ms_field_alloc(ms_field *field, const ms_target *target, int step, ms_error *err);
+ms_status ms_signed_distance_alloc(ms_signed_distance *field, const ms_target *target, int step, ms_error *err);
 
 /**
  * Linear between nodes; beyond the lattice, the value at its border and the way there.
  *
  * Threads may share a field. Cost: 8 loads, and once per node ms_closest_signed_distance.
  */
-double ms_field_at(const ms_field *field, const double place[3]);
+double ms_signed_distance_at(const ms_signed_distance *field, const double place[3]);
 
-void ms_field_free(ms_field *field);
+void ms_signed_distance_free(ms_signed_distance *field);
 
 MS_C_END
 

@@ -203,27 +203,27 @@ static void solve_move(move *out, double a[4][4], double b[4])
 }
 
 /* A sphere on a plane of symmetry moves along it. */
-static void keep_to_planes(move *m, const mirrors *planes, const ms_ball *ball)
+static void keep_to_planes(move *m, const ms_mirror *planes, const ms_ball *ball)
 {
     for (int a = 0; a < 3; a++) {
-        if (mirrors_holds(planes, ball, a)) {
+        if (ms_mirror_holds(planes, ball, a)) {
             m->centre[a] = m->along[a] = 0;
         }
     }
 }
 
 /* How far a place is beyond the planes, in voxels; -HUGE_VAL if it is not. */
-static double beyond_planes(const exposed_fit *fit, const double centre[3], const double place[3])
+static double beyond_planes(const ms_surface_fit *fit, const double centre[3], const double place[3])
 {
     const ms_grid *grid = &fit->field->target->grid;
     double from[3], to[3], unused;
     ms_target_from_voxels(from, &unused, grid, centre, 0);
     ms_target_from_voxels(to, &unused, grid, place, 0);
-    const double beyond = planes_beyond(fit->bounds.planes, from, to) / grid->h;
+    const double beyond = ms_planes_beyond(fit->bounds.planes, from, to) / grid->h;
     return beyond > 0 ? beyond : -HUGE_VAL;
 }
 
-static move find_move(const exposed_fit *fit, const workspace *work, caps *block, uint32_t self)
+static move find_move(const ms_surface_fit *fit, const workspace *work, caps *block, uint32_t self)
 {
     const ms_ball *ball = &work->sweep.ball[self];
     const size_t blocks = find_caps(block, &work->sweep, self);
@@ -240,7 +240,7 @@ static move find_move(const exposed_fit *fit, const workspace *work, caps *block
         if (!(beyond > 0) && is_covered(&first, block, blocks, work->normal[p])) {
             continue;
         }
-        const double away = ms_field_at(fit->field, place), phi = away > beyond ? away : beyond;
+        const double away = ms_signed_distance_at(fit->field, place), phi = away > beyond ? away : beyond;
         const double size = fabs(phi) > NEAR ? fabs(phi) : NEAR;
         const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) / size;
         for (int i = 0; i < 4; i++) {
@@ -256,7 +256,7 @@ static move find_move(const exposed_fit *fit, const workspace *work, caps *block
             a[i][i] += RIDGE * weight;
         }
         solve_move(&out, a, b);
-        keep_to_planes(&out, &fit->mirrors, ball);
+        keep_to_planes(&out, &fit->ms_mirror, ball);
     }
     return out;
 }
@@ -274,11 +274,11 @@ static void make_equal(ms_ball *ball, size_t count)
 }
 
 /* One radius for all: the one of the least sum of squares over all spheres, which are of one radius now. */
-static void share_radius(move *moves, const ms_ball *ball, size_t count, const mirrors *planes)
+static void share_radius(move *moves, const ms_ball *ball, size_t count, const ms_mirror *planes)
 {
     double sum = 0, weight = 0;
     for (size_t s = 0; s < count; s++) {
-        const double images = (double)mirrors_images(planes, &ball[s]);
+        const double images = (double)ms_mirror_images(planes, &ball[s]);
         sum += images * moves[s].weight * moves[s].radius;
         weight += images * moves[s].weight;
     }
@@ -304,39 +304,39 @@ static void make_move(ms_ball *ball, double velocity[4], const move *step, doubl
 }
 
 /* Signed distance of a place, exact where there is a mesh: the look-up cuts off the ridges. */
-static double exact_distance(const ms_field *field, const double place[3])
+static double exact_distance(const ms_signed_distance *field, const double place[3])
 {
     const ms_target *target = field->target;
     double p[3], unused;
     if (!target->closest || !target->closed) {
-        return ms_field_at(field, place);
+        return ms_signed_distance_at(field, place);
     }
     ms_target_from_voxels(p, &unused, &target->grid, place, 0);
     return ms_closest_signed_distance(target->closest, p) / target->grid.h;
 }
 
-int exposed_is_bounded(const exposed_bounds *bounds)
+int ms_surface_fit_is_bounded(const ms_surface_fit_bounds *bounds)
 {
     return bounds->protrusion < HUGE_VAL || (bounds->planes && bounds->planes->n_planes > 0);
 }
 
-double exposed_most_radius(const exposed_fit *fit, const double centre[3])
+double ms_surface_fit_most_radius(const ms_surface_fit *fit, const double centre[3])
 {
     const ms_grid *grid = &fit->field->target->grid;
     const double bound = fit->bounds.protrusion;
     double most = bound < HUGE_VAL ? bound - exact_distance(fit->field, centre) : HUGE_VAL, place[3], unused;
     if (fit->bounds.planes) {
         ms_target_from_voxels(place, &unused, grid, centre, 0);
-        most = fmin(most, planes_distance(fit->bounds.planes, place) / grid->h);
+        most = fmin(most, ms_planes_distance(fit->bounds.planes, place) / grid->h);
     }
     return most;
 }
 
-void exposed_confine(const exposed_fit *fit, ms_ball *ball, size_t count)
+void ms_surface_fit_confine(const ms_surface_fit *fit, ms_ball *ball, size_t count)
 {
     double least = HUGE_VAL;
     for (size_t s = 0; s < count; s++) {
-        ball[s].radius = fmax(0, fmin(ball[s].radius, exposed_most_radius(fit, ball[s].centre)));
+        ball[s].radius = fmax(0, fmin(ball[s].radius, ms_surface_fit_most_radius(fit, ball[s].centre)));
         least = fmin(least, ball[s].radius);
     }
     for (size_t s = 0; s < count && fit->bounds.equal; s++) {
@@ -357,7 +357,7 @@ static void fill_directions(double (*direction)[3], int points)
 }
 
 /* Turns them by a random quaternion, uniform among rotations. */
-static void turn_directions(workspace *work, const exposed_fit *fit)
+static void turn_directions(workspace *work, const ms_surface_fit *fit)
 {
     double q[4], square = 0;
     gsl_rng_set(work->rng, (unsigned long)(fit->seed * 1000003u + fit->turns));
@@ -391,9 +391,9 @@ static void work_free(workspace *work)
     }
 }
 
-static ms_status work_alloc(workspace *work, const exposed_fit *fit, size_t count, ms_error *err)
+static ms_status work_alloc(workspace *work, const ms_surface_fit *fit, size_t count, ms_error *err)
 {
-    const int *across = fit->mirrors.across;
+    const int *across = fit->ms_mirror.across;
     const size_t points = (size_t)fit->points, images = count << (across[0] + across[1] + across[2]);
     *work = (workspace){.sweep = {.ball = malloc((images + 1) * sizeof *work->sweep.ball),
                                   .end = malloc((images + 1) * sizeof *work->sweep.end)},
@@ -413,9 +413,9 @@ static ms_status work_alloc(workspace *work, const exposed_fit *fit, size_t coun
 }
 
 /* The moves of all spheres; 0 without memory. */
-static int find_moves(const exposed_fit *fit, workspace *work, const ms_ball *ball, size_t count)
+static int find_moves(const ms_surface_fit *fit, workspace *work, const ms_ball *ball, size_t count)
 {
-    work->sweep.count = mirrors_expand(work->sweep.ball, ball, count, &fit->mirrors);
+    work->sweep.count = ms_mirror_expand(work->sweep.ball, ball, count, &fit->ms_mirror);
     sort_ends(&work->sweep);
     int enough = 1;
 #pragma omp parallel reduction(&& : enough)
@@ -433,8 +433,8 @@ static int find_moves(const exposed_fit *fit, workspace *work, const ms_ball *ba
     return enough;
 }
 
-ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int steps, const double damping[2],
-                            ms_error *err)
+ms_status ms_surface_fit_steps(ms_surface_fit *fit, ms_ball *ball, size_t count, int steps, const double damping[2],
+                               ms_error *err)
 {
     workspace work;
     ms_status status = work_alloc(&work, fit, count, err);
@@ -452,7 +452,7 @@ ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int s
             break;
         }
         if (fit->bounds.equal) {
-            share_radius(work.move, ball, count, &fit->mirrors);
+            share_radius(work.move, ball, count, &fit->ms_mirror);
         }
         for (size_t s = 0; s < count; s++) {
             make_move(&ball[s], work.velocity[s], &work.move[s], d);

@@ -10,22 +10,22 @@
 #include "voxel/ms_raster.h"
 
 /** What the spheres of a fit have to keep to; lengths in voxels. */
-typedef struct exposed_bounds {
+typedef struct ms_surface_fit_bounds {
     double least;              /* no radius below this */
     double protrusion;         /* no sphere sticks out by more; HUGE_VAL: no bound */
     int equal;                 /* nonzero: one radius for all */
     const ms_settings *planes; /* those that no sphere crosses; NULL: none */
-} exposed_bounds;
+} ms_surface_fit_bounds;
 
 /** A fit in progress. */
-typedef struct exposed_fit {
-    const ms_field *field; /* borrowed */
-    exposed_bounds bounds;
-    mirrors mirrors; /* each sphere stands for its images, too; zero: for itself */
-    int points;      /* per sphere */
-    uint64_t seed;   /* of the turns of the points */
-    uint64_t turns;  /* made so far */
-} exposed_fit;
+typedef struct ms_surface_fit {
+    const ms_signed_distance *field; /* borrowed */
+    ms_surface_fit_bounds bounds;
+    ms_mirror ms_mirror; /* each sphere stands for its images, too; zero: for itself */
+    int points;          /* per sphere */
+    uint64_t seed;       /* of the turns of the points */
+    uint64_t turns;      /* made so far */
+} ms_surface_fit;
 
 /**
  * Moves all spheres, `steps` times, towards the least |S xor U|.
@@ -35,7 +35,7 @@ typedef struct exposed_fit {
  * distance to the surface. The step (dc, dR) minimises the sum of w (phi + u.dc + dR)^2 with
  * w = 1 / max(1/4, |phi|): at rest, the sum of sign(phi) (u, 1) is 0, and that is the derivative of
  * |S xor U| for the sphere (exposed area outside S less exposed area inside S). Places that stick out
- * too much, or lie beyond a plane, weigh a thousand times more; the bound itself is exposed_confine's to keep.
+ * too much, or lie beyond a plane, weigh a thousand times more; the bound itself is ms_surface_fit_confine's to keep.
  *
  * @param ball    `count` spheres, in voxels; those on a plane of symmetry stay on it
  * @param damping of the first and of the last step: part of (dc, dR) that is made
@@ -43,19 +43,19 @@ typedef struct exposed_fit {
  *
  * Cost: steps x count x points x neighbours; all cores, the same bits at any number of threads.
  */
-ms_status exposed_fit_steps(exposed_fit *fit, ms_ball *ball, size_t count, int steps, const double damping[2],
-                            ms_error *err);
+ms_status ms_surface_fit_steps(ms_surface_fit *fit, ms_ball *ball, size_t count, int steps, const double damping[2],
+                               ms_error *err);
 
 /** Nonzero if protrusion is bounded or there are planes. */
-int exposed_is_bounded(const exposed_bounds *bounds);
+int ms_surface_fit_is_bounded(const ms_surface_fit_bounds *bounds);
 
 /**
  * The largest radius allowed about a place: one that sticks out by the bound, or reaches to a plane. HUGE_VAL without.
  * Exact where the target has a closed mesh. Cost: once ms_closest_signed_distance.
  */
-double exposed_most_radius(const exposed_fit *fit, const double centre[3]);
+double ms_surface_fit_most_radius(const ms_surface_fit *fit, const double centre[3]);
 
 /** Cuts radii to what is allowed, all of them to the same if they are to be equal; to 0 where none is. */
-void exposed_confine(const exposed_fit *fit, ms_ball *ball, size_t count);
+void ms_surface_fit_confine(const ms_surface_fit *fit, ms_ball *ball, size_t count);
 
 #endif

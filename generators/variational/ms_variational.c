@@ -79,24 +79,24 @@ static ms_status judge(ms_stop_reason *reason, const ms_clump *clump, size_t ask
         *reason = run->stop.radius > 0 ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
     }
     if (run->progress && n > 0) {
-        run->progress(run->progress_context, n, ms_score_of(&sum, target->voxels).dice);
+        run->progress(run->progress_context, n, ms_metrics_score(&sum, target->voxels).dice);
     }
     return MS_OK;
 }
 
-static variational_settings read_settings(const ms_run *run)
+static ms_variational_settings read_settings(const ms_run *run)
 {
     const double *value = run->settings->value;
     const int *across = ACROSS[(int)value[SYMMETRY]];
-    variational_settings settings = {.rounds = ROUNDS[(int)value[EFFORT]],
-                                     .points = (int)value[POINTS],
-                                     .bounds = {.protrusion = value[PROTRUSION] < 0 ? HUGE_VAL : value[PROTRUSION],
-                                                .equal = value[EQUAL_RADIUS] != 0,
-                                                .planes = run->settings},
-                                     .mirrors = {.across = {across[0], across[1], across[2]}},
-                                     .refine = &run->settings->clump};
+    ms_variational_settings settings = {.rounds = ROUNDS[(int)value[EFFORT]],
+                                        .points = (int)value[POINTS],
+                                        .bounds = {.protrusion = value[PROTRUSION] < 0 ? HUGE_VAL : value[PROTRUSION],
+                                                   .equal = value[EQUAL_RADIUS] != 0,
+                                                   .planes = run->settings},
+                                        .ms_mirror = {.across = {across[0], across[1], across[2]}},
+                                        .refine = &run->settings->clump};
     double unused;
-    ms_target_to_voxels(settings.mirrors.at, &unused, &run->target->grid, run->target->body.centroid, 0);
+    ms_target_to_voxels(settings.ms_mirror.at, &unused, &run->target->grid, run->target->body.centroid, 0);
     return settings;
 }
 
@@ -104,10 +104,10 @@ static variational_settings read_settings(const ms_run *run)
 static ms_status generate_for(void *context, ms_clump *clump, ms_stop_reason *reason, size_t n, ms_error *err)
 {
     const ms_run *run = context;
-    const variational_settings settings = read_settings(run);
+    const ms_variational_settings settings = read_settings(run);
     ms_ball *ball;
     size_t count;
-    ms_status status = variational_solve(&ball, &count, run, &settings, n, err);
+    ms_status status = ms_variational_solve(&ball, &count, run, &settings, n, err);
     if (status == MS_OK) {
         status = to_clump(clump, ball, count, run, err);
     }
@@ -125,7 +125,7 @@ static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run 
     }
     const size_t most = run->stop.spheres > 0 ? run->stop.spheres : MS_CLUMP_MAX_SPHERES;
     ms_run each = *run;
-    return ms_stop_has_measure(&run->stop) ? ms_search(clump, reason, most, generate_for, &each, err)
+    return ms_stop_has_measure(&run->stop) ? ms_bisect_count(clump, reason, most, generate_for, &each, err)
                                            : generate_for(&each, clump, reason, most, err);
 }
 

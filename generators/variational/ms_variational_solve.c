@@ -46,12 +46,12 @@ static const double SNAP = 0.3;
 /* A run for one number of spheres. */
 typedef struct solver {
     const ms_run *run;
-    const variational_settings *settings;
+    const ms_variational_settings *settings;
     float *walled; /* the target's distances, cut down to those to planes; NULL without planes */
     ms_grid coarse;
     int step; /* of the coarse grid, in voxels */
-    ms_field field;
-    exposed_fit fit;
+    ms_signed_distance field;
+    ms_surface_fit fit;
     size_t count, wanted; /* spheres that are fitted; asked for, mirror images among them */
     ms_ball *ball, *best; /* in voxels of the target's grid; room for `room` */
     ms_ball *all;         /* with mirror images: room for `room` times the planes' images */
@@ -74,7 +74,7 @@ static int choose_step(const ms_target *target, size_t n)
 static void solver_free(solver *s)
 {
     ms_grid_free(&s->coarse);
-    ms_field_free(&s->field);
+    ms_signed_distance_free(&s->field);
     free(s->walled);
     free(s->ball);
     free(s->best);
@@ -90,14 +90,14 @@ static double least_radius(const ms_run *run)
 /* Fills in the mirror images; returns how many spheres there are in all. */
 static size_t expand(solver *s)
 {
-    return mirrors_expand(s->all, s->ball, s->count, &s->settings->mirrors);
+    return ms_mirror_expand(s->all, s->ball, s->count, &s->settings->ms_mirror);
 }
 
 static size_t total(const solver *s)
 {
     size_t sum = 0;
     for (size_t b = 0; b < s->count; b++) {
-        sum += mirrors_images(&s->settings->mirrors, &s->ball[b]);
+        sum += ms_mirror_images(&s->settings->ms_mirror, &s->ball[b]);
     }
     return sum;
 }
@@ -105,15 +105,15 @@ static size_t total(const solver *s)
 static ms_status fit(solver *s, int steps, double from, double to, ms_error *err)
 {
     const double damping[2] = {from, to};
-    return exposed_fit_steps(&s->fit, s->ball, s->count, steps, damping, err);
+    return ms_surface_fit_steps(&s->fit, s->ball, s->count, steps, damping, err);
 }
 
 static ms_status mismatch(int64_t *out, solver *s, ms_error *err)
 {
-    overlap o;
-    const ms_status status = overlap_open(&o, &s->run->target->grid, s->all, expand(s), err);
+    ms_coverage_count o;
+    const ms_status status = ms_coverage_count_open(&o, &s->run->target->grid, s->all, expand(s), err);
     *out = o.mismatch;
-    overlap_close(&o);
+    ms_coverage_count_close(&o);
     return status;
 }
 
@@ -122,7 +122,7 @@ static ms_status mismatch(int64_t *out, solver *s, ms_error *err)
 static ms_status improve(solver *s, int steps, double from, double to, ms_error *err)
 {
     int64_t before = 0, after = 0;
-    if (exposed_is_bounded(&s->fit.bounds)) {
+    if (ms_surface_fit_is_bounded(&s->fit.bounds)) {
         return fit(s, steps, from, to, err);
     }
     memcpy(s->best, s->ball, s->count * sizeof *s->ball);
@@ -150,8 +150,8 @@ static ms_status sharpen_field(solver *s, ms_error *err)
     ms_status status = mismatch(&left, s, err);
     const double h = target->grid.h, area = ms_mesh_area(target->mesh) / (h * h);
     if (status == MS_OK && (double)left < SHARP * area) {
-        ms_field_free(&s->field);
-        status = ms_field_alloc(&s->field, target, 1, err);
+        ms_signed_distance_free(&s->field);
+        status = ms_signed_distance_alloc(&s->field, target, 1, err);
     }
     return status;
 }
@@ -159,11 +159,11 @@ static ms_status sharpen_field(solver *s, ms_error *err)
 /* Makes the spheres keep to their bounds, and moves them within. */
 static ms_status settle(solver *s, ms_error *err)
 {
-    if (!exposed_is_bounded(&s->fit.bounds)) {
+    if (!ms_surface_fit_is_bounded(&s->fit.bounds)) {
         return MS_OK;
     }
-    exposed_confine(&s->fit, s->ball, s->count);
-    return pattern_search(s->ball, s->count, &s->run->target->grid, &s->fit, SEARCH_ROUNDS, err);
+    ms_surface_fit_confine(&s->fit, s->ball, s->count);
+    return ms_pattern_search(s->ball, s->count, &s->run->target->grid, &s->fit, SEARCH_ROUNDS, err);
 }
 
 /* All spheres, images too, in voxels of the coarse grid; returns how many. */
@@ -171,7 +171,7 @@ static size_t all_to_coarse(solver *s)
 {
     const size_t all = expand(s);
     for (size_t b = 0; b < all; b++) {
-        s->all[b] = start_to_coarse(&s->all[b], s->step);
+        s->all[b] = ms_variational_start_to_coarse(&s->all[b], s->step);
     }
     return all;
 }
@@ -183,7 +183,7 @@ static ms_status prune(solver *s, ms_error *err)
     ms_status status = MS_OK;
     while (status == MS_OK && count > s->wanted) {
         const size_t gone = count - s->wanted < most ? count - s->wanted : most;
-        status = drop_cheapest(s->ball, &s->count, gone, &s->coarse, s->step, &s->settings->mirrors, err);
+        status = ms_prune_cheapest(s->ball, &s->count, gone, &s->coarse, s->step, &s->settings->ms_mirror, err);
         if (status == MS_OK) {
             status = fit(s, DROP_STEPS, 0.5, 0.3, err);
         }
@@ -198,7 +198,7 @@ static ms_status prune(solver *s, ms_error *err)
 /* Leaves only what is above each plane of symmetry to be covered. */
 static void keep_upper_side(ms_grid *coarse, const solver *s)
 {
-    const mirrors *m = &s->settings->mirrors;
+    const ms_mirror *m = &s->settings->ms_mirror;
     const size_t nx = (size_t)coarse->n[0], stride[3] = {1, nx, nx * (size_t)coarse->n[1]};
     for (int a = 0; a < 3; a++) {
         for (size_t v = 0; m->across[a] && v < ms_grid_voxels(coarse); v++) {
@@ -215,11 +215,11 @@ static ms_status cover(solver *s, ms_grid *left, size_t most, ms_error *err)
     const size_t before = s->count, limit = total(s) + most;
     size_t added = 0;
     keep_upper_side(left, s);
-    const ms_status status =
-        start_cover(s->ball + before, &added, target, s->walled ? s->walled : target->distance, left, s->step,
-                    most < s->room - before ? most : s->room - before, least_radius(s->run), err);
+    const ms_status status = ms_variational_start_cover(
+        s->ball + before, &added, target, s->walled ? s->walled : target->distance, left, s->step,
+        most < s->room - before ? most : s->room - before, least_radius(s->run), err);
     for (size_t b = before; b < before + added; b++) {
-        mirrors_fold(&s->ball[b], &s->settings->mirrors, SNAP);
+        ms_mirror_fold(&s->ball[b], &s->settings->ms_mirror, SNAP);
     }
     s->count += added;
     while (s->count > before + 1 && total(s) > limit) {
@@ -232,10 +232,10 @@ static ms_status cover(solver *s, ms_grid *left, size_t most, ms_error *err)
 static ms_status add(solver *s, size_t most, ms_error *err)
 {
     ms_grid left = {0};
-    ms_status status = start_coarsen(&left, s->run->target, s->step, err);
+    ms_status status = ms_variational_start_coarsen(&left, s->run->target, s->step, err);
     if (status == MS_OK) {
         const size_t all = all_to_coarse(s);
-        overlap_clear(&left, s->all, all);
+        ms_coverage_count_clear(&left, s->all, all);
         status = cover(s, &left, most, err);
     }
     ms_grid_free(&left);
@@ -247,11 +247,11 @@ static ms_status start(solver *s, ms_error *err)
 {
     ms_status status = MS_OK;
     for (s->step = choose_step(s->run->target, s->wanted);; s->step--) {
-        status = start_coarsen(&s->coarse, s->run->target, s->step, err);
+        status = ms_variational_start_coarsen(&s->coarse, s->run->target, s->step, err);
         s->count = 0;
         if (status == MS_OK) {
             ms_grid half = {0};
-            status = start_coarsen(&half, s->run->target, s->step, err);
+            status = ms_variational_start_coarsen(&half, s->run->target, s->step, err);
             if (status == MS_OK) {
                 status = cover(s, &half, s->room, err);
             }
@@ -268,9 +268,9 @@ static ms_status start(solver *s, ms_error *err)
 static ms_status start_from(solver *s, const ms_clump *given, ms_error *err)
 {
     const ms_target *target = s->run->target;
-    const mirrors *m = &s->settings->mirrors;
+    const ms_mirror *m = &s->settings->ms_mirror;
     s->step = choose_step(target, s->wanted);
-    ms_status status = start_coarsen(&s->coarse, target, s->step, err);
+    ms_status status = ms_variational_start_coarsen(&s->coarse, target, s->step, err);
     for (size_t g = 0; g < given->n_spheres; g++) {
         ms_ball *ball = &s->ball[s->count];
         ms_target_to_voxels(ball->centre, &ball->radius, &target->grid, given->sphere[g].centre,
@@ -281,7 +281,7 @@ static ms_status start_from(solver *s, const ms_clump *given, ms_error *err)
             below |= m->across[a] && ball->centre[a] < m->at[a] - reach;
         }
         if (!below) {
-            mirrors_fold(ball, m, SNAP);
+            ms_mirror_fold(ball, m, SNAP);
             s->count++;
         }
     }
@@ -289,10 +289,10 @@ static ms_status start_from(solver *s, const ms_clump *given, ms_error *err)
     return status == MS_OK && all < s->wanted ? add(s, s->wanted - all, err) : status;
 }
 
-static ms_status solver_begin(solver *s, const ms_run *run, const variational_settings *settings, size_t n,
+static ms_status solver_begin(solver *s, const ms_run *run, const ms_variational_settings *settings, size_t n,
                               ms_error *err)
 {
-    const int *across = settings->mirrors.across;
+    const int *across = settings->ms_mirror.across;
     const ms_clump *given = settings->refine;
     const size_t most = n < run->target->voxels ? n : run->target->voxels; /* more would be alike */
     const size_t room = (size_t)ceil(SURPLUS * (double)most) + MORE;
@@ -309,17 +309,17 @@ static ms_status solver_begin(solver *s, const ms_run *run, const variational_se
         if (!s->walled) {
             return ms_fail(err, MS_ERR_NOMEM, "no memory for distances to planes; use fewer cells");
         }
-        planes_cut(s->walled, run->target, run->settings);
+        ms_planes_cut(s->walled, run->target, run->settings);
     }
     ms_status status = given->n_spheres > 0 ? start_from(s, given, err) : start(s, err);
     if (status == MS_OK) {
-        status = ms_field_alloc(&s->field, run->target, s->step < FIELD_STEP ? s->step : FIELD_STEP, err);
+        status = ms_signed_distance_alloc(&s->field, run->target, s->step < FIELD_STEP ? s->step : FIELD_STEP, err);
     }
-    s->fit = (exposed_fit){.field = &s->field,
-                           .bounds = settings->bounds,
-                           .mirrors = settings->mirrors,
-                           .points = settings->points,
-                           .seed = run->seed};
+    s->fit = (ms_surface_fit){.field = &s->field,
+                              .bounds = settings->bounds,
+                              .ms_mirror = settings->ms_mirror,
+                              .points = settings->points,
+                              .seed = run->seed};
     s->fit.bounds.least = fmax(least_radius(run), LEAST_RADIUS);
     return status;
 }
@@ -363,11 +363,11 @@ static ms_status round_trip(solver *s, size_t more, ms_error *err)
 static ms_status repair(solver *s, ms_error *err)
 {
     const ms_grid *grid = &s->run->target->grid;
-    ms_status status = drop_idle(s->ball, &s->count, grid, &s->settings->mirrors, err);
+    ms_status status = ms_prune_idle(s->ball, &s->count, grid, &s->settings->ms_mirror, err);
     for (int round = 0; round < REPAIRS && status == MS_OK && total(s) < s->wanted; round++) {
         status = round_trip(s, s->wanted - total(s), err);
         if (status == MS_OK) {
-            status = drop_idle(s->ball, &s->count, grid, &s->settings->mirrors, err);
+            status = ms_prune_idle(s->ball, &s->count, grid, &s->settings->ms_mirror, err);
         }
     }
     return status;
@@ -401,8 +401,8 @@ static ms_status solve(solver *s, ms_error *err)
     return status == MS_OK ? repair(s, err) : status;
 }
 
-ms_status variational_solve(ms_ball **ball, size_t *count, const ms_run *run, const variational_settings *settings,
-                            size_t n, ms_error *err)
+ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
+                               const ms_variational_settings *settings, size_t n, ms_error *err)
 {
     solver s;
     *ball = NULL;

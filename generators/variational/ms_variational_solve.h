@@ -5,13 +5,13 @@
 #include "ms_generator.h"
 #include "ms_surface_fit.h"
 
-typedef struct variational_settings {
-    int rounds;            /* of adding spheres and dropping others after the fit */
-    int points;            /* per sphere */
-    exposed_bounds bounds; /* `least` is found from the stop rule */
-    mirrors mirrors;
+typedef struct ms_variational_settings {
+    int rounds;                   /* of adding spheres and dropping others after the fit */
+    int points;                   /* per sphere */
+    ms_surface_fit_bounds bounds; /* `least` is found from the stop rule */
+    ms_mirror ms_mirror;
     const ms_clump *refine; /* spheres to start from; empty: none */
-} variational_settings;
+} ms_variational_settings;
 
 /**
  * Places up to n spheres so that |S xor U| is least.
@@ -21,7 +21,7 @@ typedef struct variational_settings {
  *                   or where n cannot be made of whole sets of mirror images
  * @return MS_OK; MS_ERR_NOMEM; MS_ERR_LIMIT
  */
-ms_status variational_solve(ms_ball **ball, size_t *count, const ms_run *run, const variational_settings *settings,
-                            size_t n, ms_error *err);
+ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
+                               const ms_variational_settings *settings, size_t n, ms_error *err);
 
 #endif

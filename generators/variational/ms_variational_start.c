@@ -9,7 +9,7 @@
  * direction is more than 27 degrees from one. */
 static const double RISING = 0.85;
 
-ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_error *err)
+ms_status ms_variational_start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_error *err)
 {
     const ms_grid *grid = &target->grid;
     int n[3];
@@ -28,7 +28,7 @@ ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_e
     return status;
 }
 
-ms_ball start_to_coarse(const ms_ball *ball, int step)
+ms_ball ms_variational_start_to_coarse(const ms_ball *ball, int step)
 {
     const double *c = ball->centre;
     return (ms_ball){.centre = {c[0] / step, c[1] / step, c[2] / step}, .radius = ball->radius / step};
@@ -75,8 +75,8 @@ static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_target *targ
     return MS_OK;
 }
 
-ms_status start_cover(ms_ball *ball, size_t *count, const ms_target *target, const float *e, const ms_grid *coarse,
-                      int step, size_t wanted, double least, ms_error *err)
+ms_status ms_variational_start_cover(ms_ball *ball, size_t *count, const ms_target *target, const float *e,
+                                     const ms_grid *coarse, int step, size_t wanted, double least, ms_error *err)
 {
     ms_ball *candidate;
     ms_cover *cover = NULL;

@@ -10,10 +10,10 @@
  *
  * @param[out] coarse the caller frees it; empty on failure
  */
-ms_status start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_error *err);
+ms_status ms_variational_start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_error *err);
 
 /** A sphere in voxels of the copy. */
-ms_ball start_to_coarse(const ms_ball *ball, int step);
+ms_ball ms_variational_start_to_coarse(const ms_ball *ball, int step);
 
 /**
  * Covers voxels of a coarse copy greedily (ms_cover) by the inscribed spheres about the shape's ridge: the
@@ -29,7 +29,7 @@ ms_ball start_to_coarse(const ms_ball *ball, int step);
  * Source: Yuan 2019, algorithm 2. Cost: one pass over the coarse voxels with 26 neighbours each, and
  * ms_cover.
  */
-ms_status start_cover(ms_ball *ball, size_t *count, const ms_target *target, const float *e, const ms_grid *coarse,
-                      int step, size_t wanted, double least, ms_error *err);
+ms_status ms_variational_start_cover(ms_ball *ball, size_t *count, const ms_target *target, const float *e,
+                                     const ms_grid *coarse, int step, size_t wanted, double least, ms_error *err);
 
 #endif

@@ -40,9 +40,9 @@ static void read_back(const char *path, const char *wanted)
     assert_int_equal(ms_file_read(&bytes, path, NULL), MS_OK);
     assert_int_equal(bytes.size, strlen(wanted));
     assert_string_equal((const char *)bytes.data, wanted);
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     assert_null(bytes.data);
-    ms_bytes_free(NULL);
+    ms_file_free(NULL);
 }
 
 static ms_status write_text(const char *path, const char *text, ms_status end, ms_error *err)
@@ -234,10 +234,10 @@ static void checksums_are_fnv(void **state)
 {
     ms_bytes bytes = copy_bytes("foobar", 6);
     (void)state;
-    assert_true(ms_bytes_checksum(&bytes) == UINT64_C(0x85944171f73967e8));
+    assert_true(ms_file_checksum(&bytes) == UINT64_C(0x85944171f73967e8));
     bytes.size = 0;
-    assert_true(ms_bytes_checksum(&bytes) == UINT64_C(0xcbf29ce484222325));
-    ms_bytes_free(&bytes);
+    assert_true(ms_file_checksum(&bytes) == UINT64_C(0xcbf29ce484222325));
+    ms_file_free(&bytes);
 }
 
 static void endings_are_lower_case(void **state)

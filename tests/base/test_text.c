@@ -8,7 +8,7 @@
 static int parse(double *value, const char *text)
 {
     ms_word word = {text, strlen(text)};
-    return ms_word_double(value, &word);
+    return ms_text_to_double(value, &word);
 }
 
 /* strtod of the C library rounds correctly: it is the judge. */
@@ -117,11 +117,11 @@ static void integers_are_strict(void **state)
     ms_word word = {"-999999999999", 13};
     int64_t value;
     (void)state;
-    assert_true(ms_word_integer(&value, &word));
+    assert_true(ms_text_to_integer(&value, &word));
     assert_true(value == INT64_C(-999999999999));
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         word = (ms_word){bad[i], strlen(bad[i])};
-        assert_false(ms_word_integer(&value, &word));
+        assert_false(ms_text_to_integer(&value, &word));
     }
 }
 
@@ -136,16 +136,16 @@ static void lines_are_counted_over_comments_and_joints(void **state)
     ms_text_start(&text, &bytes, "t");
     text.comment = '#';
     text.joins_lines = 1;
-    assert_true(ms_text_word(&word, &text) && ms_word_is(&word, "a") && text.line == 1);
+    assert_true(ms_text_word(&word, &text) && ms_text_word_is(&word, "a") && text.line == 1);
     assert_false(ms_text_word(&word, &text));
     assert_true(ms_text_seek(&text) && text.line == 3);
-    assert_true(ms_text_word(&word, &text) && ms_word_is(&word, "b"));
-    assert_true(ms_text_word(&word, &text) && ms_word_is(&word, "c") && text.line == 4);
-    assert_true(ms_text_word(&word, &text) && ms_word_is(&word, "d") && text.line == 5);
+    assert_true(ms_text_word(&word, &text) && ms_text_word_is(&word, "b"));
+    assert_true(ms_text_word(&word, &text) && ms_text_word_is(&word, "c") && text.line == 4);
+    assert_true(ms_text_word(&word, &text) && ms_text_word_is(&word, "d") && text.line == 5);
     assert_false(ms_text_word(&word, &text));
-    assert_true(ms_text_seek(&text) && ms_text_word(&word, &text) && ms_word_is(&word, "e") && text.line == 6);
+    assert_true(ms_text_seek(&text) && ms_text_word(&word, &text) && ms_text_word_is(&word, "e") && text.line == 6);
     assert_false(ms_text_seek(&text));
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
 }
 
 static void quotes_are_printable_and_short(void **state)
@@ -155,7 +155,7 @@ static void quotes_are_printable_and_short(void **state)
     memset(wild, 'x', sizeof wild);
     wild[0] = '\033';
     ms_word word = {wild, sizeof wild};
-    ms_quote quote = ms_word_quote(&word);
+    ms_quote quote = ms_text_quote(&word);
     assert_int_equal(strlen(quote.text), 39);
     assert_int_equal(quote.text[0], '?');
     assert_string_equal(quote.text + 36, "...");

@@ -18,7 +18,7 @@ static ms_status time_mss(double *seconds, const ms_target *target, ms_error *er
     ms_settings settings = {0};
     ms_clump clump = {0};
     ms_stop_reason reason;
-    ms_status status = ms_settings_init(&settings, ms_generator_mss.options, err);
+    ms_status status = ms_option_settings_init(&settings, ms_generator_mss.options, err);
     ms_run run = {.target = target, .stop = ms_stop_none(), .settings = &settings};
     run.stop.spheres = 50;
     const double start = omp_get_wtime();
@@ -27,7 +27,7 @@ static ms_status time_mss(double *seconds, const ms_target *target, ms_error *er
     }
     *seconds = omp_get_wtime() - start;
     ms_clump_free(&clump);
-    ms_settings_free(&settings);
+    ms_option_settings_free(&settings);
     return status;
 }
 
@@ -77,7 +77,7 @@ static ms_status compare(const ms_target *target, const ms_ball *ball, ms_error 
 
 int main(void)
 {
-    const ms_fill_rule rule = {.least = 20000, .tries = 10000000, .seed = 1};
+    const ms_random_spheres_rule rule = {.least = 20000, .tries = 10000000, .seed = 1};
     ms_mesh mesh;
     ms_target target = {0};
     ms_nodes nodes = {0};
@@ -91,7 +91,7 @@ int main(void)
         status = ms_target_from_mesh(&target, &mesh, 1, 2.0 / 100, MS_VOXEL_HALF, &err);
     }
     if (status == MS_OK && (status = ms_nodes_of_target(&nodes, &target, &err)) == MS_OK &&
-        (status = ms_fill(&ball, &count, &target, &nodes, &rule, &err)) == MS_OK) {
+        (status = ms_random_spheres(&ball, &count, &target, &nodes, &rule, &err)) == MS_OK) {
         status = compare(&target, ball, &err);
     }
     if (status != MS_OK) {

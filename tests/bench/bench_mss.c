@@ -30,7 +30,7 @@ static ms_status run_mss(const ms_mesh *mesh, double h, ms_error *err)
         return status;
     }
     const double made = omp_get_wtime();
-    status = ms_settings_init(&settings, ms_generator_mss.options, err);
+    status = ms_option_settings_init(&settings, ms_generator_mss.options, err);
     ms_run run = {.target = &target, .stop = ms_stop_none(), .settings = &settings};
     run.stop.spheres = 70;
     if (status == MS_OK) {
@@ -45,7 +45,7 @@ static ms_status run_mss(const ms_mesh *mesh, double h, ms_error *err)
                100 * (done - made) / (done - start), (done - made) / target.distance_seconds);
     }
     ms_clump_free(&clump);
-    ms_settings_free(&settings);
+    ms_option_settings_free(&settings);
     ms_target_free(&target);
     return status;
 }

@@ -12,9 +12,9 @@ static ms_status run_setcover(const ms_target *target, double coverage, const ch
     ms_settings settings = {0};
     ms_clump clump = {0};
     ms_stop_reason reason;
-    ms_status status = ms_settings_init(&settings, ms_generator_setcover.options, err);
+    ms_status status = ms_option_settings_init(&settings, ms_generator_setcover.options, err);
     if (status == MS_OK) {
-        status = ms_settings_set(&settings, "candidates", candidates, err);
+        status = ms_option_settings_set(&settings, "candidates", candidates, err);
     }
     ms_run run = {.target = target, .stop = ms_stop_none(), .settings = &settings};
     run.stop.coverage = coverage;
@@ -28,7 +28,7 @@ static ms_status run_setcover(const ms_target *target, double coverage, const ch
                (omp_get_wtime() - start) / (target->voxelize_seconds + target->distance_seconds));
     }
     ms_clump_free(&clump);
-    ms_settings_free(&settings);
+    ms_option_settings_free(&settings);
     return status;
 }
 

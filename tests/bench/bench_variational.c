@@ -68,7 +68,7 @@ static ms_status measure(double *seconds, const ms_target *target, const ms_gene
     ms_clump clump = {0};
     ms_stop_reason reason;
     ms_metrics metrics;
-    ms_status status = ms_settings_init(&settings, generator->options, err);
+    ms_status status = ms_option_settings_init(&settings, generator->options, err);
     ms_run run = {.target = target, .stop = ms_stop_none(), .settings = &settings};
     run.stop.spheres = spheres;
     const double start = omp_get_wtime();
@@ -87,7 +87,7 @@ static ms_status measure(double *seconds, const ms_target *target, const ms_gene
             rms_angle(target, &clump));
     }
     ms_clump_free(&clump);
-    ms_settings_free(&settings);
+    ms_option_settings_free(&settings);
     return status;
 }
 

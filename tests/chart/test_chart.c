@@ -69,7 +69,7 @@ static void read_text(char *text, size_t size, const char *path)
     }
     assert_true(bytes.size < size);
     memcpy(text, bytes.data, bytes.size + 1);
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     assert_int_equal(remove(path), 0);
 }
 

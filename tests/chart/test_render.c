@@ -7,8 +7,8 @@ enum { SIZE = 200 };
 static void start(ms_picture *picture, ms_view *view, const ms_target *target)
 {
     ms_error err;
-    assert_int_equal(ms_picture_alloc(picture, 2 * SIZE, SIZE, &err), MS_OK);
-    assert_int_equal(ms_view_of(view, target, 0, 0, SIZE, &err), MS_OK);
+    assert_int_equal(ms_render_picture_alloc(picture, 2 * SIZE, SIZE, &err), MS_OK);
+    assert_int_equal(ms_render_view(view, target, 0, 0, SIZE, &err), MS_OK);
 }
 
 /* Pixels of a square where something is. */
@@ -44,7 +44,7 @@ static void discs(void **state)
     ms_render_clump(&picture, &view, &clump);
     assert_close(covered(&picture, &view), disc, 0.005 * disc);
     assert_close((double)picture.depth[SIZE / 2 * picture.width + SIZE + SIZE / 2], 0.46 * SIZE, 0.5);
-    ms_picture_free(&picture);
+    ms_render_picture_free(&picture);
     ms_target_free(&target);
     ms_mesh_free(&mesh);
 }
@@ -60,7 +60,7 @@ static void nearest_is_seen(void **state)
         ms_sphere ball[3] = {{{0, 0, 0}, 0.5}, {{0, 0, 3}, 0.25}, {{1, 0.5, -3}, 0.4}};
         ms_sphere swapped[3] = {ball[1], ball[0], ball[2]};
         const ms_clump clump = {.n_spheres = 3, .capacity = 3, .sphere = order ? swapped : ball};
-        assert_int_equal(ms_picture_alloc(&picture, 2 * SIZE, SIZE, &err), MS_OK);
+        assert_int_equal(ms_render_picture_alloc(&picture, 2 * SIZE, SIZE, &err), MS_OK);
         ms_render_clump(&picture, &view, &clump);
         const uint32_t *row = picture.part + SIZE / 2 * picture.width;
         assert_int_equal(row[SIZE / 2], order ? 1 : 2);
@@ -68,7 +68,7 @@ static void nearest_is_seen(void **state)
         assert_int_equal(row[SIZE / 2 + 60], 0);
         assert_int_equal(picture.part[SIZE / 4 * picture.width + SIZE - 1], 3);
         assert_int_equal(picture.part[SIZE / 4 * picture.width + SIZE], 0); /* beyond */
-        ms_picture_free(&picture);
+        ms_render_picture_free(&picture);
     }
 }
 
@@ -90,11 +90,11 @@ static void voxels(void **state)
             }
         }
     }
-    assert_int_equal(ms_picture_alloc(&picture, SIZE, SIZE, &err), MS_OK);
+    assert_int_equal(ms_render_picture_alloc(&picture, SIZE, SIZE, &err), MS_OK);
     ms_render_target(&picture, &view, &target);
     assert_close(covered(&picture, &view), 8 * 4 * 100, 1);
     assert_close((double)picture.depth[SIZE / 2 * SIZE + SIZE / 2], 10, 1e-9);
-    ms_picture_free(&picture);
+    ms_render_picture_free(&picture);
     ms_grid_free(&target.grid);
 }
 

@@ -109,7 +109,7 @@ static void read_again(ms_clump *got, ms_particle *known, const char *folder, co
     ms_error err = {{0}};
     const ms_content content = {.clump = clump, .particle = particle};
     snprintf(path, sizeof path, "%s/c.%s", folder, format);
-    if (ms_write_clump(&content, path, ms_format_find(format, NULL), &err) != MS_OK ||
+    if (ms_write_clump(&content, path, ms_write_format_find(format, NULL), &err) != MS_OK ||
         ms_read_clump(got, known, path, &err) != MS_OK) {
         fail_msg("%s: %s", format, err.text);
     }
@@ -177,9 +177,9 @@ static size_t numbers_of(double *out, size_t room, const char *folder, const cha
     assert_int_equal(ms_file_read(&bytes, path, NULL), MS_OK);
     for (char *word = strtok((char *)bytes.data, " ,\n"); word && n < room; word = strtok(NULL, " ,\n")) {
         const ms_word w = {word, strlen(word)};
-        n += ms_word_double(&out[n], &w) != 0;
+        n += ms_text_to_double(&out[n], &w) != 0;
     }
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     return n;
 }
 
@@ -208,7 +208,7 @@ static void what_the_other_engines_are_told(void **state)
     for (size_t f = 0; f < 5; f++) {
         const ms_content content = {.clump = &clump, .particle = &particle};
         snprintf(path, sizeof path, "%s/c.%s", folder, FORMATS[f]);
-        assert_int_equal(ms_write_clump(&content, path, ms_format_find(FORMATS[f], NULL), NULL), MS_OK);
+        assert_int_equal(ms_write_clump(&content, path, ms_write_format_find(FORMATS[f], NULL), NULL), MS_OK);
     }
     assert_int_equal(numbers_of(v, 200, folder, "c.mercury/Clump/Clump.txt"), 24);
     expect_spheres(v, &made.clump, 4, 1);

@@ -28,7 +28,7 @@ static void write_clump(char path[128], const char *folder, const char *name, co
     ms_error err = {{0}};
     snprintf(path, 128, "%s/%s", folder, name);
     const ms_content content = {.clump = clump, .record = record};
-    if (ms_write_clump(&content, path, format ? ms_format_find(format, NULL) : NULL, &err) != MS_OK) {
+    if (ms_write_clump(&content, path, format ? ms_write_format_find(format, NULL) : NULL, &err) != MS_OK) {
         fail_msg("%s", err.text);
     }
 }
@@ -195,7 +195,7 @@ static void the_ending_names_the_format(void **state)
         expect_message(&err, "csv, json, vtk");
         assert_int_not_equal(access(path, F_OK), 0);
     }
-    assert_null(ms_format_find("CSV", &err));
+    assert_null(ms_write_format_find("CSV", &err));
     assert_int_equal(rmdir(folder), 0);
     ms_clump_free(&clump);
 }
@@ -220,9 +220,9 @@ static void a_failure_leaves_the_file_that_was_there(void **state)
     write_clump(path, folder, "a.csv", NULL, &clump, NULL);
     assert_int_equal(write_to(&clump, path, &failing, NULL, &err), MS_ERR_SHAPE);
     expect_message(&err, "this format fails");
-    assert_int_equal(write_to(&bad, path, ms_format_find("json", NULL), NULL, &err), MS_ERR_IO);
-    assert_int_equal(write_to(&clump, path, ms_format_find("json", NULL), "[1, 2", &err), MS_ERR_IO);
-    assert_int_equal(write_to(&clump, path, ms_format_find("json", NULL), "[1, 2]", &err), MS_ERR_IO);
+    assert_int_equal(write_to(&bad, path, ms_write_format_find("json", NULL), NULL, &err), MS_ERR_IO);
+    assert_int_equal(write_to(&clump, path, ms_write_format_find("json", NULL), "[1, 2", &err), MS_ERR_IO);
+    assert_int_equal(write_to(&clump, path, ms_write_format_find("json", NULL), "[1, 2]", &err), MS_ERR_IO);
     char *text = text_of(path);
     assert_string_equal(text, "x,y,z,r\n1,2,3,4\n");
     free(text);
@@ -283,7 +283,7 @@ static void a_grid_is_written_as_it_is(void **state)
     assert_int_equal(ms_file_read(&bytes, path, NULL), MS_OK);
     assert_non_null(strstr((char *)bytes.data, head));
     assert_memory_equal(bytes.data + bytes.size - 24, grid.inside, 24);
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     remove(path);
     assert_int_equal(rmdir(folder), 0);
     ms_grid_free(&grid);

@@ -15,16 +15,16 @@ static ms_status try_fcm(ms_clump *clump, ms_stop_reason *reason, const ms_targe
     ms_settings settings;
     char copy[256];
     snprintf(copy, sizeof copy, "%s", options);
-    assert_int_equal(ms_settings_init(&settings, ms_generator_fcm.options, err), MS_OK);
+    assert_int_equal(ms_option_settings_init(&settings, ms_generator_fcm.options, err), MS_OK);
     for (char *word = strtok(copy, " "); word; word = strtok(NULL, " ")) {
         char *equals = strchr(word, '=');
         assert_non_null(equals);
         *equals = 0;
-        assert_int_equal(ms_settings_set(&settings, word, equals + 1, err), MS_OK);
+        assert_int_equal(ms_option_settings_set(&settings, word, equals + 1, err), MS_OK);
     }
     const ms_run run = {.target = target, .stop = stop, .settings = &settings, .seed = seed};
     const ms_status status = ms_generator_run(clump, reason, &ms_generator_fcm, &run, err);
-    ms_settings_free(&settings);
+    ms_option_settings_free(&settings);
     return status;
 }
 
@@ -57,14 +57,14 @@ static double away(const double a[3], const double b[3], ms_norm norm)
 
 /* Every centre inside, every radius the least distance to any node plus what is asked for, and the filling
  * over with the sphere that touches the last node needed. */
-static void check_filling(const ms_target *target, const ms_fill_rule *rule, double beyond)
+static void check_filling(const ms_target *target, const ms_random_spheres_rule *rule, double beyond)
 {
     ms_nodes nodes;
     ms_ball *ball;
     size_t count, touched = 0, before = 0;
     ms_error err;
     assert_int_equal(ms_nodes_of_target(&nodes, target, &err), MS_OK);
-    if (ms_fill(&ball, &count, target, &nodes, rule, &err) != MS_OK) {
+    if (ms_random_spheres(&ball, &count, target, &nodes, rule, &err) != MS_OK) {
         fail_msg("%s", err.text);
     }
     uint8_t *covered = calloc(nodes.count, 1);
@@ -100,10 +100,11 @@ static void the_filling_touches_nodes(void **state)
     ms_target target;
     make_shape(&mesh, "grain", "fineness=10");
     make_target(&target, &mesh, 40, MS_VOXEL_HALF);
-    check_filling(&target, &(ms_fill_rule){.nodes_covered = 0.9, .tries = 1000000, .seed = 1}, 0);
-    check_filling(&target, &(ms_fill_rule){.nodes_covered = 0.6, .norm = MS_NORM_SUM, .offset = 1.5, .tries = 1000000},
+    check_filling(&target, &(ms_random_spheres_rule){.nodes_covered = 0.9, .tries = 1000000, .seed = 1}, 0);
+    check_filling(&target,
+                  &(ms_random_spheres_rule){.nodes_covered = 0.6, .norm = MS_NORM_SUM, .offset = 1.5, .tries = 1000000},
                   1.5);
-    check_filling(&target, &(ms_fill_rule){.nodes_covered = 0.2, .least = 1234, .tries = 1000000}, 0);
+    check_filling(&target, &(ms_random_spheres_rule){.nodes_covered = 0.2, .least = 1234, .tries = 1000000}, 0);
     ms_target_free(&target);
     ms_mesh_free(&mesh);
 }
@@ -121,7 +122,7 @@ static void volumes_are_filled_by_voxels(void **state)
     ms_target target;
     ms_error err;
     assert_int_equal(ms_target_from_volume(&target, &box, 0, &err), MS_OK);
-    check_filling(&target, &(ms_fill_rule){.nodes_covered = 0.9, .tries = 1000000}, 0.5);
+    check_filling(&target, &(ms_random_spheres_rule){.nodes_covered = 0.9, .tries = 1000000}, 0.5);
     ms_clump clump = run_fcm(&target, 1, "", 1);
     const double four_sigma = 4 * 2 * sqrt((81 - 1) / 12.0 / 10000);
     for (int a = 0; a < 3; a++) {
@@ -342,7 +343,7 @@ static void the_least_number_is_found(void **state)
             pretence p = {.needed = needed, .available = 100};
             ms_clump clump = {0};
             ms_stop_reason reason;
-            assert_int_equal(ms_search(&clump, &reason, most, pretend, &p, NULL), MS_OK);
+            assert_int_equal(ms_bisect_count(&clump, &reason, most, pretend, &p, NULL), MS_OK);
             if (needed <= most && needed <= 100) {
                 assert_int_equal(reason, MS_STOP_DICE);
                 assert_int_equal(clump.n_spheres, needed);

@@ -16,6 +16,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         FUZZ_REQUIRE(isfinite(sphere->radius) && sphere->radius > 0);
     }
     ms_clump_free(&clump);
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     return 0;
 }

@@ -20,7 +20,7 @@ static inline int fuzz_clump_read(const uint8_t *data, size_t size,
     }
     FUZZ_REQUIRE(status != MS_OK || particle.mass == 0 || (particle.mass > 0 && particle.scale > 0));
     ms_clump_free(&clump);
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     return 0;
 }
 

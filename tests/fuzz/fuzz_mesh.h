@@ -35,7 +35,7 @@ static inline int fuzz_mesh(fuzz_mesh_parser *parse, const uint8_t *data, size_t
         FUZZ_REQUIRE(strncmp(err.text, "fuzz: ", 6) == 0);
     }
     ms_mesh_free(&mesh);
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     return 0;
 }
 

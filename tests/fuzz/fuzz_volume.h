@@ -36,7 +36,7 @@ static inline int fuzz_volume(fuzz_volume_parser *parse, const uint8_t *data, si
         FUZZ_REQUIRE(strncmp(err.text, "fuzz: ", 6) == 0);
     }
     ms_volume_free(&volume);
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     return 0;
 }
 

@@ -18,10 +18,10 @@ typedef struct outcome {
 static ms_status try_run(outcome *o, const ms_generator *g, const ms_target *target, ms_stop stop, ms_error *err)
 {
     ms_settings settings;
-    assert_int_equal(ms_settings_init(&settings, g->options, err), MS_OK);
+    assert_int_equal(ms_option_settings_init(&settings, g->options, err), MS_OK);
     const ms_run run = {.target = target, .stop = stop, .settings = &settings, .seed = 7};
     ms_status status = ms_generator_run(&o->clump, &o->reason, g, &run, err);
-    ms_settings_free(&settings);
+    ms_option_settings_free(&settings);
     return status;
 }
 

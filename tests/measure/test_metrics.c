@@ -7,7 +7,7 @@ static void scores_follow_from_the_sums(void **state)
 {
     (void)state;
     const ms_tally sum = {.inside = 60, .outside = 15};
-    const ms_score score = ms_score_of(&sum, 80);
+    const ms_score score = ms_metrics_score(&sum, 80);
     expect_close(score.eta, 35.0 / 80, 1e-15);
     expect_close(score.dice, 1 - 120.0 / 155, 1e-15);
     expect_close(score.coverage, 0.75, 1e-15);

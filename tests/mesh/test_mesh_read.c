@@ -48,8 +48,10 @@ static void a_file_is_read_by_its_ending(void **state)
     ms_mesh_free(&mesh);
     unlink(path);
     rmdir(folder);
-    assert_true(ms_mesh_is_mesh_path("a.Stl") && ms_mesh_is_mesh_path("b/a.obj") && ms_mesh_is_mesh_path("a.ply"));
-    assert_false(ms_mesh_is_mesh_path("a.npy") || ms_mesh_is_mesh_path("stl") || ms_mesh_is_mesh_path("a.stl/b"));
+    assert_true(ms_mesh_read_is_mesh_path("a.Stl") && ms_mesh_read_is_mesh_path("b/a.obj") &&
+                ms_mesh_read_is_mesh_path("a.ply"));
+    assert_false(ms_mesh_read_is_mesh_path("a.npy") || ms_mesh_read_is_mesh_path("stl") ||
+                 ms_mesh_read_is_mesh_path("a.stl/b"));
 }
 
 /* Counts of the manifest, found by another program. */

@@ -161,11 +161,11 @@ static void meshes_over_the_limit_are_refused(void **state)
     ms_mesh mesh;
     ms_error err;
     (void)state;
-    assert_int_equal(ms_build_reserve(&builder, (size_t)UINT32_MAX + 1, 0, &err), MS_ERR_LIMIT);
+    assert_int_equal(ms_mesh_build_reserve(&builder, (size_t)UINT32_MAX + 1, 0, &err), MS_ERR_LIMIT);
     expect_message(&err, "sample: has more than 4294967295 vertices");
-    assert_int_equal(ms_build_reserve(&builder, 0, ((size_t)1 << 31) + 1, &err), MS_ERR_LIMIT);
+    assert_int_equal(ms_mesh_build_reserve(&builder, 0, ((size_t)1 << 31) + 1, &err), MS_ERR_LIMIT);
     expect_message(&err, "sample: has more than 2147483648 triangles");
-    assert_int_equal(ms_build_finish(&mesh, &builder, MS_ERR_LIMIT, &err), MS_ERR_LIMIT);
+    assert_int_equal(ms_mesh_build_finish(&mesh, &builder, MS_ERR_LIMIT, &err), MS_ERR_LIMIT);
     assert_null(mesh.vertex);
 }
 

@@ -60,7 +60,7 @@ static void an_stl_does_not_claim_to_be_text(void **state)
     assert_int_equal(ms_file_read(&bytes, path, NULL), MS_OK);
     assert_int_equal(bytes.size, 84 + 50 * 12);
     assert_true(strncmp((const char *)bytes.data, "solid", 5) != 0);
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     unlink(path);
     rmdir(folder);
     ms_mesh_free(&mesh);

@@ -24,11 +24,11 @@ static outcome run_mss(const ms_target *target, ms_stop stop, const char *option
     ms_settings settings;
     char copy[256];
     snprintf(copy, sizeof copy, "%s", options);
-    assert_int_equal(ms_settings_init(&settings, ms_generator_mss.options, &err), MS_OK);
+    assert_int_equal(ms_option_settings_init(&settings, ms_generator_mss.options, &err), MS_OK);
     for (char *word = strtok(copy, " "); word; word = strtok(NULL, " ")) {
         char *equals = strchr(word, '=');
         *equals = 0;
-        if (ms_settings_set(&settings, word, equals + 1, &err) != MS_OK) {
+        if (ms_option_settings_set(&settings, word, equals + 1, &err) != MS_OK) {
             fail_msg("%s", err.text);
         }
     }
@@ -36,7 +36,7 @@ static outcome run_mss(const ms_target *target, ms_stop stop, const char *option
     if (ms_generator_run(&o.clump, &o.reason, &ms_generator_mss, &run, &err) != MS_OK) {
         fail_msg("%s", err.text);
     }
-    ms_settings_free(&settings);
+    ms_option_settings_free(&settings);
     return o;
 }
 
@@ -62,11 +62,11 @@ static void field_equals_recomputation(void **state)
     (void)state;
     ms_mesh mesh;
     ms_target target;
-    mss_field field;
+    ms_mss_field field;
     ms_error err;
     make_shape(&mesh, "grain", "");
     make_target(&target, &mesh, 45, MS_VOXEL_HALF);
-    assert_int_equal(mss_field_init(&field, &target, &(ms_settings){0}, &err), MS_OK);
+    assert_int_equal(ms_mss_field_init(&field, &target, &(ms_settings){0}, &err), MS_OK);
     const size_t voxels = ms_grid_voxels(&target.grid);
     uint8_t *covered = malloc(voxels);
     float *distance = malloc(voxels * sizeof *distance);
@@ -80,7 +80,7 @@ static void field_equals_recomputation(void **state)
             }
             balls[b].radius = round < 4 ? 12.3 : 0.4 + 5.0 * rand() / RAND_MAX;
         }
-        assert_int_equal(mss_field_add(&field, balls, count, &err), MS_OK);
+        assert_int_equal(ms_mss_field_add(&field, balls, count, &err), MS_OK);
         for (size_t v = 0; v < voxels; v++) {
             covered[v] = field.raster.first[v] != MS_RASTER_NONE;
         }
@@ -91,7 +91,7 @@ static void field_equals_recomputation(void **state)
     }
     free(covered);
     free(distance);
-    mss_field_free(&field);
+    ms_mss_field_free(&field);
     ms_target_free(&target);
     ms_mesh_free(&mesh);
 }

@@ -13,17 +13,17 @@ static ms_status try_setcover(ms_clump *clump, ms_stop_reason *reason, const ms_
     ms_settings settings;
     char copy[256];
     snprintf(copy, sizeof copy, "%s", options);
-    assert_int_equal(ms_settings_init(&settings, ms_generator_setcover.options, err), MS_OK);
+    assert_int_equal(ms_option_settings_init(&settings, ms_generator_setcover.options, err), MS_OK);
     for (char *word = strtok(copy, " "); word; word = strtok(NULL, " ")) {
         char *equals = strchr(word, '=');
         if (equals) {
             *equals = 0;
         }
-        assert_int_equal(ms_settings_set(&settings, word, equals ? equals + 1 : NULL, err), MS_OK);
+        assert_int_equal(ms_option_settings_set(&settings, word, equals ? equals + 1 : NULL, err), MS_OK);
     }
     const ms_run run = {.target = target, .stop = stop, .settings = &settings};
     const ms_status status = ms_generator_run(clump, reason, &ms_generator_setcover, &run, err);
-    ms_settings_free(&settings);
+    ms_option_settings_free(&settings);
     return status;
 }
 

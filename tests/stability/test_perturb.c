@@ -27,13 +27,13 @@ static void expect_undone(const ms_motion *motion, double tolerance)
     ms_mesh before = make_body("grain", (double[]){2.385, 1.3, 1.2, 0.1, 16, 3, 1, 6});
     ms_mesh after = make_body("grain", (double[]){2.385, 1.3, 1.2, 0.1, 16, 3, 1, 6});
     ms_clump clump = {0};
-    ms_motion_apply(&after, motion);
+    ms_perturb_motion_apply(&after, motion);
     for (size_t v = 0; v < after.n_vertices; v++) {
         ms_sphere sphere = {.radius = 0.17};
         memcpy(sphere.centre, after.vertex[v], sizeof sphere.centre);
         assert_int_equal(ms_clump_add(&clump, &sphere, NULL), MS_OK);
     }
-    ms_motion_undo(&clump, motion);
+    ms_perturb_motion_undo(&clump, motion);
     for (size_t v = 0; v < before.n_vertices; v++) {
         for (int a = 0; a < 3; a++) {
             expect_close(clump.sphere[v].centre[a], before.vertex[v][a], tolerance);
@@ -50,15 +50,15 @@ static void axis_turns_are_the_rotations_of_the_cube(void **state)
 {
     (void)state;
     for (int k = 0; k < MS_MOTION_AXIS_TURNS; k++) {
-        const ms_motion turn = ms_motion_axis_turn(k);
+        const ms_motion turn = ms_perturb_motion_axis_turn(k);
         expect_rotation(&turn, 0);
         expect_undone(&turn, 0);
         for (int other = 0; other < k; other++) {
-            const ms_motion earlier = ms_motion_axis_turn(other);
+            const ms_motion earlier = ms_perturb_motion_axis_turn(other);
             assert_true(memcmp(&earlier.turn, &turn.turn, sizeof turn.turn) != 0);
         }
     }
-    const ms_motion none = ms_motion_none(), first = ms_motion_axis_turn(0);
+    const ms_motion none = ms_perturb_motion_none(), first = ms_perturb_motion_axis_turn(0);
     for (int k = 0; k < 9; k++) {
         assert_true(none.turn[k / 3][k % 3] == (k % 4 == 0));
         assert_true(first.turn[k / 3][k % 3] == none.turn[k / 3][k % 3]);
@@ -73,7 +73,7 @@ static void random_turns_are_uniform(void **state)
     (void)state;
     for (int k = 0; k < TURNS; k++) {
         ms_motion turn;
-        assert_int_equal(ms_motion_random_turn(&turn, (uint64_t)k, NULL), MS_OK);
+        assert_int_equal(ms_perturb_motion_random_turn(&turn, (uint64_t)k, NULL), MS_OK);
         expect_rotation(&turn, 1e-15 * 4);
         for (int e = 0; e < 9; e++) {
             mean[e] += turn.turn[e / 3][e % 3] / TURNS;
@@ -90,8 +90,8 @@ static void motions_are_undone(void **state)
 {
     ms_motion turn, again;
     (void)state;
-    assert_int_equal(ms_motion_random_turn(&turn, 7, NULL), MS_OK);
-    assert_int_equal(ms_motion_random_turn(&again, 7, NULL), MS_OK);
+    assert_int_equal(ms_perturb_motion_random_turn(&turn, 7, NULL), MS_OK);
+    assert_int_equal(ms_perturb_motion_random_turn(&again, 7, NULL), MS_OK);
     assert_memory_equal(&turn, &again, sizeof turn);
     expect_undone(&turn, 1e-14);
     turn.shift[0] = 0.0173;

@@ -15,7 +15,7 @@ static inline ms_status parse_sample(ms_mesh *mesh, mesh_parser *parse, const vo
 {
     ms_bytes bytes = copy_bytes(data, size);
     ms_status status = parse(mesh, &bytes, "sample", err);
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     return status;
 }
 

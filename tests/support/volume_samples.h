@@ -36,7 +36,7 @@ static inline ms_status parse_volume(ms_volume *volume, volume_parser *parse, co
 {
     ms_bytes bytes = copy_bytes(from->data, from->size);
     ms_status status = parse(volume, &bytes, path, SIZE_MAX, err);
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     return status;
 }
 

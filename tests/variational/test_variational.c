@@ -24,16 +24,16 @@ static ms_clump generate_by(const ms_generator *generator, const ms_target *targ
     ms_clump clump;
     ms_stop_reason reason;
     ms_error err;
-    assert_int_equal(ms_settings_init(&settings, generator->options, &err), MS_OK);
+    assert_int_equal(ms_option_settings_init(&settings, generator->options, &err), MS_OK);
     for (; options && options[0]; options += 2) {
-        assert_int_equal(ms_settings_set(&settings, options[0], options[1], &err), MS_OK);
+        assert_int_equal(ms_option_settings_set(&settings, options[0], options[1], &err), MS_OK);
     }
     ms_run run = {.target = target, .stop = ms_stop_none(), .settings = &settings, .seed = 3};
     run.stop.spheres = n;
     if (ms_generator_run(&clump, &reason, generator, &run, &err) != MS_OK) {
         fail_msg("%s", err.text);
     }
-    ms_settings_free(&settings);
+    ms_option_settings_free(&settings);
     return clump;
 }
 
@@ -75,7 +75,7 @@ static void field_is_the_distance(void **state)
     (void)state;
     ms_mesh mesh;
     ms_target target;
-    ms_field field;
+    ms_signed_distance field;
     ms_error err;
     make_shape(&mesh, "ball", "r=1 fineness=60");
     make_target(&target, &mesh, 30, MS_VOXEL_HALF);
@@ -83,18 +83,18 @@ static void field_is_the_distance(void **state)
     const double origin[3] = {0, 0, 0};
     ms_target_to_voxels(middle, &radius, &target.grid, origin, 1);
     for (int step = 1; step <= 3; step++) {
-        assert_int_equal(ms_field_alloc(&field, &target, step, &err), MS_OK);
+        assert_int_equal(ms_signed_distance_alloc(&field, &target, step, &err), MS_OK);
         for (int t = 0; t < 300; t++) {
             const double p[3] = {uniform(-3, 37), uniform(-3, 37), uniform(-3, 37)};
             const double truth = sqrt(ms_squared_distance(p, middle)) - radius;
             const double away = fmax(2, sqrt(ms_squared_distance(p, middle)));
             /* Linear: off by up to 3/8 step^2 times the curvature; beyond the lattice by the corner's way. */
             const int beyond = p[0] < 0 || p[1] < 0 || p[2] < 0 || p[0] > 33 || p[1] > 33 || p[2] > 33;
-            const double phi = ms_field_at(&field, p);
+            const double phi = ms_signed_distance_at(&field, p);
             assert_true(phi > truth - 0.4 * step * step / away - 0.05);
             assert_true(phi < truth + 0.8 * step * step / away + 0.05 + 3 * beyond);
         }
-        ms_field_free(&field);
+        ms_signed_distance_free(&field);
     }
     ms_target_free(&target);
     ms_mesh_free(&mesh);
@@ -110,33 +110,33 @@ static void losses_are_those_of_brute_force(void **state)
     assert_int_equal(ms_grid_alloc(&grid, n, 1, origin, &err), MS_OK);
     for (int t = 0; t < 100; t++) {
         ms_ball ball[6];
-        overlap o;
+        ms_coverage_count o;
         for (size_t v = 0; v < ms_grid_voxels(&grid); v++) {
             grid.inside[v] = rand() % 2 != 0;
         }
         for (int b = 0; b < 6; b++) {
             ball[b] = (ms_ball){{uniform(-3, 16), uniform(-3, 14), uniform(-3, 12)}, uniform(0, 6)};
         }
-        assert_int_equal(overlap_open(&o, &grid, ball, 5, &err), MS_OK);
+        assert_int_equal(ms_coverage_count_open(&o, &grid, ball, 5, &err), MS_OK);
         const int64_t all = brute_mismatch(&grid, ball, 5);
         assert_int_equal(o.mismatch, all);
-        assert_int_equal(overlap_loss(&o, &ball[4]), brute_mismatch(&grid, ball, 4) - all);
-        assert_int_equal(overlap_gain(&o, &ball[5]), all - brute_mismatch(&grid, ball, 6));
-        overlap_add(&o, &ball[5]);
+        assert_int_equal(ms_coverage_count_loss(&o, &ball[4]), brute_mismatch(&grid, ball, 4) - all);
+        assert_int_equal(ms_coverage_count_gain(&o, &ball[5]), all - brute_mismatch(&grid, ball, 6));
+        ms_coverage_count_add(&o, &ball[5]);
         assert_int_equal(o.mismatch, brute_mismatch(&grid, ball, 6));
-        overlap_remove(&o, &ball[5]);
-        overlap_remove(&o, &ball[4]);
+        ms_coverage_count_remove(&o, &ball[5]);
+        ms_coverage_count_remove(&o, &ball[4]);
         assert_int_equal(o.mismatch, brute_mismatch(&grid, ball, 4));
-        overlap_clear(&grid, ball, 4);
+        ms_coverage_count_clear(&grid, ball, 4);
         assert_int_equal(brute_mismatch(&grid, ball, 0), (int64_t)ms_grid_count(&grid));
         for (int b = 0; b < 4; b++) {
             ms_ball alone = ball[b];
-            overlap empty;
-            assert_int_equal(overlap_open(&empty, &grid, NULL, 0, &err), MS_OK);
-            assert_true(overlap_gain(&empty, &alone) <= 0); /* nothing of it is left */
-            overlap_close(&empty);
+            ms_coverage_count empty;
+            assert_int_equal(ms_coverage_count_open(&empty, &grid, NULL, 0, &err), MS_OK);
+            assert_true(ms_coverage_count_gain(&empty, &alone) <= 0); /* nothing of it is left */
+            ms_coverage_count_close(&empty);
         }
-        overlap_close(&o);
+        ms_coverage_count_close(&o);
     }
     ms_grid_free(&grid);
 }
@@ -145,7 +145,7 @@ static void losses_are_those_of_brute_force(void **state)
 static void spheres_are_dropped_by_their_loss(void **state)
 {
     (void)state;
-    static const mirrors NONE = {.across = {0}};
+    static const ms_mirror NONE = {.across = {0}};
     ms_grid grid;
     ms_error err;
     const int n[3] = {13, 11, 9};
@@ -161,7 +161,7 @@ static void spheres_are_dropped_by_their_loss(void **state)
             ball[b] = (ms_ball){{uniform(0, 12), uniform(0, 10), uniform(0, 8)}, uniform(0, 5)};
         }
         const int64_t before = brute_mismatch(&grid, ball, 8);
-        assert_int_equal(drop_idle(ball, &count, &grid, &NONE, &err), MS_OK);
+        assert_int_equal(ms_prune_idle(ball, &count, &grid, &NONE, &err), MS_OK);
         const int64_t after = brute_mismatch(&grid, ball, count);
         assert_true(after <= before);
         int64_t least = INT64_MAX;
@@ -173,7 +173,7 @@ static void spheres_are_dropped_by_their_loss(void **state)
             least = without < least ? without : least;
         }
         if (count > 0) {
-            assert_int_equal(drop_cheapest(ball, &count, 1, &grid, 1, &NONE, &err), MS_OK);
+            assert_int_equal(ms_prune_cheapest(ball, &count, 1, &grid, 1, &NONE, &err), MS_OK);
             assert_int_equal(brute_mismatch(&grid, ball, count), least);
         }
     }
@@ -212,10 +212,10 @@ static void idle_spheres_are_not_given(void **state)
 static void step_lowers_the_mismatch(void **state)
 {
     const ms_target *target = *state;
-    ms_field field;
+    ms_signed_distance field;
     ms_error err;
     int fell = 0, tried = 0;
-    assert_int_equal(ms_field_alloc(&field, target, 1, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_alloc(&field, target, 1, &err), MS_OK);
     for (int t = 0; t < 40; t++) {
         ms_ball ball[3], before[3];
         const double damping[2] = {0.3, 0.3};
@@ -224,12 +224,13 @@ static void step_lowers_the_mismatch(void **state)
                 for (int a = 0; a < 3; a++) {
                     ball[b].centre[a] = uniform(0, target->grid.n[a]);
                 }
-            } while (ms_field_at(&field, ball[b].centre) > -3);
-            ball[b].radius = uniform(0.5, 1.5) * -ms_field_at(&field, ball[b].centre);
+            } while (ms_signed_distance_at(&field, ball[b].centre) > -3);
+            ball[b].radius = uniform(0.5, 1.5) * -ms_signed_distance_at(&field, ball[b].centre);
         }
         memcpy(before, ball, sizeof ball);
-        exposed_fit fit = {.field = &field, .bounds = {.least = 0.5, .protrusion = HUGE_VAL}, .points = 256, .seed = 1};
-        assert_int_equal(exposed_fit_steps(&fit, ball, 3, 1, damping, &err), MS_OK);
+        ms_surface_fit fit = {
+            .field = &field, .bounds = {.least = 0.5, .protrusion = HUGE_VAL}, .points = 256, .seed = 1};
+        assert_int_equal(ms_surface_fit_steps(&fit, ball, 3, 1, damping, &err), MS_OK);
         if (memcmp(before, ball, sizeof ball) != 0) {
             tried++;
             fell += brute_mismatch(&target->grid, ball, 3) < brute_mismatch(&target->grid, before, 3);
@@ -237,39 +238,39 @@ static void step_lowers_the_mismatch(void **state)
     }
     assert_true(tried > 30);
     assert_true(fell >= tried - 2); /* a sphere and its neighbour may both fill the same gap */
-    ms_field_free(&field);
+    ms_signed_distance_free(&field);
 }
 
 static void search_never_raises_the_mismatch(void **state)
 {
     const ms_target *target = *state;
-    ms_field field;
+    ms_signed_distance field;
     ms_error err;
     ms_ball ball[8];
-    assert_int_equal(ms_field_alloc(&field, target, 1, &err), MS_OK);
-    exposed_fit fit = {.field = &field, .bounds = {.least = 0.5, .protrusion = 1.5}, .points = 64};
+    assert_int_equal(ms_signed_distance_alloc(&field, target, 1, &err), MS_OK);
+    ms_surface_fit fit = {.field = &field, .bounds = {.least = 0.5, .protrusion = 1.5}, .points = 64};
     for (int b = 0; b < 8; b++) {
         do {
             for (int a = 0; a < 3; a++) {
                 ball[b].centre[a] = uniform(0, target->grid.n[a]);
             }
-        } while (ms_field_at(&field, ball[b].centre) > -2);
+        } while (ms_signed_distance_at(&field, ball[b].centre) > -2);
         ball[b].radius = 50;
     }
-    exposed_confine(&fit, ball, 8);
+    ms_surface_fit_confine(&fit, ball, 8);
     int64_t before = brute_mismatch(&target->grid, ball, 8);
     const int64_t first = before;
     for (int round = 0; round < 6; round++) {
-        assert_int_equal(pattern_search(ball, 8, &target->grid, &fit, 1, &err), MS_OK);
+        assert_int_equal(ms_pattern_search(ball, 8, &target->grid, &fit, 1, &err), MS_OK);
         const int64_t after = brute_mismatch(&target->grid, ball, 8);
         assert_true(after <= before);
         before = after;
         for (int b = 0; b < 8; b++) {
-            assert_true(ball[b].radius <= exposed_most_radius(&fit, ball[b].centre) + 1e-9);
+            assert_true(ball[b].radius <= ms_surface_fit_most_radius(&fit, ball[b].centre) + 1e-9);
         }
     }
     assert_true(before < first);
-    ms_field_free(&field);
+    ms_signed_distance_free(&field);
 }
 
 /* k balls in a row, each overlapping the one before, as voxels; n = k spheres find them again. */

@@ -95,8 +95,8 @@ static void shared_volumes_are_the_same(void **state)
         }
         assert_int_equal(largest, 192);
         ms_bytes bytes = copy_bytes(volume.label, count * sizeof *volume.label);
-        checksum[i] = ms_bytes_checksum(&bytes);
-        ms_bytes_free(&bytes);
+        checksum[i] = ms_file_checksum(&bytes);
+        ms_file_free(&bytes);
         ms_volume_free(&volume);
     }
     assert_true(checksum[0] == checksum[1] && checksum[0] == checksum[2]);

@@ -82,7 +82,7 @@ static int begins_with_number(const ms_text *text)
     ms_text ahead = *text;
     ms_word word;
     double value;
-    return ms_text_word(&word, &ahead) && (strchr("+-.0123456789", *word.start) || ms_word_double(&value, &word));
+    return ms_text_word(&word, &ahead) && (strchr("+-.0123456789", *word.start) || ms_text_to_double(&value, &word));
 }
 
 /* Does the header name three columns x, y, z in some order, but not the first three in this one? */
@@ -95,7 +95,7 @@ static int header_contradicts(const ms_text *text)
     int run = 0;      /* columns in a row that are x, y or z */
     for (int column = 0; ms_text_word(&word, &ahead); column++) {
         int name = 0;
-        while (name < 3 && !ms_word_is(&word, NAMES[name])) {
+        while (name < 3 && !ms_text_word_is(&word, NAMES[name])) {
             name++;
         }
         in_order += name == column && name < 3;
@@ -116,7 +116,7 @@ static int header_names_mass(const ms_text *text)
     while (column < 5 && ms_text_word(&word, &ahead)) {
         column++;
     }
-    return column == 5 && ms_word_is(&word, "mass");
+    return column == 5 && ms_text_word_is(&word, "mass");
 }
 
 /* The masses, as the clump grows. */
@@ -214,7 +214,7 @@ ms_status ms_clump_read(ms_clump *clump, const char *path, ms_error *err)
     ms_status status = ms_file_read(&bytes, path, err);
     if (status == MS_OK) {
         status = ms_clump_parse(clump, &bytes, path, err);
-        ms_bytes_free(&bytes);
+        ms_file_free(&bytes);
     }
     return status;
 }

@@ -31,9 +31,9 @@ static parser *parser_of(const char *path)
     static const struct {
         const char *ending;
         parser *parse;
-    } READERS[] = {{"json", ms_parse_json}, {"lammps", ms_parse_lammps},
-                   {"vtk", refuse},         {"clu", refuse},
-                   {"pfc", refuse},         {"mfix", refuse}};
+    } READERS[] = {{"json", ms_read_json}, {"lammps", ms_read_lammps},
+                   {"vtk", refuse},        {"clu", refuse},
+                   {"pfc", refuse},        {"mfix", refuse}};
     char ending[16];
     ms_file_ending(ending, path);
     for (size_t r = 0; r < sizeof READERS / sizeof *READERS; r++) {
@@ -63,7 +63,7 @@ ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path
     ms_status status = ms_file_read(&bytes, path, err);
     if (status == MS_OK) {
         status = parser_of(path)(clump, particle, &bytes, path, err);
-        ms_bytes_free(&bytes);
+        ms_file_free(&bytes);
     }
     if (status == MS_OK) {
         status = check_masses(clump, path, err);

@@ -6,7 +6,7 @@
 #include "ms_particle_json.h"
 #include "ms_read_formats.h"
 
-ms_status ms_parse_sphere(ms_clump *clump, const double v[4], const char *name, ms_error *err)
+ms_status ms_read_sphere(ms_clump *clump, const double v[4], const char *name, ms_error *err)
 {
     const ms_sphere sphere = {.centre = {v[0], v[1], v[2]}, .radius = v[3]};
     if (!isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]) || !isfinite(v[3]) || !(v[3] > 0)) {
@@ -39,7 +39,7 @@ static int take_number(double *out, const json_t *object, const char *key)
     return json_is_number(value);
 }
 
-ms_status ms_particle_from_json(ms_particle *particle, const json_t *json, const char *name, ms_error *err)
+ms_status ms_particle_json_read(ms_particle *particle, const json_t *json, const char *name, ms_error *err)
 {
     ms_particle p = {0};
     const json_t *rows = json_object_get(json, "inertia");
@@ -82,7 +82,7 @@ static ms_status take_spheres(ms_clump *clump, const json_t *root, const char *n
     ms_status status = n ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "%s: holds no list 'spheres'", name);
     for (size_t s = 0; s < n && status == MS_OK; s++) {
         status = take_numbers(v, columns, json_array_get(list, s))
-                     ? ms_parse_sphere(clump, v, name, err)
+                     ? ms_read_sphere(clump, v, name, err)
                      : ms_fail(err, MS_ERR_FORMAT, "%s: sphere %zu is no list of %zu numbers", name, s + 1, columns);
     }
     if (status == MS_OK && columns == 5) {
@@ -95,7 +95,7 @@ static ms_status take_spheres(ms_clump *clump, const json_t *root, const char *n
     return status;
 }
 
-ms_status ms_parse_json(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
+ms_status ms_read_json(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
 {
     json_t *root;
     ms_status status = parse_root(&root, bytes, name, err);
@@ -103,7 +103,7 @@ ms_status ms_parse_json(ms_clump *clump, ms_particle *particle, ms_bytes *bytes,
         status = take_spheres(clump, root, name, err);
     }
     if (status == MS_OK && json_object_get(root, "particle")) {
-        status = ms_particle_from_json(particle, json_object_get(root, "particle"), name, err);
+        status = ms_particle_json_read(particle, json_object_get(root, "particle"), name, err);
     }
     json_decref(root);
     return status;
@@ -120,9 +120,9 @@ ms_status ms_read_particle(ms_particle *particle, const char *path, ms_error *er
     }
     status = parse_root(&root, &bytes, path, err);
     if (status == MS_OK) {
-        status = ms_particle_from_json(particle, json_object_get(root, "particle"), path, err);
+        status = ms_particle_json_read(particle, json_object_get(root, "particle"), path, err);
     }
     json_decref(root);
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     return status;
 }

@@ -54,14 +54,14 @@ static ms_status start_table(table *t, ms_text *text, double n, ms_error *err)
 static ms_status read_header_line(table *t, ms_particle *particle, ms_text *text, const double *v, int n,
                                   const ms_word *keyword, ms_error *err)
 {
-    if (n == 1 && ms_word_is(keyword, "atoms")) {
+    if (n == 1 && ms_text_word_is(keyword, "atoms")) {
         return start_table(t, text, v[0], err);
     }
-    if (n == 1 && ms_word_is(keyword, "mass")) {
+    if (n == 1 && ms_text_word_is(keyword, "mass")) {
         particle->mass = v[0];
-    } else if (n == 3 && ms_word_is(keyword, "com")) {
+    } else if (n == 3 && ms_text_word_is(keyword, "com")) {
         memcpy(particle->centre, v, 3 * sizeof *v);
-    } else if (n == 6 && ms_word_is(keyword, "inertia")) {
+    } else if (n == 6 && ms_text_word_is(keyword, "inertia")) {
         if (v[3] != 0 || v[4] != 0 || v[5] != 0) {
             return ms_text_fail(err, text, "the inertia has products; only principal axes are read");
         }
@@ -79,30 +79,30 @@ static ms_status read_line(table *t, ms_particle *particle, ms_text *text, ms_er
     double v[6];
     ms_word word;
     int n = 0;
-    while (ms_text_word(&word, text) && n < 6 && ms_word_double(&v[n], &word)) {
+    while (ms_text_word(&word, text) && n < 6 && ms_text_to_double(&v[n], &word)) {
         n++;
     }
     if (n > 0) {
         return read_header_line(t, particle, text, v, n, &word, err);
     }
-    if (ms_word_is(&word, "types")) {
+    if (ms_text_word_is(&word, "types")) {
         for (size_t s = 0; s < t->n && ms_text_seek(text); s++) {
             ms_text_skip_line(text);
         }
         return MS_OK;
     }
     for (int section = 0; section < 3; section++) {
-        if (ms_word_is(&word, SECTIONS[section].name)) {
+        if (ms_text_word_is(&word, SECTIONS[section].name)) {
             ms_text_skip_line(text);
             return read_section(t, text, section, err);
         }
     }
     return ms_text_fail(err, text, "'%s' is no section that is read; these are Coords, Types, Diameters, Masses",
-                        ms_word_quote(&word).text);
+                        ms_text_quote(&word).text);
 }
 
 /* A file may leave out mass and inertia; what it says must make sense. */
-static ms_status settle_particle(ms_particle *particle, const char *name, ms_error *err)
+static ms_status finish_particle(ms_particle *particle, const char *name, ms_error *err)
 {
     const double *i[3] = {particle->inertia[0], particle->inertia[1], particle->inertia[2]};
     if (particle->mass == 0 && i[0][0] == 0) {
@@ -129,7 +129,7 @@ static ms_status fill_clump(ms_clump *clump, ms_particle *particle, const table 
     ms_status status = MS_OK;
     for (size_t s = 0; s < t->n && status == MS_OK; s++) {
         const double *row = t->row[s];
-        status = ms_parse_sphere(clump, (const double[]){row[0], row[1], row[2], row[3] / 2}, name, err);
+        status = ms_read_sphere(clump, (const double[]){row[0], row[1], row[2], row[3] / 2}, name, err);
     }
     if (status == MS_OK && t->seen[2]) {
         status = ms_clump_alloc_masses(clump, err);
@@ -137,10 +137,10 @@ static ms_status fill_clump(ms_clump *clump, ms_particle *particle, const table 
             clump->mass[s] = t->row[s][4];
         }
     }
-    return status == MS_OK ? settle_particle(particle, name, err) : status;
+    return status == MS_OK ? finish_particle(particle, name, err) : status;
 }
 
-ms_status ms_parse_lammps(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
+ms_status ms_read_lammps(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
 {
     ms_text text;
     table t = {0};

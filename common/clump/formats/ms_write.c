@@ -12,7 +12,7 @@
 void ms_write_numbers(FILE *stream, const double *value, size_t count, const char *mark)
 {
     for (size_t k = 0; k < count; k++) {
-        fprintf(stream, "%s%s", k ? mark : "", ms_number_text(value[k]).text);
+        fprintf(stream, "%s%s", k ? mark : "", ms_text_of_number(value[k]).text);
     }
 }
 
@@ -83,7 +83,7 @@ ms_status ms_write_vtk(FILE *stream, const ms_content *content, ms_error *err)
             const double value = array == 0   ? clump->sphere[s].radius
                                  : array == 1 ? clump->mass[s]
                                               : ms_write_density(content, s);
-            fprintf(stream, "%s\n", ms_number_text(value).text);
+            fprintf(stream, "%s\n", ms_text_of_number(value).text);
         }
     }
     return MS_OK;
@@ -136,7 +136,7 @@ static void list_formats(char names[256])
     }
 }
 
-const ms_format *ms_format_find(const char *name, ms_error *err)
+const ms_format *ms_write_format_find(const char *name, ms_error *err)
 {
     char names[256];
     for (const ms_format *f = ms_formats; f->name; f++) {
@@ -149,7 +149,7 @@ const ms_format *ms_format_find(const char *name, ms_error *err)
     return NULL;
 }
 
-const ms_format *ms_format_of_path(const char *path, ms_error *err)
+const ms_format *ms_write_format_of_path(const char *path, ms_error *err)
 {
     char ending[16];
     ms_file_ending(ending, path);
@@ -158,10 +158,10 @@ const ms_format *ms_format_of_path(const char *path, ms_error *err)
             return f;
         }
     }
-    return ms_format_find(ending, err);
+    return ms_write_format_find(ending, err);
 }
 
-int ms_format_is_folder(const ms_format *format)
+int ms_write_format_is_folder(const ms_format *format)
 {
     return format->part[0].suffix[0] == '/';
 }
@@ -254,7 +254,7 @@ ms_status ms_write_clump(const ms_content *content, const char *path, const ms_f
 {
     const char *slash = strrchr(path, '/');
     ms_content named = *content;
-    format = format ? format : ms_format_of_path(path, err);
+    format = format ? format : ms_write_format_of_path(path, err);
     if (!format) {
         return MS_ERR_ARG;
     }
@@ -270,13 +270,13 @@ ms_status ms_write_clump(const ms_content *content, const char *path, const ms_f
 ms_status ms_write_grid(const ms_grid *grid, const char *path, ms_error *err)
 {
     ms_output output;
-    ms_number at[3], h = ms_number_text(grid->h);
+    ms_number at[3], h = ms_text_of_number(grid->h);
     ms_status status = ms_output_open(&output, path, err);
     if (status != MS_OK) {
         return status;
     }
     for (int a = 0; a < 3; a++) {
-        at[a] = ms_number_text(grid->origin[a]);
+        at[a] = ms_text_of_number(grid->origin[a]);
     }
     fputs("# vtk DataFile Version 3.0\ntarget by mskit " MS_VERSION "\nBINARY\nDATASET STRUCTURED_POINTS\n",
           output.stream);

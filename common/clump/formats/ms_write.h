@@ -44,13 +44,13 @@ typedef struct ms_format {
 extern const ms_format ms_formats[];
 
 /** The format of that name, or NULL with a message that lists the names. */
-const ms_format *ms_format_find(const char *name, ms_error *err);
+const ms_format *ms_write_format_find(const char *name, ms_error *err);
 
 /** The format that the ending of a path names, csv for "-"; or NULL with a message. */
-const ms_format *ms_format_of_path(const char *path, ms_error *err);
+const ms_format *ms_write_format_of_path(const char *path, ms_error *err);
 
 /** Nonzero if its files stand in a folder of the path's name. */
-int ms_format_is_folder(const ms_format *format);
+int ms_write_format_is_folder(const ms_format *format);
 
 /**
  * Writes a clump, each file under a temporary name that is then renamed. Beside a template stands the way back to the

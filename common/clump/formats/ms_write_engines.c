@@ -52,7 +52,7 @@ ms_status ms_write_lammps(FILE *stream, const ms_content *content, ms_error *err
     (void)err;
     fputs("clump by mskit " MS_VERSION ", SI, from the centre of mass along the principal axes\n\n", stream);
     fprintf(stream, "%zu atoms\n", content->clump->n_spheres);
-    fprintf(stream, "%s mass\n0 0 0 com\n", ms_number_text(content->particle->mass).text);
+    fprintf(stream, "%s mass\n0 0 0 com\n", ms_text_of_number(content->particle->mass).text);
     write_moments(stream, content->particle, 1, " ");
     fputs(" 0 0 0 inertia\n", stream);
     for (int k = 0; k < 4; k++) {
@@ -79,7 +79,7 @@ ms_status ms_write_mercury_clump(FILE *stream, const ms_content *content, ms_err
 ms_status ms_write_mercury_mass(FILE *stream, const ms_content *content, ms_error *err)
 {
     (void)err;
-    fprintf(stream, "%s\n", ms_number_text(content->particle->mass).text);
+    fprintf(stream, "%s\n", ms_text_of_number(content->particle->mass).text);
     return MS_OK;
 }
 
@@ -117,12 +117,12 @@ static double equivalent_diameter(const ms_particle *particle)
 ms_status ms_write_kratos(FILE *stream, const ms_content *content, ms_error *err)
 {
     const ms_particle *p = content->particle;
-    const ms_number size = ms_number_text(2 * ms_template_reach(content->clump));
+    const ms_number size = ms_text_of_number(2 * ms_template_reach(content->clump));
     (void)err;
     fprintf(stream, "Name\n%s\n\nBegin centers_and_radii\n", content->name);
     ms_write_spheres(stream, content->clump, " ", "\n");
     fprintf(stream, "End centers_and_radii\n\nParticle_center_and_diameter\n0 0 0 %s\n\nSize\n%s\n\nVolume\n%s\n\n",
-            ms_number_text(equivalent_diameter(p)).text, size.text, ms_number_text(p->mass / p->density).text);
+            ms_text_of_number(equivalent_diameter(p)).text, size.text, ms_text_of_number(p->mass / p->density).text);
     fputs("Inertia per unit mass\n", stream);
     write_moments(stream, p, p->mass, "\n");
     fputc('\n', stream);
@@ -157,7 +157,7 @@ ms_status ms_write_pfc(FILE *stream, const ms_content *content, ms_error *err)
         ms_write_numbers(stream, (const double[]){b->radius, b->centre[0], b->centre[1], b->centre[2]}, 4, " ");
         fputs(" ...\n", stream);
     }
-    fprintf(stream, "volume %s inertia ", ms_number_text(p->mass / p->density).text);
+    fprintf(stream, "volume %s inertia ", ms_text_of_number(p->mass / p->density).text);
     write_moments(stream, p, p->density, " ");
     fputs(" 0 0 0\n", stream);
     return MS_OK;

@@ -14,7 +14,7 @@ static json_t *matrix(double m[3][3])
     return json_pack("[o,o,o]", vector(m[0]), vector(m[1]), vector(m[2]));
 }
 
-json_t *ms_particle_to_json(const ms_particle *p)
+json_t *ms_particle_json_write(const ms_particle *p)
 {
     ms_principal principal;
     ms_body body = {.volume = 1};
@@ -52,7 +52,7 @@ ms_status ms_write_json(FILE *stream, const ms_content *content, ms_error *err)
     json_t *how = content->record ? json_loads(content->record, 0, NULL) : json_object();
     int failed = !root || !how || json_object_update(root, how) != 0;
     if (content->particle) {
-        failed |= json_object_set_new(root, "particle", ms_particle_to_json(content->particle)) != 0;
+        failed |= json_object_set_new(root, "particle", ms_particle_json_write(content->particle)) != 0;
     }
     failed |= json_object_set_new(root, "columns", columns_json(masses)) != 0;
     for (size_t s = 0; s < content->clump->n_spheres; s++) {
@@ -71,7 +71,7 @@ ms_status ms_write_frame(FILE *stream, const ms_content *content, ms_error *err)
     json_t *root = json_pack("{s:s,s:s,s:o*}", "mskit", MS_VERSION, "frame",
                              "shape = centre + (x axis0 + y axis1 + z axis2) / scale, for x, y, z of the template and "
                              "the rows of principal_axes",
-                             "particle", ms_particle_to_json(content->particle));
+                             "particle", ms_particle_json_write(content->particle));
     const int failed = !json_object_get(root, "particle") || json_dumpf(root, stream, JSON_INDENT(2)) != 0 ||
                        fputc('\n', stream) == EOF;
     json_decref(root);

@@ -24,7 +24,7 @@ static drop drop_of(const ms_content *content)
 
 static const char *text(double value, ms_number *room)
 {
-    *room = ms_number_text(value);
+    *room = ms_text_of_number(value);
     return room->text;
 }
 

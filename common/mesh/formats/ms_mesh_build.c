@@ -47,7 +47,7 @@ static ms_status grow_triangles(ms_mesh_builder *builder, size_t wanted, ms_erro
     return status;
 }
 
-ms_status ms_build_reserve(ms_mesh_builder *builder, size_t n_vertices, size_t n_triangles, ms_error *err)
+ms_status ms_mesh_build_reserve(ms_mesh_builder *builder, size_t n_vertices, size_t n_triangles, ms_error *err)
 {
     ms_status status = grow_vertices(builder, n_vertices, err);
     return status ? status : grow_triangles(builder, n_triangles, err);
@@ -60,7 +60,7 @@ static size_t next_room(size_t room, uint64_t limit)
     return (size_t)(doubled <= limit || room >= limit ? doubled : limit);
 }
 
-ms_status ms_build_vertex(ms_mesh_builder *builder, const double position[3], size_t place, ms_error *err)
+ms_status ms_mesh_build_vertex(ms_mesh_builder *builder, const double position[3], size_t place, ms_error *err)
 {
     ms_mesh *mesh = &builder->mesh;
     if (mesh->n_vertices == builder->vertex_room) {
@@ -78,7 +78,7 @@ ms_status ms_build_vertex(ms_mesh_builder *builder, const double position[3], si
     return MS_OK;
 }
 
-void ms_build_face_begin(ms_mesh_builder *builder, size_t place)
+void ms_mesh_build_face_begin(ms_mesh_builder *builder, size_t place)
 {
     builder->n_corners = 0;
     builder->place = place;
@@ -109,7 +109,7 @@ static ms_status fail_index(ms_mesh_builder *builder, int64_t index, size_t plac
         (long long)builder->first_index, (long long)builder->mesh.n_vertices - 1 + builder->first_index);
 }
 
-ms_status ms_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_error *err)
+ms_status ms_mesh_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_error *err)
 {
     ms_status status = MS_OK;
     if (index < 0 || index >= (int64_t)MAX_VERTICES) {
@@ -128,7 +128,7 @@ ms_status ms_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_error
     return status;
 }
 
-ms_status ms_build_face_end(ms_mesh_builder *builder, ms_error *err)
+ms_status ms_mesh_build_face_end(ms_mesh_builder *builder, ms_error *err)
 {
     if (builder->n_corners < 3) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: %s %zu: a face has %zu corners and needs at least 3; remove it",
@@ -252,7 +252,7 @@ static void trim(ms_mesh *mesh)
     mesh->triangle = triangle ? triangle : mesh->triangle;
 }
 
-ms_status ms_build_finish(ms_mesh *mesh, ms_mesh_builder *builder, ms_status status, ms_error *err)
+ms_status ms_mesh_build_finish(ms_mesh *mesh, ms_mesh_builder *builder, ms_status status, ms_error *err)
 {
     *mesh = (ms_mesh){0};
     if (!status) {

@@ -36,16 +36,16 @@ typedef struct ms_mesh_builder {
 } ms_mesh_builder;
 
 /** Room for what a header announces; the caller has checked that the file is long enough to hold it. */
-ms_status ms_build_reserve(ms_mesh_builder *builder, size_t n_vertices, size_t n_triangles, ms_error *err);
+ms_status ms_mesh_build_reserve(ms_mesh_builder *builder, size_t n_vertices, size_t n_triangles, ms_error *err);
 
-ms_status ms_build_vertex(ms_mesh_builder *builder, const double position[3], size_t place, ms_error *err);
+ms_status ms_mesh_build_vertex(ms_mesh_builder *builder, const double position[3], size_t place, ms_error *err);
 
 /** A polygon: begin, its corners in turn, end. It is cut into a fan around its first corner. */
-void ms_build_face_begin(ms_mesh_builder *builder, size_t place);
+void ms_mesh_build_face_begin(ms_mesh_builder *builder, size_t place);
 
 /** A vertex, counted from 0, that may come later in the file: whether it exists is checked at the end. */
-ms_status ms_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_error *err);
-ms_status ms_build_face_end(ms_mesh_builder *builder, ms_error *err);
+ms_status ms_mesh_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_error *err);
+ms_status ms_mesh_build_face_end(ms_mesh_builder *builder, ms_error *err);
 
 /**
  * Checks the mesh, welds vertices with equal coordinates (-0 equals 0) and drops those that
@@ -54,6 +54,6 @@ ms_status ms_build_face_end(ms_mesh_builder *builder, ms_error *err);
  * @param      status of the parsing; nothing is built unless it is MS_OK
  * @return `status` if that is not MS_OK; MS_OK; MS_ERR_FORMAT; MS_ERR_NOMEM. Cost: O(vertices + triangles)
  */
-ms_status ms_build_finish(ms_mesh *mesh, ms_mesh_builder *builder, ms_status status, ms_error *err);
+ms_status ms_mesh_build_finish(ms_mesh *mesh, ms_mesh_builder *builder, ms_status status, ms_error *err);
 
 #endif

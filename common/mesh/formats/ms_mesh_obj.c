@@ -14,15 +14,15 @@ static ms_status parse_vertex(ms_mesh_builder *builder, ms_text *text, ms_error 
     ms_status status = ms_text_doubles(numbers, 3, text, "a vertex", err);
     while (!status && ms_text_word(&word, text)) {
         double ignored;
-        if (!ms_word_double(&ignored, &word)) {
-            return ms_text_fail(err, text, "a vertex has '%s' where a number belongs", ms_word_quote(&word).text);
+        if (!ms_text_to_double(&ignored, &word)) {
+            return ms_text_fail(err, text, "a vertex has '%s' where a number belongs", ms_text_quote(&word).text);
         }
         n_more++;
     }
     if (!status && (n_more == 2 || n_more > 4)) {
         return ms_text_fail(err, text, "a vertex has %zu numbers; 3, 4, 6 or 7 are understood", 3 + n_more);
     }
-    return status ? status : ms_build_vertex(builder, numbers, place, err);
+    return status ? status : ms_mesh_build_vertex(builder, numbers, place, err);
 }
 
 /* The parts of i, i/t, i/t/n or i//n; of these only i is used. */
@@ -35,7 +35,7 @@ static int split_corner(int64_t *vertex, const ms_word *word)
         const char *slash = memchr(at, '/', (size_t)(end - at));
         ms_word number = {at, (size_t)((slash ? slash : end) - at)};
         int may_be_empty = part == 1 && slash;
-        if (!(number.length == 0 && may_be_empty) && (!ms_word_integer(&index, &number) || index == 0)) {
+        if (!(number.length == 0 && may_be_empty) && (!ms_text_to_integer(&index, &number) || index == 0)) {
             return 0;
         }
         if (part == 0) {
@@ -53,17 +53,17 @@ static ms_status parse_face(ms_mesh_builder *builder, ms_text *text, ms_error *e
 {
     ms_status status = MS_OK;
     ms_word word;
-    ms_build_face_begin(builder, text->line);
+    ms_mesh_build_face_begin(builder, text->line);
     while (!status && ms_text_word(&word, text)) {
         int64_t index;
         if (!split_corner(&index, &word)) {
-            return ms_text_fail(err, text, "'%s' is no corner of a face", ms_word_quote(&word).text);
+            return ms_text_fail(err, text, "'%s' is no corner of a face", ms_text_quote(&word).text);
         }
         /* Negative ones count back from the latest vertex. */
         index = index > 0 ? index - 1 : index + (int64_t)builder->mesh.n_vertices;
-        status = ms_build_face_corner(builder, index, err);
+        status = ms_mesh_build_face_corner(builder, index, err);
     }
-    return status ? status : ms_build_face_end(builder, err);
+    return status ? status : ms_mesh_build_face_end(builder, err);
 }
 
 /* Passes over statements that add nothing to the surface; refuses what adds to it but cannot be read. */
@@ -71,14 +71,14 @@ static ms_status pass_over(const ms_word *keyword, ms_text *text, ms_error *err)
 {
     static const char *const refused[] = {"surf", "curv", "curv2", "call", "csh"};
     for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
-        if (ms_word_is(keyword, refused[i])) {
+        if (ms_text_word_is(keyword, refused[i])) {
             return ms_text_fail(err, text, "'%s' is not read, only polygons are", refused[i]);
         }
     }
     for (size_t i = 0; i < keyword->length; i++) {
         char c = keyword->start[i];
         if (!(c >= 'a' && c <= 'z') && !(c >= 'A' && c <= 'Z') && c != '_' && !(i > 0 && c >= '0' && c <= '9')) {
-            return ms_text_fail(err, text, "'%s' is no statement of OBJ", ms_word_quote(keyword).text);
+            return ms_text_fail(err, text, "'%s' is no statement of OBJ", ms_text_quote(keyword).text);
         }
     }
     ms_text_skip_line(text);
@@ -96,13 +96,13 @@ ms_status ms_mesh_parse_obj(ms_mesh *mesh, const ms_bytes *bytes, const char *na
     text.joins_lines = 1;
     while (!status && ms_text_seek(&text)) {
         ms_text_word(&keyword, &text);
-        if (ms_word_is(&keyword, "v")) {
+        if (ms_text_word_is(&keyword, "v")) {
             status = parse_vertex(&builder, &text, err);
-        } else if (ms_word_is(&keyword, "f") || ms_word_is(&keyword, "fo")) {
+        } else if (ms_text_word_is(&keyword, "f") || ms_text_word_is(&keyword, "fo")) {
             status = parse_face(&builder, &text, err);
         } else {
             status = pass_over(&keyword, &text, err);
         }
     }
-    return ms_build_finish(mesh, &builder, status, err);
+    return ms_mesh_build_finish(mesh, &builder, status, err);
 }

@@ -15,14 +15,14 @@ static ms_status parse_keyword(int *extras, ms_text *text, ms_error *err)
     }
     ms_text_word(&word, text);
     for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++) {
-        *extras |= ms_word_is(&word, plain[i]);
+        *extras |= ms_text_word_is(&word, plain[i]);
     }
-    if (!*extras && !ms_word_is(&word, "off")) {
+    if (!*extras && !ms_text_word_is(&word, "off")) {
         return ms_text_fail(err, text, "'%s' stands where OFF belongs (four-dimensional kinds are not read)",
-                            ms_word_quote(&word).text);
+                            ms_text_quote(&word).text);
     }
     ms_text peek = *text;
-    if (ms_text_word(&word, &peek) && ms_word_is(&word, "binary")) {
+    if (ms_text_word(&word, &peek) && ms_text_word_is(&word, "binary")) {
         return ms_text_fail(err, text, "binary OFF is not read; save it as text or as PLY");
     }
     return MS_OK;
@@ -34,8 +34,8 @@ static ms_status parse_count(int64_t *value, const char *what, ms_text *text, ms
     if (!ms_text_word(&word, text)) {
         return ms_text_fail(err, text, "the line ends where %s belongs", what);
     }
-    if (!ms_word_integer(value, &word) || *value < 0) {
-        return ms_text_fail(err, text, "'%s' stands where %s belongs", ms_word_quote(&word).text, what);
+    if (!ms_text_to_integer(value, &word) || *value < 0) {
+        return ms_text_fail(err, text, "'%s' stands where %s belongs", ms_text_quote(&word).text, what);
     }
     return MS_OK;
 }
@@ -53,8 +53,8 @@ static ms_status parse_counts(size_t *n_vertices, size_t *n_faces, ms_text *text
     if (!status) {
         status = parse_count(&count[1], "the number of faces", text, err);
     }
-    if (!status && ms_text_word(&word, text) && !ms_word_integer(&edges, &word)) {
-        return ms_text_fail(err, text, "'%s' stands where the number of edges belongs", ms_word_quote(&word).text);
+    if (!status && ms_text_word(&word, text) && !ms_text_to_integer(&edges, &word)) {
+        return ms_text_fail(err, text, "'%s' stands where the number of edges belongs", ms_text_quote(&word).text);
     }
     if (!status) {
         status = ms_text_end_line(text, err);
@@ -76,8 +76,8 @@ static ms_status pass_over_numbers(ms_text *text, ms_error *err)
     ms_word word;
     double ignored;
     while (ms_text_word(&word, text)) {
-        if (!ms_word_double(&ignored, &word)) {
-            return ms_text_fail(err, text, "'%s' stands where a number belongs", ms_word_quote(&word).text);
+        if (!ms_text_to_double(&ignored, &word)) {
+            return ms_text_fail(err, text, "'%s' stands where a number belongs", ms_text_quote(&word).text);
         }
     }
     return MS_OK;
@@ -91,23 +91,23 @@ static ms_status parse_vertex(ms_mesh_builder *builder, int extras, ms_text *tex
     if (!status) {
         status = extras ? pass_over_numbers(text, err) : ms_text_end_line(text, err);
     }
-    return status ? status : ms_build_vertex(builder, position, place, err);
+    return status ? status : ms_mesh_build_vertex(builder, position, place, err);
 }
 
 static ms_status parse_face(ms_mesh_builder *builder, ms_text *text, ms_error *err)
 {
     int64_t n_corners = 0;
     ms_status status = parse_count(&n_corners, "the number of corners", text, err);
-    ms_build_face_begin(builder, text->line);
+    ms_mesh_build_face_begin(builder, text->line);
     for (int64_t k = 0; k < n_corners && !status; k++) {
         int64_t index;
         status = parse_count(&index, "the index of a vertex", text, err);
         if (!status) {
-            status = ms_build_face_corner(builder, index, err);
+            status = ms_mesh_build_face_corner(builder, index, err);
         }
     }
     if (!status) {
-        status = ms_build_face_end(builder, err);
+        status = ms_mesh_build_face_end(builder, err);
     }
     return status ? status : pass_over_numbers(text, err);
 }
@@ -141,5 +141,5 @@ ms_status ms_mesh_parse_off(ms_mesh *mesh, const ms_bytes *bytes, const char *na
     if (!status) {
         status = parse_body(&builder, extras, &text, err);
     }
-    return ms_build_finish(mesh, &builder, status, err);
+    return ms_mesh_build_finish(mesh, &builder, status, err);
 }

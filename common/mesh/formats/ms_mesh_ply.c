@@ -59,7 +59,7 @@ static ms_status next_value(double *value, source *from, ms_ply_type type, const
     if (from->encoding == MS_PLY_ASCII) {
         return ms_text_doubles(value, 1, &from->text, "a row", err);
     }
-    size_t size = ms_ply_type_size(type);
+    size_t size = ms_mesh_ply_type_size(type);
     if ((size_t)(from->text.end - from->text.at) < size) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: byte %zu: the file is cut inside its rows; fetch or export it again",
                        from->text.name, place_of(from, bytes));
@@ -103,7 +103,7 @@ static ms_status parse_list(ms_mesh_builder *builder, source *from, const ms_ply
         }
         status = next_whole(&corner, from, property->type, bytes, err);
         if (!status) {
-            status = ms_build_face_corner(builder, corner, err);
+            status = ms_mesh_build_face_corner(builder, corner, err);
         }
     }
     return status;
@@ -140,15 +140,15 @@ static ms_status parse_element(ms_mesh_builder *builder, source *from, const ms_
             return ms_text_fail(err, &from->text, "the file ends after %zu of %zu rows", row, element->count);
         }
         size_t place = place_of(from, bytes);
-        ms_build_face_begin(builder, place);
+        ms_mesh_build_face_begin(builder, place);
         status = parse_properties(position, builder, from, header, element, bytes, err);
         if (!status && from->encoding == MS_PLY_ASCII) {
             status = ms_text_end_line(&from->text, err);
         }
         if (!status && element->kind == MS_PLY_VERTEX) {
-            status = ms_build_vertex(builder, position, place, err);
+            status = ms_mesh_build_vertex(builder, position, place, err);
         } else if (!status && element->kind == MS_PLY_FACE) {
-            status = ms_build_face_end(builder, err);
+            status = ms_mesh_build_face_end(builder, err);
         }
     }
     return status;
@@ -173,9 +173,9 @@ static ms_status parse_rows(ms_mesh_builder *builder, source *from, const ms_ply
     for (size_t i = 0; i < header->n_elements && !status; i++) {
         const ms_ply_element *element = &header->element[i];
         if (element->kind == MS_PLY_VERTEX) {
-            status = ms_build_reserve(builder, element->count, 0, err);
+            status = ms_mesh_build_reserve(builder, element->count, 0, err);
         } else if (element->kind == MS_PLY_FACE) {
-            status = ms_build_reserve(builder, 0, element->count, err);
+            status = ms_mesh_build_reserve(builder, 0, element->count, err);
         }
         if (!status) {
             status = parse_element(builder, from, header, element, bytes, err);
@@ -190,11 +190,11 @@ ms_status ms_mesh_parse_ply(ms_mesh *mesh, const ms_bytes *bytes, const char *na
     source from;
     ms_mesh_builder builder = {.name = name};
     ms_text_start(&from.text, bytes, name);
-    ms_status status = ms_ply_parse_header(&header, &from.text, err);
+    ms_status status = ms_mesh_ply_parse_header(&header, &from.text, err);
     if (!status) {
         from.encoding = header.encoding;
         builder.place_word = header.encoding == MS_PLY_ASCII ? "line" : "byte";
         status = parse_rows(&builder, &from, &header, bytes, err);
     }
-    return ms_build_finish(mesh, &builder, status, err);
+    return ms_mesh_build_finish(mesh, &builder, status, err);
 }

@@ -49,13 +49,13 @@ typedef struct ms_ply_header {
 } ms_ply_header;
 
 /** Bytes of a value in a binary file. */
-size_t ms_ply_type_size(ms_ply_type type);
+size_t ms_mesh_ply_type_size(ms_ply_type type);
 
 /**
  * Reads the header and checks that it describes a mesh and that what it announces fits into the rest of the file.
  *
  * @param[in,out] text at the start of the file; then at the first byte behind the header
  */
-ms_status ms_ply_parse_header(ms_ply_header *header, ms_text *text, ms_error *err);
+ms_status ms_mesh_ply_parse_header(ms_ply_header *header, ms_text *text, ms_error *err);
 
 #endif

@@ -3,7 +3,7 @@
 
 #include "ms_mesh_ply.h"
 
-size_t ms_ply_type_size(ms_ply_type type)
+size_t ms_mesh_ply_type_size(ms_ply_type type)
 {
     static const size_t size[] = {0, 1, 1, 2, 2, 4, 4, 4, 8};
     return size[type];
@@ -21,7 +21,7 @@ static ms_ply_type find_type(const ms_word *word)
         {"float", MS_PLY_FLOAT32}, {"float32", MS_PLY_FLOAT32}, {"double", MS_PLY_FLOAT64}, {"float64", MS_PLY_FLOAT64},
     };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (ms_word_is(word, names[i].name)) {
+        if (ms_text_word_is(word, names[i].name)) {
             return names[i].type;
         }
     }
@@ -45,7 +45,7 @@ static ms_status next_type(ms_ply_type *type, int is_count, ms_text *text, ms_er
     }
     *type = find_type(&word);
     if (*type == MS_PLY_NONE || (is_count && *type >= MS_PLY_FLOAT32)) {
-        return ms_text_fail(err, text, "'%s' is no type for %s", ms_word_quote(&word).text,
+        return ms_text_fail(err, text, "'%s' is no type for %s", ms_text_quote(&word).text,
                             is_count ? "the length of a list" : "a property");
     }
     return MS_OK;
@@ -58,19 +58,19 @@ static ms_status parse_format(ms_ply_header *header, ms_text *text, ms_error *er
     if (status) {
         return status;
     }
-    if (ms_word_is(&word, "ascii")) {
+    if (ms_text_word_is(&word, "ascii")) {
         header->encoding = MS_PLY_ASCII;
-    } else if (ms_word_is(&word, "binary_little_endian")) {
+    } else if (ms_text_word_is(&word, "binary_little_endian")) {
         header->encoding = MS_PLY_LITTLE_ENDIAN;
-    } else if (ms_word_is(&word, "binary_big_endian")) {
+    } else if (ms_text_word_is(&word, "binary_big_endian")) {
         header->encoding = MS_PLY_BIG_ENDIAN;
     } else {
         return ms_text_fail(err, text, "the format '%s' is none of ascii, binary_little_endian and binary_big_endian",
-                            ms_word_quote(&word).text);
+                            ms_text_quote(&word).text);
     }
     status = next_word(&word, "the version 1.0", text, err);
-    if (!status && !ms_word_is(&word, "1.0")) {
-        return ms_text_fail(err, text, "version '%s' stands where 1.0 belongs", ms_word_quote(&word).text);
+    if (!status && !ms_text_word_is(&word, "1.0")) {
+        return ms_text_fail(err, text, "version '%s' stands where 1.0 belongs", ms_text_quote(&word).text);
     }
     return status ? status : ms_text_end_line(text, err);
 }
@@ -87,21 +87,21 @@ static ms_status parse_element(ms_ply_header *header, ms_text *text, ms_error *e
     if (status) {
         return status;
     }
-    if (!ms_word_integer(&count, &number) || count < 0 || (uint64_t)count > SIZE_MAX) {
-        return ms_text_fail(err, text, "'%s' is no number of elements", ms_word_quote(&number).text);
+    if (!ms_text_to_integer(&count, &number) || count < 0 || (uint64_t)count > SIZE_MAX) {
+        return ms_text_fail(err, text, "'%s' is no number of elements", ms_text_quote(&number).text);
     }
     if (header->n_elements == MS_PLY_MAX_ELEMENTS) {
         return ms_text_fail(err, text, "more than %d elements are not read", MS_PLY_MAX_ELEMENTS);
     }
-    ms_ply_kind kind = ms_word_is(&name, "vertex") ? MS_PLY_VERTEX
-                       : ms_word_is(&name, "face") ? MS_PLY_FACE
-                                                   : MS_PLY_OTHER;
+    ms_ply_kind kind = ms_text_word_is(&name, "vertex") ? MS_PLY_VERTEX
+                       : ms_text_word_is(&name, "face") ? MS_PLY_FACE
+                                                        : MS_PLY_OTHER;
     for (size_t i = 0; i < header->n_elements; i++) {
         if (kind != MS_PLY_OTHER && header->element[i].kind == kind) {
-            return ms_text_fail(err, text, "a second element '%s'", ms_word_quote(&name).text);
+            return ms_text_fail(err, text, "a second element '%s'", ms_text_quote(&name).text);
         }
     }
-    if (ms_word_is(&name, "tristrips") && count > 0) {
+    if (ms_text_word_is(&name, "tristrips") && count > 0) {
         return ms_text_fail(err, text, "triangle strips are not read, only faces are");
     }
     header->element[header->n_elements++] =
@@ -112,12 +112,12 @@ static ms_status parse_element(ms_ply_header *header, ms_text *text, ms_error *e
 static ms_ply_role find_role(ms_ply_kind kind, int is_list, const ms_word *name)
 {
     if (kind == MS_PLY_VERTEX && !is_list) {
-        return ms_word_is(name, "x")   ? MS_PLY_X
-               : ms_word_is(name, "y") ? MS_PLY_Y
-               : ms_word_is(name, "z") ? MS_PLY_Z
-                                       : MS_PLY_IGNORED;
+        return ms_text_word_is(name, "x")   ? MS_PLY_X
+               : ms_text_word_is(name, "y") ? MS_PLY_Y
+               : ms_text_word_is(name, "z") ? MS_PLY_Z
+                                            : MS_PLY_IGNORED;
     }
-    int is_corners = ms_word_is(name, "vertex_indices") || ms_word_is(name, "vertex_index");
+    int is_corners = ms_text_word_is(name, "vertex_indices") || ms_text_word_is(name, "vertex_index");
     return kind == MS_PLY_FACE && is_list && is_corners ? MS_PLY_CORNERS : MS_PLY_IGNORED;
 }
 
@@ -133,7 +133,7 @@ static ms_status parse_property(ms_ply_header *header, ms_text *text, ms_error *
     }
     ms_ply_element *element = &header->element[header->n_elements - 1];
     ms_text peek = *text;
-    int is_list = ms_text_word(&name, &peek) && ms_word_is(&name, "list");
+    int is_list = ms_text_word(&name, &peek) && ms_text_word_is(&name, "list");
     ms_status status = MS_OK;
     if (is_list) {
         *text = peek;
@@ -151,7 +151,7 @@ static ms_status parse_property(ms_ply_header *header, ms_text *text, ms_error *
     property.role = find_role(element->kind, is_list, &name);
     for (size_t i = 0; i < element->n_properties; i++) {
         if (property.role != MS_PLY_IGNORED && header->property[element->first + i].role == property.role) {
-            return ms_text_fail(err, text, "a second property '%s'", ms_word_quote(&name).text);
+            return ms_text_fail(err, text, "a second property '%s'", ms_text_quote(&name).text);
         }
     }
     element->n_properties++;
@@ -170,21 +170,21 @@ static ms_status parse_lines(ms_ply_header *header, ms_text *text, ms_error *err
             return ms_text_fail(err, text, "the file ends without 'end_header'");
         }
         ms_text_word(&word, text);
-        if (ms_word_is(&word, "end_header")) {
+        if (ms_text_word_is(&word, "end_header")) {
             return has_format ? ms_text_end_line(text, err)
                               : ms_text_fail(err, text, "the header ends without 'format'");
         }
-        if (ms_word_is(&word, "format")) {
+        if (ms_text_word_is(&word, "format")) {
             has_format = 1;
             status = parse_format(header, text, err);
-        } else if (ms_word_is(&word, "element")) {
+        } else if (ms_text_word_is(&word, "element")) {
             status = parse_element(header, text, err);
-        } else if (ms_word_is(&word, "property")) {
+        } else if (ms_text_word_is(&word, "property")) {
             status = parse_property(header, text, err);
-        } else if (ms_word_is(&word, "comment") || ms_word_is(&word, "obj_info")) {
+        } else if (ms_text_word_is(&word, "comment") || ms_text_word_is(&word, "obj_info")) {
             ms_text_skip_line(text);
         } else {
-            return ms_text_fail(err, text, "'%s' is no line of a PLY header", ms_word_quote(&word).text);
+            return ms_text_fail(err, text, "'%s' is no line of a PLY header", ms_text_quote(&word).text);
         }
         if (status) {
             return status;
@@ -199,7 +199,7 @@ static size_t least_row_size(const ms_ply_header *header, const ms_ply_element *
     for (size_t i = 0; i < element->n_properties; i++) {
         const ms_ply_property *property = &header->property[element->first + i];
         ms_ply_type type = property->count_type ? property->count_type : property->type;
-        size += header->encoding == MS_PLY_ASCII ? 2 : ms_ply_type_size(type);
+        size += header->encoding == MS_PLY_ASCII ? 2 : ms_mesh_ply_type_size(type);
     }
     return size;
 }
@@ -248,12 +248,12 @@ static ms_status check_roles(const ms_ply_header *header, const ms_text *text, m
     return MS_OK;
 }
 
-ms_status ms_ply_parse_header(ms_ply_header *header, ms_text *text, ms_error *err)
+ms_status ms_mesh_ply_parse_header(ms_ply_header *header, ms_text *text, ms_error *err)
 {
     ms_word magic;
     memset(header, 0, sizeof *header);
-    if (!ms_text_word(&magic, text) || !ms_word_is(&magic, "ply")) {
-        return ms_text_fail(err, text, "'%s' stands where 'ply' belongs", ms_word_quote(&magic).text);
+    if (!ms_text_word(&magic, text) || !ms_text_word_is(&magic, "ply")) {
+        return ms_text_fail(err, text, "'%s' stands where 'ply' belongs", ms_text_quote(&magic).text);
     }
     ms_status status = parse_lines(header, text, err);
     if (!status) {

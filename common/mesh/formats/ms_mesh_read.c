@@ -27,7 +27,7 @@ static const format *find_format(const char *path)
     return NULL;
 }
 
-int ms_mesh_is_mesh_path(const char *path)
+int ms_mesh_read_is_mesh_path(const char *path)
 {
     return find_format(path) != NULL;
 }
@@ -54,6 +54,6 @@ ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err)
     if (status == MS_OK) {
         status = ms_mesh_parse(mesh, &bytes, path, err);
     }
-    ms_bytes_free(&bytes);
+    ms_file_free(&bytes);
     return status;
 }

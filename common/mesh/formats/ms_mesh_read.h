@@ -26,7 +26,7 @@ ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err);
 ms_status ms_mesh_parse(ms_mesh *mesh, const ms_bytes *bytes, const char *path, ms_error *err);
 
 /** Nonzero if the path ends like a mesh that ms_mesh_read takes. */
-int ms_mesh_is_mesh_path(const char *path);
+int ms_mesh_read_is_mesh_path(const char *path);
 
 MS_C_END
 

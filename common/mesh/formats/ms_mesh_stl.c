@@ -25,11 +25,11 @@ static ms_status add_facet(ms_mesh_builder *builder, size_t place, ms_error *err
 {
     ms_status status = MS_OK;
     int64_t first = (int64_t)builder->mesh.n_vertices - 3;
-    ms_build_face_begin(builder, place);
+    ms_mesh_build_face_begin(builder, place);
     for (int64_t k = 0; k < 3 && !status; k++) {
-        status = ms_build_face_corner(builder, first + k, err);
+        status = ms_mesh_build_face_corner(builder, first + k, err);
     }
-    return status ? status : ms_build_face_end(builder, err);
+    return status ? status : ms_mesh_build_face_end(builder, err);
 }
 
 static ms_status check_size(uint64_t size, uint32_t count, const char *name, ms_error *err)
@@ -60,14 +60,14 @@ static ms_status parse_binary(ms_mesh_builder *builder, const ms_bytes *bytes, m
     uint32_t count = load_u32(bytes->data + HEADER_SIZE - 4);
     ms_status status = check_size(bytes->size, count, builder->name, err);
     if (!status) {
-        status = ms_build_reserve(builder, 3 * (size_t)count, count, err);
+        status = ms_mesh_build_reserve(builder, 3 * (size_t)count, count, err);
     }
     for (size_t t = 0; t < count && !status; t++) {
         size_t place = HEADER_SIZE + t * RECORD_SIZE;
         for (size_t k = 0; k < 3 && !status; k++) {
             const uint8_t *corner = bytes->data + place + 12 + 12 * k;
             double position[3] = {load_f32(corner), load_f32(corner + 4), load_f32(corner + 8)};
-            status = ms_build_vertex(builder, position, place + 12 + 12 * k, err);
+            status = ms_mesh_build_vertex(builder, position, place + 12 + 12 * k, err);
         }
         if (!status) {
             status = add_facet(builder, place, err);
@@ -84,8 +84,8 @@ static ms_status expect(ms_text *text, const char *expected, ms_error *err)
         return ms_text_fail(err, text, "the file ends where '%s' belongs", expected);
     }
     ms_text_word(&word, text);
-    if (!ms_word_is(&word, expected)) {
-        return ms_text_fail(err, text, "'%s' stands where '%s' belongs", ms_word_quote(&word).text, expected);
+    if (!ms_text_word_is(&word, expected)) {
+        return ms_text_fail(err, text, "'%s' stands where '%s' belongs", ms_text_quote(&word).text, expected);
     }
     return MS_OK;
 }
@@ -114,7 +114,7 @@ static ms_status parse_facet(ms_mesh_builder *builder, ms_text *text, ms_error *
             status = ms_text_doubles(numbers, 3, text, "a vertex", err);
         }
         if (!status) {
-            status = ms_build_vertex(builder, numbers, text->line, err);
+            status = ms_mesh_build_vertex(builder, numbers, text->line, err);
         }
     }
     if (!status) {
@@ -134,13 +134,13 @@ static ms_status parse_solid(ms_mesh_builder *builder, ms_text *text, ms_error *
                                 builder->mesh.n_triangles);
         }
         ms_text_word(&word, text);
-        if (ms_word_is(&word, "endsolid")) {
+        if (ms_text_word_is(&word, "endsolid")) {
             ms_text_skip_line(text);
             return MS_OK;
         }
-        if (!ms_word_is(&word, "facet")) {
+        if (!ms_text_word_is(&word, "facet")) {
             return ms_text_fail(err, text, "'%s' stands where 'facet' or 'endsolid' belongs",
-                                ms_word_quote(&word).text);
+                                ms_text_quote(&word).text);
         }
         ms_status status = parse_facet(builder, text, err);
         if (status) {
@@ -165,7 +165,7 @@ static int begins_with_solid(const ms_text *start)
 {
     ms_text text = *start;
     ms_word word;
-    return ms_text_seek(&text) && ms_text_word(&word, &text) && ms_word_is(&word, "solid");
+    return ms_text_seek(&text) && ms_text_word(&word, &text) && ms_text_word_is(&word, "solid");
 }
 
 ms_status ms_mesh_parse_stl(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err)
@@ -193,5 +193,5 @@ ms_status ms_mesh_parse_stl(ms_mesh *mesh, const ms_bytes *bytes, const char *na
             "export the mesh again",
             name, bytes->size, HEADER_SIZE);
     }
-    return ms_build_finish(mesh, &builder, status, err);
+    return ms_mesh_build_finish(mesh, &builder, status, err);
 }
