@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/ms_text.h"
+#include "clump/formats/ms_read.h"
 
 static size_t count_options(const ms_option *options)
 {
@@ -160,7 +161,7 @@ static ms_status add_plane(ms_settings *settings, const ms_option *option, const
 static ms_status read_clump(ms_settings *settings, const char *path, ms_error *err)
 {
     ms_clump clump;
-    const ms_status status = ms_clump_read(&clump, path, err);
+    const ms_status status = ms_read_spheres(&clump, path, err);
     if (status == MS_OK) {
         ms_clump_free(&settings->clump);
         settings->clump = clump;

@@ -42,18 +42,6 @@ void ms_clump_box(double lo[3], double hi[3], const ms_clump *clump);
 /** Smallest radius; the clump is not empty. */
 double ms_clump_smallest_radius(const ms_clump *clump);
 
-/**
- * Reads spheres from a text file: four numbers a line, x y z r, separated by commas,
- * semicolons or blanks; a fifth is the mass if the header calls it so, further columns are
- * ignored. Empty lines, '#' comments and one header line before the first sphere are skipped;
- * any other line is an error, and so are an empty column, decimal commas and a header that
- * names x, y, z in other columns.
- *
- * @param[out] clump the caller frees it; empty on failure
- * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line; MS_ERR_LIMIT; MS_ERR_NOMEM
- */
-ms_status ms_clump_read(ms_clump *clump, const char *path, ms_error *err);
-
 void ms_clump_free(ms_clump *clump);
 
 MS_C_END

@@ -7,7 +7,7 @@
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_report.h"
-#include "clump/formats/ms_particle_json.h"
+#include "clump/formats/ms_json.h"
 #include "clump/formats/ms_read.h"
 #include "ms_commands.h"
 
@@ -86,7 +86,7 @@ static ms_status report(const arguments *a, const ms_clump *clump, const ms_mass
     if (status == MS_OK && a->json) {
         status = ms_report_print(
             stdout,
-            json_pack("{s:o,s:o}", "particle", ms_particle_json_write(&mass->particle), "masses", ms_mass_json(mass)),
+            json_pack("{s:o,s:o}", "particle", ms_json_from_particle(&mass->particle), "masses", ms_mass_json(mass)),
             err);
     }
     return status;

@@ -9,6 +9,7 @@
 #include "base/ms_file.h"
 #include "chart/ms_chart.h"
 #include "chart/ms_render.h"
+#include "clump/formats/ms_read.h"
 #include "clump/formats/ms_write.h"
 
 enum { TILE = 220, MOST_ROWS = 4, HEAD = 40 };
@@ -74,7 +75,7 @@ static ms_status draw_clump(ms_picture *picture, const ms_view *view, const ms_c
     ms_status status = path ? MS_OK : MS_ERR_NOMEM;
     if (path && access(path, F_OK) != 0) {
         fprintf(stderr, "%s is not there: its place on the contact sheet is empty\n", path);
-    } else if (path && (status = ms_clump_read(&clump, path, err)) == MS_OK) {
+    } else if (path && (status = ms_read_spheres(&clump, path, err)) == MS_OK) {
         ms_render_clump(picture, view, &clump);
         ms_clump_free(&clump);
     }

@@ -1,4 +1,5 @@
 /* Clumps: growing, pieces, boxes; reading them from text. */
+#include "clump/formats/ms_read.h"
 #include "support/clump_samples.h"
 
 static void spheres_are_kept_in_order(void **state)
@@ -112,7 +113,7 @@ static ms_status read_text(ms_clump *clump, const void *text, size_t size, ms_er
     char folder[64], path[128];
     make_folder(folder);
     write_file(path, folder, "clump.csv", text, size);
-    const ms_status status = ms_clump_read(clump, path, err);
+    const ms_status status = ms_read_spheres(clump, path, err);
     remove(path);
     remove(folder);
     return status;
@@ -209,9 +210,9 @@ static void what_is_no_text_is_refused(void **state)
     ms_error err = {{0}};
     assert_int_equal(read_text(&clump, binary, sizeof binary, &err), MS_ERR_FORMAT);
     expect_message(&err, "not a text file");
-    assert_int_equal(ms_clump_read(&clump, "/nowhere/clump.csv", &err), MS_ERR_IO);
+    assert_int_equal(ms_read_spheres(&clump, "/nowhere/clump.csv", &err), MS_ERR_IO);
     expect_message(&err, "/nowhere/clump.csv");
-    assert_int_equal(ms_clump_read(&clump, "/", &err), MS_ERR_IO);
+    assert_int_equal(ms_read_spheres(&clump, "/", &err), MS_ERR_IO);
     assert_null(clump.sphere);
 }
 

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "clump/formats/ms_read.h"
 #include "clump/formats/ms_write.h"
 #include "support/clump_samples.h"
 
@@ -59,7 +60,7 @@ static void expect_csv_restores(const char *folder, const ms_clump *clump)
     ms_clump got;
     ms_error err = {{0}};
     write_clump(path, folder, "a.csv", NULL, clump, NULL);
-    if (ms_clump_read(&got, path, &err) != MS_OK) {
+    if (ms_read_spheres(&got, path, &err) != MS_OK) {
         fail_msg("%s", err.text);
     }
     expect_same_spheres(&got, clump);
@@ -213,7 +214,7 @@ static void a_failure_leaves_the_file_that_was_there(void **state)
     char folder[64], path[128];
     ms_clump clump = {0}, bad = {0};
     ms_error err = {{0}};
-    const ms_format failing = {"failing", "failing", "fails", MS_NEED_SPHERES, {{"", failing_format}}};
+    const ms_format failing = {"failing", "failing", "fails", MS_NEED_SPHERES, NULL, {{"", failing_format}}};
     add_sphere(&clump, 1, 2, 3, 4);
     add_sphere(&bad, 1, 2, (double)NAN, 4); /* JSON has no such number */
     make_folder(folder);

@@ -2,7 +2,7 @@
 #ifndef FUZZ_CLUMP_READ_H
 #define FUZZ_CLUMP_READ_H
 
-#include "clump/formats/ms_read_formats.h"
+#include "clump/formats/ms_formats.h"
 #include "fuzz.h"
 
 static inline int fuzz_clump_read(const uint8_t *data, size_t size,
@@ -16,7 +16,9 @@ static inline int fuzz_clump_read(const uint8_t *data, size_t size,
     FUZZ_REQUIRE(status != MS_OK || clump.n_spheres > 0);
     FUZZ_REQUIRE(status == MS_OK || strncmp(err.text, "fuzz: ", 6) == 0);
     for (size_t s = 0; s < clump.n_spheres; s++) {
-        FUZZ_REQUIRE(isfinite(clump.sphere[s].radius) && clump.sphere[s].radius > 0);
+        const ms_sphere *sphere = &clump.sphere[s];
+        FUZZ_REQUIRE(isfinite(sphere->centre[0]) && isfinite(sphere->centre[1]) && isfinite(sphere->centre[2]));
+        FUZZ_REQUIRE(isfinite(sphere->radius) && sphere->radius > 0);
     }
     FUZZ_REQUIRE(status != MS_OK || particle.mass == 0 || (particle.mass > 0 && particle.scale > 0));
     ms_clump_free(&clump);

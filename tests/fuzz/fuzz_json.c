@@ -3,5 +3,5 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    return fuzz_clump_read(data, size, ms_read_json);
+    return fuzz_clump_read(data, size, ms_json_read);
 }

@@ -4,44 +4,23 @@
 #include <string.h>
 
 #include "base/ms_file.h"
-#include "ms_clump_parse.h"
-#include "ms_read_formats.h"
+#include "ms_formats.h"
+#include "ms_json.h"
 
-typedef ms_status parser(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
-
-static ms_status parse_text(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
+static ms_status read_bytes(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *path, ms_error *err)
 {
-    (void)particle;
-    return ms_clump_parse(clump, bytes, name, err);
-}
-
-static ms_status refuse(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
-{
-    (void)clump;
-    (void)particle;
-    (void)bytes;
-    return ms_fail(err, MS_ERR_ARG,
-                   "%s: this format is written and not read; clumps are read from .csv, .json, .lammps, .liggghts, "
-                   ".yade and other text of x y z r",
-                   name);
-}
-
-static parser *parser_of(const char *path)
-{
-    static const struct {
-        const char *ending;
-        parser *parse;
-    } READERS[] = {{"json", ms_read_json}, {"lammps", ms_read_lammps},
-                   {"vtk", refuse},        {"clu", refuse},
-                   {"pfc", refuse},        {"mfix", refuse}};
     char ending[16];
     ms_file_ending(ending, path);
-    for (size_t r = 0; r < sizeof READERS / sizeof *READERS; r++) {
-        if (strcmp(ending, READERS[r].ending) == 0) {
-            return READERS[r].parse;
+    for (const ms_format *f = ms_formats; f->name; f++) {
+        if (strcmp(ending, f->ending) == 0) {
+            return f->read ? f->read(clump, particle, bytes, path, err)
+                           : ms_fail(err, MS_ERR_ARG,
+                                     "%s: this format is written and not read; clumps are read from .csv, .json, "
+                                     ".lammps, .liggghts, .yade and other text of x y z r",
+                                     path);
         }
     }
-    return parse_text;
+    return ms_xyzr_read(clump, particle, bytes, path, err);
 }
 
 static ms_status check_masses(const ms_clump *clump, const char *name, ms_error *err)
@@ -62,7 +41,7 @@ ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path
     memset(particle, 0, sizeof *particle);
     ms_status status = ms_file_read(&bytes, path, err);
     if (status == MS_OK) {
-        status = parser_of(path)(clump, particle, &bytes, path, err);
+        status = read_bytes(clump, particle, &bytes, path, err);
         ms_file_free(&bytes);
     }
     if (status == MS_OK) {
@@ -71,6 +50,34 @@ ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path
     if (status != MS_OK) {
         ms_clump_free(clump);
         memset(particle, 0, sizeof *particle);
+    }
+    return status;
+}
+
+ms_status ms_read_spheres(ms_clump *clump, const char *path, ms_error *err)
+{
+    ms_bytes bytes;
+    ms_particle unused = {0};
+    memset(clump, 0, sizeof *clump);
+    ms_status status = ms_file_read(&bytes, path, err);
+    if (status == MS_OK) {
+        status = ms_xyzr_read(clump, &unused, &bytes, path, err);
+        ms_file_free(&bytes);
+    }
+    if (status != MS_OK) {
+        ms_clump_free(clump);
+    }
+    return status;
+}
+
+ms_status ms_read_particle(ms_particle *particle, const char *path, ms_error *err)
+{
+    ms_bytes bytes;
+    memset(particle, 0, sizeof *particle);
+    ms_status status = ms_file_read(&bytes, path, err);
+    if (status == MS_OK) {
+        status = ms_json_read_particle(particle, &bytes, path, err);
+        ms_file_free(&bytes);
     }
     return status;
 }

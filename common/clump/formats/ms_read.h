@@ -9,13 +9,25 @@ MS_C_BEGIN
 /**
  * Reads a clump file; its ending names the format. CSV gives masses if its header says so (x,y,z,r,mass), JSON also
  * the particle, a LAMMPS molecule (.lammps) both, without the density. Sphere files of LIGGGHTS and YADE, and any
- * other text, are read as ms_clump_read does. Files of formats that mskit only writes are refused.
+ * other text, are read as ms_read_spheres does. Files of formats that mskit only writes are refused.
  *
  * @param[out] clump    the caller frees it; empty on failure
  * @param[out] particle zeros where the file does not know it
- * @return as ms_clump_read; MS_ERR_ARG for a format that is not read
+ * @return as ms_read_spheres; MS_ERR_ARG for a format that is not read
  */
 ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path, ms_error *err);
+
+/**
+ * Reads spheres from a text file: four numbers a line, x y z r, separated by commas,
+ * semicolons or blanks; a fifth is the mass if the header calls it so, further columns are
+ * ignored. Empty lines, '#' comments and one header line before the first sphere are skipped;
+ * any other line is an error, and so are an empty column, decimal commas and a header that
+ * names x, y, z in other columns.
+ *
+ * @param[out] clump the caller frees it; empty on failure
+ * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line; MS_ERR_LIMIT; MS_ERR_NOMEM
+ */
+ms_status ms_read_spheres(ms_clump *clump, const char *path, ms_error *err);
 
 /**
  * Reads the particle from a STEM.frame.json or the JSON of a clump.

@@ -1,129 +1,52 @@
 #include "ms_write.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "base/ms_file.h"
-#include "ms_version.h"
-#include "ms_write_formats.h"
-
-void ms_write_numbers(FILE *stream, const double *value, size_t count, const char *mark)
-{
-    for (size_t k = 0; k < count; k++) {
-        fprintf(stream, "%s%s", k ? mark : "", ms_text_of_number(value[k]).text);
-    }
-}
-
-void ms_write_spheres(FILE *stream, const ms_clump *clump, const char *mark, const char *end)
-{
-    for (size_t s = 0; s < clump->n_spheres; s++) {
-        const double *c = clump->sphere[s].centre;
-        ms_write_numbers(stream, (const double[]){c[0], c[1], c[2], clump->sphere[s].radius}, 4, mark);
-        fputs(end, stream);
-    }
-}
-
-double ms_write_density(const ms_content *content, size_t sphere)
-{
-    const double r = content->clump->sphere[sphere].radius * content->particle->scale;
-    return content->clump->mass[sphere] / (4 * acos(-1.0) / 3 * r * r * r);
-}
-
-static int has_masses(const ms_content *content)
-{
-    return content->clump->mass && content->particle;
-}
-
-ms_status ms_write_csv(FILE *stream, const ms_content *content, ms_error *err)
-{
-    const ms_clump *clump = content->clump;
-    (void)err;
-    fputs(has_masses(content) ? "x,y,z,r,mass,density\n" : "x,y,z,r\n", stream);
-    for (size_t s = 0; s < clump->n_spheres; s++) {
-        const ms_sphere *b = &clump->sphere[s];
-        ms_write_numbers(stream, (const double[]){b->centre[0], b->centre[1], b->centre[2], b->radius}, 4, ",");
-        if (has_masses(content)) {
-            fputc(',', stream);
-            ms_write_numbers(stream, (const double[]){clump->mass[s], ms_write_density(content, s)}, 2, ",");
-        }
-        fputc('\n', stream);
-    }
-    return MS_OK;
-}
-
-static void write_scalars(FILE *stream, const char *name)
-{
-    fprintf(stream, "SCALARS %s double 1\nLOOKUP_TABLE default\n", name);
-}
-
-/* Legacy VTK: points with their radius; in ParaView, a Glyph of spheres scaled by it. */
-ms_status ms_write_vtk(FILE *stream, const ms_content *content, ms_error *err)
-{
-    const ms_clump *clump = content->clump;
-    (void)err;
-    fputs("# vtk DataFile Version 3.0\nclump by mskit " MS_VERSION "\nASCII\nDATASET POLYDATA\n", stream);
-    fprintf(stream, "POINTS %zu double\n", clump->n_spheres);
-    for (size_t s = 0; s < clump->n_spheres; s++) {
-        ms_write_numbers(stream, clump->sphere[s].centre, 3, " ");
-        fputc('\n', stream);
-    }
-    fprintf(stream, "VERTICES %zu %zu\n", clump->n_spheres, 2 * clump->n_spheres);
-    for (size_t s = 0; s < clump->n_spheres; s++) {
-        fprintf(stream, "1 %zu\n", s);
-    }
-    fprintf(stream, "POINT_DATA %zu\n", clump->n_spheres);
-    for (int array = 0; array < 3; array++) {
-        if (array > 0 && !has_masses(content)) {
-            break;
-        }
-        write_scalars(stream, array == 0 ? "radius" : array == 1 ? "mass" : "density");
-        for (size_t s = 0; s < clump->n_spheres; s++) {
-            const double value = array == 0   ? clump->sphere[s].radius
-                                 : array == 1 ? clump->mass[s]
-                                              : ms_write_density(content, s);
-            fprintf(stream, "%s\n", ms_text_of_number(value).text);
-        }
-    }
-    return MS_OK;
-}
+#include "ms_formats.h"
 
 const ms_format ms_formats[] = {
-    {"csv", "csv", "x,y,z,r in the unit and frame of the shape", MS_NEED_SPHERES, {{"", ms_write_csv}}},
+    {"csv", "csv", "x,y,z,r in the unit and frame of the shape", MS_NEED_SPHERES, ms_xyzr_read, {{"", ms_xyzr_write}}},
     {"json",
      "json",
      "spheres, scores and all that is needed to repeat the run",
      MS_NEED_SPHERES,
-     {{"", ms_write_json}}},
-    {"vtk", "vtk", "points with radius, for ParaView", MS_NEED_SPHERES, {{"", ms_write_vtk}}},
+     ms_json_read,
+     {{"", ms_json_write}}},
+    {"vtk", "vtk", "points with radius, for ParaView", MS_NEED_SPHERES, NULL, {{"", ms_vtk_write}}},
     {"liggghts",
      "liggghts",
      "sphere file, and a script with its particletemplate/multisphere",
      MS_NEED_PARTICLE,
-     {{"", ms_write_liggghts}, {".in", ms_write_liggghts_script}}},
+     ms_xyzr_read,
+     {{"", ms_liggghts_write}, {".in", ms_liggghts_script}}},
     {"lammps",
      "lammps",
      "molecule file for fix rigid/small, and a script",
      MS_NEED_MASSES,
-     {{"", ms_write_lammps}, {".in", ms_write_lammps_script}}},
+     ms_lammps_read,
+     {{"", ms_lammps_write}, {".in", ms_lammps_script}}},
     {"yade",
      "yade",
      "file for ymport.textClumps, and a script",
      MS_NEED_PARTICLE,
-     {{"", ms_write_yade}, {".py", ms_write_yade_script}}},
+     ms_xyzr_read,
+     {{"", ms_yade_write}, {".py", ms_yade_script}}},
     {"mercury",
      "mercury",
      "folder for MercuryDPM's ClumpInput",
      MS_NEED_PARTICLE,
-     {{"/Clump/Clump.txt", ms_write_mercury_clump},
-      {"/Inertia/Mass.txt", ms_write_mercury_mass},
-      {"/Inertia/TOI.txt", ms_write_mercury_tensor},
-      {"/Inertia/PD.txt", ms_write_mercury_axes}}},
-    {"deme", "deme", "Chrono DEM-Engine's x,y,z,r", MS_NEED_PARTICLE, {{"", ms_write_deme}}},
-    {"kratos", "clu", "Kratos cluster file", MS_NEED_PARTICLE, {{"", ms_write_kratos}}},
-    {"mfix", "mfix", "MFiX gsp_config.csv", MS_NEED_PARTICLE, {{"", ms_write_mfix}}},
-    {"pfc", "pfc", "PFC command clump template create", MS_NEED_PARTICLE, {{"", ms_write_pfc}}},
+     NULL,
+     {{"/Clump/Clump.txt", ms_mercury_write_clump},
+      {"/Inertia/Mass.txt", ms_mercury_write_mass},
+      {"/Inertia/TOI.txt", ms_mercury_write_inertia},
+      {"/Inertia/PD.txt", ms_mercury_write_axes}}},
+    {"deme", "deme", "Chrono DEM-Engine's x,y,z,r", MS_NEED_PARTICLE, ms_xyzr_read, {{"", ms_deme_write}}},
+    {"kratos", "clu", "Kratos cluster file", MS_NEED_PARTICLE, NULL, {{"", ms_kratos_write}}},
+    {"mfix", "mfix", "MFiX gsp_config.csv", MS_NEED_PARTICLE, NULL, {{"", ms_mfix_write}}},
+    {"pfc", "pfc", "PFC command clump template create", MS_NEED_PARTICLE, NULL, {{"", ms_pfc_write}}},
     {0},
 };
 
@@ -212,7 +135,7 @@ static size_t stem_length(const char *path)
 
 static ms_status write_template(const ms_content *content, const char *path, const ms_format *format, ms_error *err)
 {
-    static const ms_part FRAME = {".frame.json", ms_write_frame};
+    static const ms_part FRAME = {".frame.json", ms_json_write_frame};
     const int alone = strcmp(path, "-") == 0;
     ms_template made;
     ms_status status = ms_template_make(&made, content->clump, content->particle, err);
@@ -265,25 +188,4 @@ ms_status ms_write_clump(const ms_content *content, const char *path, const ms_f
     }
     return format->need == MS_NEED_SPHERES ? write_part(&named, path, strlen(path), format->part, err)
                                            : write_template(&named, path, format, err);
-}
-
-ms_status ms_write_grid(const ms_grid *grid, const char *path, ms_error *err)
-{
-    ms_output output;
-    ms_number at[3], h = ms_text_of_number(grid->h);
-    ms_status status = ms_output_open(&output, path, err);
-    if (status != MS_OK) {
-        return status;
-    }
-    for (int a = 0; a < 3; a++) {
-        at[a] = ms_text_of_number(grid->origin[a]);
-    }
-    fputs("# vtk DataFile Version 3.0\ntarget by mskit " MS_VERSION "\nBINARY\nDATASET STRUCTURED_POINTS\n",
-          output.stream);
-    fprintf(output.stream, "DIMENSIONS %d %d %d\nORIGIN %s %s %s\nSPACING %s %s %s\n", grid->n[0], grid->n[1],
-            grid->n[2], at[0].text, at[1].text, at[2].text, h.text, h.text, h.text);
-    fprintf(output.stream, "POINT_DATA %zu\nSCALARS inside unsigned_char 1\nLOOKUP_TABLE default\n",
-            ms_grid_voxels(grid));
-    fwrite(grid->inside, 1, ms_grid_voxels(grid), output.stream);
-    return ms_output_close(&output, MS_OK, err);
 }

@@ -17,6 +17,8 @@ typedef struct ms_content {
     const char *name;            /* of the first file without its folder; ms_write_clump sets it */
 } ms_content;
 
+struct ms_bytes;
+
 /** One file of a format. */
 typedef struct ms_part {
     const char *suffix; /* behind the path: "" for the first file, ".in" for a script, "/Clump/Clump.txt" in a folder */
@@ -38,6 +40,11 @@ typedef struct ms_format {
     const char *ending;  /* of its files */
     const char *summary; /* one line */
     ms_need need;
+
+    /* The way back: on failure the caller frees what the clump holds; the particle stays zero where the file does not
+     * know it. NULL: files of this format are not read. */
+    ms_status (*read)(ms_clump *clump, ms_particle *particle, struct ms_bytes *bytes, const char *name, ms_error *err);
+
     ms_part part[MS_FORMAT_MAX_PARTS]; /* ends with a NULL suffix */
 } ms_format;
 

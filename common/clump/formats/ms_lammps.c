@@ -1,24 +1,27 @@
-/* LAMMPS molecule files, as mskit writes them: a header, then sections with a line for each sphere. */
+/* LAMMPS: a molecule file for fix rigid/small, a header, then sections with a line for each sphere; and a script. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/ms_text.h"
-#include "ms_read_formats.h"
+#include "ms_fields.h"
+#include "ms_formats.h"
+#include "ms_script.h"
+#include "ms_version.h"
 
 /* What the file says of each sphere. */
-typedef struct table {
+typedef struct molecule {
     size_t n;
     double (*row)[5]; /* x, y, z, diameter, mass */
     int seen[3];      /* sections: Coords, Diameters, Masses */
-} table;
+} molecule;
 
 static const struct {
     const char *name;
     size_t first, count; /* columns of the row */
 } SECTIONS[] = {{"coords", 0, 3}, {"diameters", 3, 1}, {"masses", 4, 1}};
 
-static ms_status read_section(table *t, ms_text *text, int section, ms_error *err)
+static ms_status read_section(molecule *t, ms_text *text, int section, ms_error *err)
 {
     for (size_t s = 0; s < t->n; s++) {
         double v[4];
@@ -39,7 +42,7 @@ static ms_status read_section(table *t, ms_text *text, int section, ms_error *er
     return MS_OK;
 }
 
-static ms_status start_table(table *t, ms_text *text, double n, ms_error *err)
+static ms_status start_molecule(molecule *t, ms_text *text, double n, ms_error *err)
 {
     if (t->row || !(n >= 1 && n <= MS_CLUMP_MAX_SPHERES && n == floor(n))) {
         return ms_text_fail(err, text, "the number of atoms is given twice or is not from 1 to %d",
@@ -51,11 +54,11 @@ static ms_status start_table(table *t, ms_text *text, double n, ms_error *err)
 }
 
 /* A line "numbers keyword" of the header. */
-static ms_status read_header_line(table *t, ms_particle *particle, ms_text *text, const double *v, int n,
+static ms_status read_header_line(molecule *t, ms_particle *particle, ms_text *text, const double *v, int n,
                                   const ms_word *keyword, ms_error *err)
 {
     if (n == 1 && ms_text_word_is(keyword, "atoms")) {
-        return start_table(t, text, v[0], err);
+        return start_molecule(t, text, v[0], err);
     }
     if (n == 1 && ms_text_word_is(keyword, "mass")) {
         particle->mass = v[0];
@@ -74,7 +77,7 @@ static ms_status read_header_line(table *t, ms_particle *particle, ms_text *text
     return MS_OK;
 }
 
-static ms_status read_line(table *t, ms_particle *particle, ms_text *text, ms_error *err)
+static ms_status read_line(molecule *t, ms_particle *particle, ms_text *text, ms_error *err)
 {
     double v[6];
     ms_word word;
@@ -120,7 +123,7 @@ static ms_status finish_particle(ms_particle *particle, const char *name, ms_err
     return MS_OK;
 }
 
-static ms_status fill_clump(ms_clump *clump, ms_particle *particle, const table *t, const char *name, ms_error *err)
+static ms_status fill_clump(ms_clump *clump, ms_particle *particle, const molecule *t, const char *name, ms_error *err)
 {
     if (t->n == 0 || !t->seen[0] || !t->seen[1]) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: a molecule of spheres has the number of atoms, Coords and Diameters",
@@ -129,7 +132,7 @@ static ms_status fill_clump(ms_clump *clump, ms_particle *particle, const table 
     ms_status status = MS_OK;
     for (size_t s = 0; s < t->n && status == MS_OK; s++) {
         const double *row = t->row[s];
-        status = ms_read_sphere(clump, (const double[]){row[0], row[1], row[2], row[3] / 2}, name, err);
+        status = ms_fields_add_sphere(clump, (const double[]){row[0], row[1], row[2], row[3] / 2}, name, err);
     }
     if (status == MS_OK && t->seen[2]) {
         status = ms_clump_alloc_masses(clump, err);
@@ -140,10 +143,10 @@ static ms_status fill_clump(ms_clump *clump, ms_particle *particle, const table 
     return status == MS_OK ? finish_particle(particle, name, err) : status;
 }
 
-ms_status ms_read_lammps(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
+ms_status ms_lammps_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
 {
     ms_text text;
-    table t = {0};
+    molecule t = {0};
     ms_status status = MS_OK;
     ms_text_start(&text, bytes, name);
     text.comment = '#';
@@ -157,4 +160,76 @@ ms_status ms_read_lammps(ms_clump *clump, ms_particle *particle, ms_bytes *bytes
     }
     free(t.row);
     return status;
+}
+
+static void write_section(FILE *stream, const char *name, const ms_clump *clump)
+{
+    fprintf(stream, "\n%s\n\n", name);
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        fprintf(stream, "%zu ", s + 1);
+        switch (name[0]) {
+        case 'C':
+            ms_fields_numbers(stream, clump->sphere[s].centre, 3, " ");
+            break;
+        case 'T':
+            fputc('1', stream);
+            break;
+        case 'D':
+            ms_fields_numbers(stream, (const double[]){2 * clump->sphere[s].radius}, 1, " ");
+            break;
+        default:
+            ms_fields_numbers(stream, &clump->mass[s], 1, " ");
+        }
+        fputc('\n', stream);
+    }
+}
+
+/* Zeros for the products of inertia: their order differs between LAMMPS's manual and its code. */
+ms_status ms_lammps_write(FILE *stream, const ms_content *content, ms_error *err)
+{
+    static const char *const WRITTEN[] = {"Coords", "Types", "Diameters", "Masses"};
+    (void)err;
+    fputs("clump by mskit " MS_VERSION ", SI, from the centre of mass along the principal axes\n\n", stream);
+    fprintf(stream, "%zu atoms\n", content->clump->n_spheres);
+    fprintf(stream, "%s mass\n0 0 0 com\n", ms_text_of_number(content->particle->mass).text);
+    ms_fields_moments(stream, content->particle, 1, " ");
+    fputs(" 0 0 0 inertia\n", stream);
+    for (int k = 0; k < 4; k++) {
+        write_section(stream, WRITTEN[k], content->clump);
+    }
+    return MS_OK;
+}
+
+ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *err)
+{
+    const ms_script_drop d = ms_script_drop_of(content);
+    ms_number a, b, c;
+    (void)err;
+    fprintf(stream, "# Drops %s on a plane: lmp -in %s.in\n", content->name, content->name);
+    fputs("units si\natom_style sphere\natom_modify map array\nboundary f f f\nnewton off\n", stream);
+    fprintf(stream, "region box block -%s %s -%s %s", ms_script_number(40 * d.reach, &a), a.text, a.text, a.text);
+    fprintf(stream, " -%s %s\ncreate_box 1 box\n", ms_script_number(d.reach, &b), ms_script_number(4 * d.reach, &c));
+    fprintf(stream, "comm_modify vel yes cutoff %s\n", ms_script_number(2 * d.reach, &a));
+    fprintf(stream, "neighbor %s bin\n\n", ms_script_number(0.2 * d.reach, &a));
+    fputs("fix molecules all property/atom mol ghost yes\n"
+          "neigh_modify delay 0 exclude molecule/intra all\n"
+          "pair_style granular\n",
+          stream);
+    fprintf(stream, "pair_coeff * * hertz/material %s 0.5 0.3 tangential mindlin NULL 1.0 0.5 damping tsuji\n",
+            ms_script_number(d.young, &a));
+    fprintf(stream, "timestep %s\n", ms_script_number(d.step, &b));
+    fputs("fix gravity all gravity 9.81 vector 0 0 -1 disable\n", stream);
+    fprintf(stream,
+            "fix floor all wall/gran granular hertz/material %s 0.5 0.3 tangential mindlin NULL 1.0 0.5 "
+            "damping tsuji zplane 0 NULL\n\n",
+            a.text);
+    fputs("# The template: its mass and inertia are kept (reinit no) and gravity acts on the body.\n", stream);
+    fprintf(stream, "molecule clump %s\n", content->name);
+    fputs("fix move all rigid/small molecule mol clump reinit no gravity gravity\n", stream);
+    fprintf(stream, "region above block -%s %s -%s %s", ms_script_number(d.reach, &a), a.text, a.text, a.text);
+    fprintf(stream, " %s %s\n", ms_script_number(1.5 * d.reach, &b), ms_script_number(2 * d.reach, &c));
+    fputs("fix insert all deposit 1 0 1 32452843 region above mol clump rigid move\n\n", stream);
+    fputs("thermo_style custom step atoms\nthermo_modify lost error\n", stream);
+    fprintf(stream, "thermo %.0f\nrun %.0f\n", ceil(d.end / d.step / 10), ceil(d.end / d.step));
+    return MS_OK;
 }

@@ -1,11 +1,11 @@
+/* Spheres as a text of x, y, z, r: CSV, and whatever other tools write. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ms_file.h"
 #include "base/ms_text.h"
-#include "clump/ms_clump.h"
-#include "ms_clump_parse.h"
+#include "ms_fields.h"
+#include "ms_formats.h"
 
 static int is_mark(char c)
 {
@@ -195,26 +195,28 @@ static ms_status parse(ms_clump *clump, masses *m, ms_bytes *bytes, const char *
     return MS_OK;
 }
 
-ms_status ms_clump_parse(ms_clump *clump, ms_bytes *bytes, const char *name, ms_error *err)
+ms_status ms_xyzr_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
 {
     masses m = {0};
-    memset(clump, 0, sizeof *clump);
-    ms_status status = parse(clump, &m, bytes, name, err);
+    (void)particle;
+    const ms_status status = parse(clump, &m, bytes, name, err);
     clump->mass = m.value;
-    if (status != MS_OK) {
-        ms_clump_free(clump);
-    }
     return status;
 }
 
-ms_status ms_clump_read(ms_clump *clump, const char *path, ms_error *err)
+ms_status ms_xyzr_write(FILE *stream, const ms_content *content, ms_error *err)
 {
-    ms_bytes bytes;
-    memset(clump, 0, sizeof *clump);
-    ms_status status = ms_file_read(&bytes, path, err);
-    if (status == MS_OK) {
-        status = ms_clump_parse(clump, &bytes, path, err);
-        ms_file_free(&bytes);
+    const ms_clump *clump = content->clump;
+    (void)err;
+    fputs(ms_fields_has_masses(content) ? "x,y,z,r,mass,density\n" : "x,y,z,r\n", stream);
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        const ms_sphere *b = &clump->sphere[s];
+        ms_fields_numbers(stream, (const double[]){b->centre[0], b->centre[1], b->centre[2], b->radius}, 4, ",");
+        if (ms_fields_has_masses(content)) {
+            fputc(',', stream);
+            ms_fields_numbers(stream, (const double[]){clump->mass[s], ms_fields_density(content, s)}, 2, ",");
+        }
+        fputc('\n', stream);
     }
-    return status;
+    return MS_OK;
 }

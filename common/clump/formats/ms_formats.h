@@ -1,0 +1,35 @@
+/** The readers and writers that stand in the table of formats (ms_write.c), a file for each engine. Private to the table;
+ * tests and fuzzers read from memory with them. */
+#ifndef MS_FORMATS_H
+#define MS_FORMATS_H
+
+#include "base/ms_file.h"
+#include "ms_write.h"
+
+/* Readers, as ms_format.read. */
+ms_status ms_xyzr_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
+ms_status ms_json_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
+ms_status ms_lammps_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
+
+/* Writers, as ms_part.write. Templates get a clump and particle in the frame of the template. */
+ms_status ms_xyzr_write(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_json_write(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_json_write_frame(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_vtk_write(FILE *stream, const ms_content *content, ms_error *err);
+
+ms_status ms_liggghts_write(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_lammps_write(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_yade_write(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_yade_script(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_mercury_write_clump(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_mercury_write_mass(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_mercury_write_inertia(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_mercury_write_axes(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_deme_write(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_kratos_write(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_mfix_write(FILE *stream, const ms_content *content, ms_error *err);
+ms_status ms_pfc_write(FILE *stream, const ms_content *content, ms_error *err);
+
+#endif

@@ -1,0 +1,186 @@
+/* The JSON of a clump, of its particle, and of the frame beside a template. */
+#include "ms_json.h"
+
+#include <string.h>
+
+#include "ms_fields.h"
+#include "ms_formats.h"
+#include "ms_version.h"
+
+/* Reads n numbers; returns 0 if the value is no list that begins with as many. */
+static int take_numbers(double *out, size_t n, const json_t *list)
+{
+    if (json_array_size(list) < n) {
+        return 0;
+    }
+    for (size_t k = 0; k < n; k++) {
+        if (!json_is_number(json_array_get(list, k))) {
+            return 0;
+        }
+        out[k] = json_number_value(json_array_get(list, k));
+    }
+    return 1;
+}
+
+static int take_number(double *out, const json_t *object, const char *key)
+{
+    const json_t *value = json_object_get(object, key);
+    *out = json_number_value(value);
+    return json_is_number(value);
+}
+
+static ms_status take_particle(ms_particle *particle, const json_t *json, const char *name, ms_error *err)
+{
+    ms_particle p = {0};
+    const json_t *rows = json_object_get(json, "inertia");
+    int whole = take_number(&p.scale, json, "scale") && take_number(&p.density, json, "density") &&
+                take_number(&p.mass, json, "mass") && take_numbers(p.centre, 3, json_object_get(json, "centre"));
+    for (size_t k = 0; k < 3; k++) {
+        whole = whole && take_numbers(p.inertia[k], 3, json_array_get(rows, k)) && p.inertia[k][k] > 0;
+    }
+    if (!whole || !(p.scale > 0) || !(p.mass > 0) || !(p.density >= 0)) {
+        memset(particle, 0, sizeof *particle);
+        return ms_fail(err, MS_ERR_FORMAT,
+                       "%s: its particle has not all of scale, density, mass, centre and inertia as numbers of their "
+                       "ranges; write it again with mskit correct",
+                       name);
+    }
+    *particle = p;
+    return MS_OK;
+}
+
+static ms_status parse_root(json_t **root, const ms_bytes *bytes, const char *name, ms_error *err)
+{
+    json_error_t where;
+    *root = json_loadb((const char *)bytes->data, bytes->size, 0, &where);
+    return *root ? MS_OK
+                 : ms_fail(err, MS_ERR_FORMAT, "%s: line %d: %s; this is no JSON", name, where.line, where.text);
+}
+
+/* Do the columns say that a mass follows the radius? */
+static int names_mass(const json_t *root)
+{
+    const char *fifth = json_string_value(json_array_get(json_object_get(root, "columns"), 4));
+    return fifth && strcmp(fifth, "mass") == 0;
+}
+
+static ms_status take_spheres(ms_clump *clump, const json_t *root, const char *name, ms_error *err)
+{
+    const json_t *list = json_object_get(root, "spheres");
+    const size_t n = json_array_size(list), columns = names_mass(root) ? 5 : 4;
+    double v[5];
+    ms_status status = n ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "%s: holds no list 'spheres'", name);
+    for (size_t s = 0; s < n && status == MS_OK; s++) {
+        status = take_numbers(v, columns, json_array_get(list, s))
+                     ? ms_fields_add_sphere(clump, v, name, err)
+                     : ms_fail(err, MS_ERR_FORMAT, "%s: sphere %zu is no list of %zu numbers", name, s + 1, columns);
+    }
+    if (status == MS_OK && columns == 5) {
+        status = ms_clump_alloc_masses(clump, err);
+        for (size_t s = 0; s < n && status == MS_OK; s++) {
+            take_numbers(v, 5, json_array_get(list, s));
+            clump->mass[s] = v[4];
+        }
+    }
+    return status;
+}
+
+ms_status ms_json_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
+{
+    json_t *root;
+    ms_status status = parse_root(&root, bytes, name, err);
+    if (status == MS_OK) {
+        status = take_spheres(clump, root, name, err);
+    }
+    if (status == MS_OK && json_object_get(root, "particle")) {
+        status = take_particle(particle, json_object_get(root, "particle"), name, err);
+    }
+    json_decref(root);
+    return status;
+}
+
+ms_status ms_json_read_particle(ms_particle *particle, const ms_bytes *bytes, const char *name, ms_error *err)
+{
+    json_t *root;
+    memset(particle, 0, sizeof *particle);
+    ms_status status = parse_root(&root, bytes, name, err);
+    if (status == MS_OK) {
+        status = take_particle(particle, json_object_get(root, "particle"), name, err);
+    }
+    json_decref(root);
+    return status;
+}
+
+static json_t *vector_to_json(const double v[3])
+{
+    return json_pack("[f,f,f]", v[0], v[1], v[2]);
+}
+
+static json_t *matrix_to_json(double m[3][3])
+{
+    return json_pack("[o,o,o]", vector_to_json(m[0]), vector_to_json(m[1]), vector_to_json(m[2]));
+}
+
+json_t *ms_json_from_particle(const ms_particle *p)
+{
+    ms_principal principal;
+    ms_body body = {.volume = 1};
+    memcpy(body.inertia, p->inertia, sizeof body.inertia);
+    if (ms_inertia_principal(&principal, &body, NULL) != MS_OK) {
+        return NULL;
+    }
+    return json_pack("{s:f,s:f,s:f,s:o,s:o,s:o,s:o}", "scale", p->scale, "density", p->density, "mass", p->mass,
+                     "centre", vector_to_json(p->centre), "inertia", matrix_to_json(body.inertia), "principal_moments",
+                     vector_to_json(principal.moment), "principal_axes", matrix_to_json(principal.axis));
+}
+
+static json_t *columns_to_json(int masses)
+{
+    return masses ? json_pack("[s,s,s,s,s,s]", "x", "y", "z", "r", "mass", "density")
+                  : json_pack("[s,s,s,s]", "x", "y", "z", "r");
+}
+
+static json_t *sphere_to_json(const ms_content *content, size_t s, int masses)
+{
+    const ms_sphere *b = &content->clump->sphere[s];
+    json_t *row = json_pack("[f,f,f,f]", b->centre[0], b->centre[1], b->centre[2], b->radius);
+    if (row && masses) {
+        json_array_append_new(row, json_real(content->clump->mass[s]));
+        json_array_append_new(row, json_real(ms_fields_density(content, s)));
+    }
+    return row;
+}
+
+/* {"mskit": version, <the record>, "particle": {...}, "columns": [...], "spheres": [[x, y, z, r], ...]} */
+ms_status ms_json_write(FILE *stream, const ms_content *content, ms_error *err)
+{
+    const int masses = ms_fields_has_masses(content);
+    json_t *root = json_pack("{s:s}", "mskit", MS_VERSION), *spheres = json_array();
+    json_t *how = content->record ? json_loads(content->record, 0, NULL) : json_object();
+    int failed = !root || !how || json_object_update(root, how) != 0;
+    if (content->particle) {
+        failed |= json_object_set_new(root, "particle", ms_json_from_particle(content->particle)) != 0;
+    }
+    failed |= json_object_set_new(root, "columns", columns_to_json(masses)) != 0;
+    for (size_t s = 0; s < content->clump->n_spheres; s++) {
+        failed |= json_array_append_new(spheres, sphere_to_json(content, s, masses)) != 0;
+    }
+    failed |= json_object_set_new(root, "spheres", spheres) != 0;
+    failed = failed || json_dumpf(root, stream, JSON_INDENT(2)) != 0 || fputc('\n', stream) == EOF;
+    json_decref(how);
+    json_decref(root);
+    return failed ? ms_fail(err, MS_ERR_IO, "the clump could not be written as JSON") : MS_OK;
+}
+
+/* {"mskit": version, "frame": in words, "particle": {...}}: the way from a template back to the shape. */
+ms_status ms_json_write_frame(FILE *stream, const ms_content *content, ms_error *err)
+{
+    json_t *root = json_pack("{s:s,s:s,s:o*}", "mskit", MS_VERSION, "frame",
+                             "shape = centre + (x axis0 + y axis1 + z axis2) / scale, for x, y, z of the template and "
+                             "the rows of principal_axes",
+                             "particle", ms_json_from_particle(content->particle));
+    const int failed = !json_object_get(root, "particle") || json_dumpf(root, stream, JSON_INDENT(2)) != 0 ||
+                       fputc('\n', stream) == EOF;
+    json_decref(root);
+    return failed ? ms_fail(err, MS_ERR_IO, "the frame of the template could not be written as JSON") : MS_OK;
+}

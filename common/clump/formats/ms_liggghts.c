@@ -1,0 +1,60 @@
+/* LIGGGHTS: a sphere file and a script with its particletemplate/multisphere. */
+#include <math.h>
+
+#include "ms_fields.h"
+#include "ms_formats.h"
+#include "ms_script.h"
+
+/* A comment or an empty line in it crashes LIGGGHTS. */
+ms_status ms_liggghts_write(FILE *stream, const ms_content *content, ms_error *err)
+{
+    if (content->clump->n_spheres < 2) {
+        return ms_fail(err, MS_ERR_ARG, "LIGGGHTS takes no multisphere of one sphere; use its particletemplate/sphere");
+    }
+    ms_fields_spheres(stream, content->clump, " ", "\n");
+    return MS_OK;
+}
+
+ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *err)
+{
+    const ms_script_drop d = ms_script_drop_of(content);
+    const ms_particle *p = content->particle;
+    ms_number a, b, c;
+    (void)err;
+    fprintf(stream, "# Drops %s on a plane: liggghts -in %s.in\n", content->name, content->name);
+    fputs("atom_style granular\natom_modify map array\ncommunicate single vel yes\nboundary f f f\nnewton off\n"
+          "units si\n",
+          stream);
+    fprintf(stream, "region box block -%s %s -%s %s", ms_script_number(40 * d.reach, &a), a.text, a.text, a.text);
+    fprintf(stream, " -%s %s units box\ncreate_box 1 box\n", ms_script_number(d.reach, &b),
+            ms_script_number(4 * d.reach, &c));
+    fprintf(stream, "neighbor %s bin\nneigh_modify delay 0\n\n", ms_script_number(0.2 * d.reach, &a));
+    fputs("hard_particles yes\n", stream); /* lets the modulus be above 1e9 */
+    fprintf(stream, "fix young all property/global youngsModulus peratomtype %s\n", ms_script_number(d.young, &a));
+    fputs("fix poisson all property/global poissonsRatio peratomtype 0.3\n"
+          "fix restitution all property/global coefficientRestitution peratomtypepair 1 0.5\n"
+          "fix friction all property/global coefficientFriction peratomtypepair 1 0.5\n"
+          "pair_style gran model hertz tangential history\npair_coeff * *\n",
+          stream);
+    fprintf(stream, "timestep %s\n", ms_script_number(d.step, &a));
+    fputs("fix gravity all gravity 9.81 vector 0 0 -1\n"
+          "fix floor all wall/gran model hertz tangential history primitive type 1 zplane 0\n\n",
+          stream);
+    fputs("# The template: mass and inertia about its origin, along its axes.\n", stream);
+    fprintf(stream,
+            "fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 "
+            "density constant %s nspheres %zu ntry 1000 spheres file %s scale 1.0 type 1 mass %s inertia_tensor",
+            ms_script_number(p->density, &a), content->clump->n_spheres, content->name, ms_script_number(p->mass, &b));
+    for (int k = 0; k < 6; k++) {
+        fprintf(stream, " %s", k == 0 || k == 3 || k == 5 ? ms_script_number(p->inertia[k / 2][k / 2], &c) : "0");
+    }
+    fputs(" use_density\nfix kinds all particledistribution/discrete 15485867 1 clump 1.0\n", stream);
+    fprintf(stream, "region above block -%s %s -%s %s", ms_script_number(2 * d.reach, &a), a.text, a.text, a.text);
+    fprintf(stream, " %s %s volume_limit 1e-300 units box\n", ms_script_number(0.2 * d.reach, &b),
+            ms_script_number(3 * d.reach, &c));
+    fputs("fix insert all insert/pack seed 32452843 distributiontemplate kinds insert_every once overlapcheck yes "
+          "all_in yes particles_in_region 1 region above\nfix move all multisphere\n\n",
+          stream);
+    fprintf(stream, "thermo %.0f\nrun %.0f\n", ceil(d.end / d.step / 10), ceil(d.end / d.step));
+    return MS_OK;
+}

@@ -1,0 +1,22 @@
+/** What the scripts share that load a template and drop it on a plane: a start for the user's own, run by the tests of the
+ * engines. Private to the writers of formats. */
+#ifndef MS_SCRIPT_H
+#define MS_SCRIPT_H
+
+#include "base/ms_text.h"
+#include "ms_write.h"
+
+/** A drop that suits the size of the particle, whatever that is. */
+typedef struct ms_script_drop {
+    double reach; /* of the particle around its centre of mass */
+    double young; /* stiff enough for overlaps of a per mille of its size, and what LIGGGHTS demands */
+    double step;  /* a tenth of the Rayleigh time of the smallest sphere */
+    double end;   /* time to fall and come to rest */
+} ms_script_drop;
+
+ms_script_drop ms_script_drop_of(const ms_content *content);
+
+/** The number as text, which stands in `room`. */
+const char *ms_script_number(double value, ms_number *room);
+
+#endif

@@ -1,0 +1,62 @@
+/* Legacy VTK, for ParaView: a clump, and a grid. */
+#include "base/ms_file.h"
+#include "ms_fields.h"
+#include "ms_formats.h"
+#include "ms_version.h"
+
+static void write_scalars(FILE *stream, const char *name)
+{
+    fprintf(stream, "SCALARS %s double 1\nLOOKUP_TABLE default\n", name);
+}
+
+/* Legacy VTK: points with their radius; in ParaView, a Glyph of spheres scaled by it. */
+ms_status ms_vtk_write(FILE *stream, const ms_content *content, ms_error *err)
+{
+    const ms_clump *clump = content->clump;
+    (void)err;
+    fputs("# vtk DataFile Version 3.0\nclump by mskit " MS_VERSION "\nASCII\nDATASET POLYDATA\n", stream);
+    fprintf(stream, "POINTS %zu double\n", clump->n_spheres);
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        ms_fields_numbers(stream, clump->sphere[s].centre, 3, " ");
+        fputc('\n', stream);
+    }
+    fprintf(stream, "VERTICES %zu %zu\n", clump->n_spheres, 2 * clump->n_spheres);
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        fprintf(stream, "1 %zu\n", s);
+    }
+    fprintf(stream, "POINT_DATA %zu\n", clump->n_spheres);
+    for (int array = 0; array < 3; array++) {
+        if (array > 0 && !ms_fields_has_masses(content)) {
+            break;
+        }
+        write_scalars(stream, array == 0 ? "radius" : array == 1 ? "mass" : "density");
+        for (size_t s = 0; s < clump->n_spheres; s++) {
+            const double value = array == 0   ? clump->sphere[s].radius
+                                 : array == 1 ? clump->mass[s]
+                                              : ms_fields_density(content, s);
+            fprintf(stream, "%s\n", ms_text_of_number(value).text);
+        }
+    }
+    return MS_OK;
+}
+
+ms_status ms_write_grid(const ms_grid *grid, const char *path, ms_error *err)
+{
+    ms_output output;
+    ms_number at[3], h = ms_text_of_number(grid->h);
+    ms_status status = ms_output_open(&output, path, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    for (int a = 0; a < 3; a++) {
+        at[a] = ms_text_of_number(grid->origin[a]);
+    }
+    fputs("# vtk DataFile Version 3.0\ntarget by mskit " MS_VERSION "\nBINARY\nDATASET STRUCTURED_POINTS\n",
+          output.stream);
+    fprintf(output.stream, "DIMENSIONS %d %d %d\nORIGIN %s %s %s\nSPACING %s %s %s\n", grid->n[0], grid->n[1],
+            grid->n[2], at[0].text, at[1].text, at[2].text, h.text, h.text, h.text);
+    fprintf(output.stream, "POINT_DATA %zu\nSCALARS inside unsigned_char 1\nLOOKUP_TABLE default\n",
+            ms_grid_voxels(grid));
+    fwrite(grid->inside, 1, ms_grid_voxels(grid), output.stream);
+    return ms_output_close(&output, MS_OK, err);
+}

@@ -1,0 +1,73 @@
+/* YADE: a file for ymport.textClumps, and a script. */
+#include <math.h>
+
+#include "ms_fields.h"
+#include "ms_formats.h"
+#include "ms_script.h"
+
+ms_status ms_yade_write(FILE *stream, const ms_content *content, ms_error *err)
+{
+    (void)err;
+    fputs("# x y z r clumpId\n", stream); /* with #format x_y_z_r_clumpId, ymport.text would refuse it */
+    ms_fields_spheres(stream, content->clump, " ", " 0\n");
+    return MS_OK;
+}
+
+/* YADE sums spheres by volume and density, and turns the clump into the axes of that sum. Spheres without density
+ * around four small ones, a cross of unequal arms, sum to the centre and the axes of the template; mass and inertia can
+ * then be set. */
+static void write_particle(FILE *stream, const ms_content *content)
+{
+    const ms_particle *p = content->particle;
+    const double arm = ms_clump_smallest_radius(content->clump);
+    ms_number a, b, c;
+    fputs("def particle(position):\n"
+          "    \"\"\"Adds a particle; its axes are those of the template. Returns the id of the clump.\"\"\"\n",
+          stream);
+    fprintf(stream, "    spheres = ymport.text('%s', shift=position, material='weightless')\n", content->name);
+    fprintf(stream, "    arms = [Vector3(%s, 0, 0), Vector3(0, %s, 0)]\n", ms_script_number(arm, &a),
+            ms_script_number(arm / 2, &b));
+    fputs("    cross = [sphere(position + side * arm, ", stream);
+    fprintf(stream, "%s, material='cross') for arm in arms for side in (-1, 1)]\n", ms_script_number(1e-3 * arm, &a));
+    fputs("    clump, members = O.bodies.appendClumped(spheres + cross)\n"
+          "    for i in members:\n"
+          "        O.bodies[i].mat = O.materials['matter']\n"
+          "    for part in cross:\n"
+          "        part.mask = 0  # meets nothing\n",
+          stream);
+    fprintf(stream, "    O.bodies[clump].state.mass = %s\n", ms_script_number(p->mass, &a));
+    fprintf(stream, "    O.bodies[clump].state.inertia = Vector3(%s, %s, %s)\n", ms_script_number(p->inertia[0][0], &a),
+            ms_script_number(p->inertia[1][1], &b), ms_script_number(p->inertia[2][2], &c));
+    fputs("    return clump\n\n\n", stream);
+}
+
+ms_status ms_yade_script(FILE *stream, const ms_content *content, ms_error *err)
+{
+    static const char *const MATERIALS[] = {"matter", "weightless", "cross"};
+    const ms_script_drop d = ms_script_drop_of(content);
+    ms_number a, b;
+    (void)err;
+    fprintf(stream, "# Drops %s on a plane: yade -x -n %s.py\nfrom yade import ymport\n\n", content->name,
+            content->name);
+    for (int m = 0; m < 3; m++) {
+        const double density[] = {content->particle->density, 0, 1};
+        fprintf(stream,
+                "O.materials.append(FrictMat(label='%s', young=%s, poisson=0.3, density=%s, frictionAngle=0.46))\n",
+                MATERIALS[m], ms_script_number(d.young, &a), ms_script_number(density[m], &b));
+    }
+    fputs("\n\n", stream);
+    write_particle(stream, content);
+    fprintf(stream, "clump = particle(Vector3(0, 0, %s))\n", ms_script_number(1.5 * d.reach, &a));
+    fputs("O.bodies.append(wall(0, axis=2, material='matter'))\n"
+          "O.engines = [\n"
+          "    ForceResetter(),\n"
+          "    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),\n"
+          "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],\n"
+          "                    [Ip2_FrictMat_FrictMat_MindlinPhys(en=0.5)], [Law2_ScGeom_MindlinPhys_Mindlin()]),\n"
+          "    NewtonIntegrator(damping=0, gravity=(0, 0, -9.81)),\n]\n",
+          stream);
+    fprintf(stream, "O.dt = %s\n", ms_script_number(d.step, &a));
+    fprintf(stream, "for part in range(10):\n    O.run(%.0f, True)\n", ceil(d.end / d.step / 10));
+    fputs("    print(O.time, O.bodies[clump].state.pos, O.bodies[clump].state.vel)\n", stream);
+    return MS_OK;
+}
