@@ -132,31 +132,3 @@ ms_status ms_text_fail(ms_error *err, const ms_text *text, const char *format, .
     return ms_fail(err, MS_ERR_FORMAT, "%s: line %zu: %s; correct the line or export the file again", text->name,
                    text->line, detail);
 }
-
-int ms_text_word_is(const ms_word *word, const char *lower)
-{
-    size_t i = 0;
-    for (; i < word->length && lower[i]; i++) {
-        char c = word->start[i];
-        if (c >= 'A' && c <= 'Z') {
-            c = (char)(c - 'A' + 'a');
-        }
-        if (c != lower[i]) {
-            return 0;
-        }
-    }
-    return i == word->length && lower[i] == '\0';
-}
-
-ms_quote ms_text_quote(const ms_word *word)
-{
-    ms_quote quote;
-    size_t room = sizeof quote.text - 4;
-    size_t length = word->length < room ? word->length : room;
-    for (size_t i = 0; i < length; i++) {
-        char c = word->start[i];
-        quote.text[i] = (char)(c >= ' ' && c <= '~' ? c : '?');
-    }
-    strcpy(quote.text + length, word->length > room ? "..." : "");
-    return quote;
-}

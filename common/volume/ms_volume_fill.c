@@ -9,11 +9,6 @@
 /* Spacings that programs have written with six digits still count as equal. */
 #define CUBE_TOLERANCE 1e-5
 
-ms_volume_header ms_volume_header_start(size_t max_voxels)
-{
-    return (ms_volume_header){.spacing = {1.0, 1.0, 1.0}, .max_voxels = max_voxels};
-}
-
 ms_status ms_volume_data_size(size_t *size, const ms_volume_header *header, const char *path, ms_error *err)
 {
     const int64_t *n = header->n;
@@ -230,4 +225,12 @@ ms_status ms_volume_fill(ms_volume *volume, const ms_volume_header *header, cons
         ms_volume_free(volume);
     }
     return status;
+}
+
+void ms_volume_free(ms_volume *volume)
+{
+    if (volume) {
+        free(volume->label);
+        *volume = (ms_volume){0};
+    }
 }
