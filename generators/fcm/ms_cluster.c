@@ -35,6 +35,13 @@ struct ms_cluster {
     double least;  /* squared distances below this count as this */
 };
 
+/* What a block's points weigh. */
+typedef struct weights {
+    double (*of)[LANES];   /* for each centre */
+    double nearest[LANES]; /* squared distance to the nearest centre */
+    double total[LANES];
+} weights;
+
 /* What one part of the points adds up to. */
 typedef struct share {
     double (*sum)[TERMS]; /* of each centre */
@@ -123,8 +130,8 @@ ms_status ms_cluster_build(ms_cluster **out, const double (*point)[4], size_t co
 }
 
 /* Squared distances of a block's points from the centres, and the least for each point. */
-static void measure(double (*square)[LANES], double nearest[LANES], const block *b, const double (*centre)[AXES],
-                    size_t count, double least)
+static void measure_distances(double (*square)[LANES], double nearest[LANES], const block *b,
+                              const double (*centre)[AXES], size_t count, double least)
 {
     for (int l = 0; l < LANES; l++) {
         nearest[l] = HUGE_VAL;
@@ -142,7 +149,8 @@ static void measure(double (*square)[LANES], double nearest[LANES], const block 
 }
 
 /* Squared distances become w_i (d / d_i). @param[out] total W */
-static void weigh(double (*weight)[LANES], double total[LANES], const double nearest[LANES], size_t count, double power)
+static void weigh_fuzzily(double (*weight)[LANES], double total[LANES], const double nearest[LANES], size_t count,
+                          double power)
 {
     for (int l = 0; l < LANES; l++) {
         total[l] = 0;
@@ -158,7 +166,7 @@ static void weigh(double (*weight)[LANES], double total[LANES], const double nea
 }
 
 /* Squared distances become 1 for the first centre that is nearest, else 0. @param[out] total ones */
-static void assign(double (*weight)[LANES], double total[LANES], const double nearest[LANES], size_t count)
+static void assign_nearest(double (*weight)[LANES], double total[LANES], const double nearest[LANES], size_t count)
 {
     double left[LANES];
     for (int l = 0; l < LANES; l++) {
@@ -174,20 +182,20 @@ static void assign(double (*weight)[LANES], double total[LANES], const double ne
 }
 
 /* Weights of a block's points for all centres, but for a factor of each point. */
-static void weigh_block(double (*weight)[LANES], double nearest[LANES], double total[LANES], const ms_cluster *c,
-                        size_t which, const double (*centre)[AXES], size_t count, double fuzzifier)
+static void weigh_block(weights *w, const ms_cluster *c, size_t which, const double (*centre)[AXES], size_t count,
+                        double fuzzifier)
 {
-    measure(weight, nearest, &c->blocks[which], centre, count, c->least);
+    measure_distances(w->of, w->nearest, &c->blocks[which], centre, count, c->least);
     if (fuzzifier > 1) {
-        weigh(weight, total, nearest, count, 1 / (fuzzifier - 1));
+        weigh_fuzzily(w->of, w->total, w->nearest, count, 1 / (fuzzifier - 1));
     } else {
-        assign(weight, total, nearest, count);
+        assign_nearest(w->of, w->total, w->nearest, count);
     }
 }
 
 /* Adds a block's weighted points to the sums of the centres. */
-static void add_up(double (*sum)[TERMS], double (*weight)[LANES], const double factor[LANES], const block *b,
-                   size_t count)
+static void add_weighted(double (*sum)[TERMS], double (*weight)[LANES], const double factor[LANES], const block *b,
+                         size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         const double *w = weight[i];
@@ -214,26 +222,27 @@ static void add_block(share *part, const work *w, double (*weight)[LANES], size_
     const ms_cluster *c = w->cluster;
     const double m = w->rule->fuzzifier;
     const size_t left = c->count - which * LANES, points = left < LANES ? left : LANES;
-    double nearest[LANES], total[LANES], factor[LANES];
-    weigh_block(weight, nearest, total, c, which, centre, w->count, m);
+    double factor[LANES];
+    weights of = {.of = weight};
+    weigh_block(&of, c, which, centre, w->count, m);
     for (size_t l = 0; l < LANES; l++) {
-        factor[l] = ms_power(1 / total[l], m); /* W^-m */
+        factor[l] = ms_power(1 / of.total[l], m); /* W^-m */
     }
     for (size_t l = points; l < LANES; l++) {
         factor[l] = 0;
     }
     for (size_t l = 0; l < points; l++) {
-        part->objective += nearest[l] * total[l] * factor[l];
-        if (nearest[l] > part->farthest) {
-            part->farthest = nearest[l];
+        part->objective += of.nearest[l] * of.total[l] * factor[l];
+        if (of.nearest[l] > part->farthest) {
+            part->farthest = of.nearest[l];
             part->point = which * LANES + l;
         }
     }
-    add_up(part->sum, weight, factor, &c->blocks[which], w->count);
+    add_weighted(part->sum, weight, factor, &c->blocks[which], w->count);
 }
 
 /* All points; what the parts came to is put together in the first. */
-static void pass(work *w, const double (*centre)[AXES])
+static void pass_points(work *w, const double (*centre)[AXES])
 {
     const size_t blocks = w->cluster->n_blocks;
 #pragma omp parallel for schedule(dynamic, 1)
@@ -264,7 +273,7 @@ static void pass(work *w, const double (*centre)[AXES])
 
 /* Moves the centres to the mean of what belongs to them; of those without anything one to the farthest
  * point. @return nonzero if one was moved so */
-static int update(double (*centre)[AXES], const work *w)
+static int update_centres(double (*centre)[AXES], const work *w)
 {
     const share *all = &w->parts[0];
     int moved = all->farthest <= w->cluster->least; /* no point is away from all centres */
@@ -282,16 +291,16 @@ static int update(double (*centre)[AXES], const work *w)
 }
 
 /* To the minimum that the centres lead to. */
-static ms_cluster_result descend(double (*centre)[AXES], work *w)
+static ms_cluster_result descend_objective(double (*centre)[AXES], work *w)
 {
     ms_cluster_result result = {.objective = HUGE_VAL};
     int going = 1;
     while (going && result.iterations < w->rule->iterations) {
-        pass(w, (const double(*)[AXES])centre);
+        pass_points(w, (const double(*)[AXES])centre);
         const double before = result.objective;
         result.objective = w->parts[0].objective;
         result.iterations++;
-        going = update(centre, w) || before - result.objective > w->rule->tolerance * result.objective;
+        going = update_centres(centre, w) || before - result.objective > w->rule->tolerance * result.objective;
     }
     return result;
 }
@@ -311,7 +320,7 @@ static size_t find_coincident(const double (*centre)[AXES], size_t count, double
 }
 
 /* Moves centres that coincide with others for as long as that lowers the objective. */
-static void separate(ms_cluster_result *result, double (*centre)[AXES], double (*trial)[AXES], work *w)
+static void separate_coincident(ms_cluster_result *result, double (*centre)[AXES], double (*trial)[AXES], work *w)
 {
     for (size_t t = 0; t < w->count; t++) {
         const size_t which = find_coincident((const double(*)[AXES])centre, w->count, w->cluster->extent);
@@ -320,7 +329,7 @@ static void separate(ms_cluster_result *result, double (*centre)[AXES], double (
         }
         memcpy(trial, centre, w->count * sizeof *trial);
         get_point(trial[which], w->cluster, w->parts[0].point);
-        const ms_cluster_result tried = descend(trial, w);
+        const ms_cluster_result tried = descend_objective(trial, w);
         result->iterations += tried.iterations;
         if (!(tried.objective < result->objective)) {
             return;
@@ -345,8 +354,8 @@ ms_status ms_cluster_run(ms_cluster_result *result, double (*centre)[4], size_t 
     double(*trial)[AXES] = malloc(count * sizeof *trial);
     ms_status status = MS_OK;
     if (w.sum && w.weight && trial) {
-        ms_cluster_result reached = descend(centre, &w);
-        separate(&reached, centre, trial, &w);
+        ms_cluster_result reached = descend_objective(centre, &w);
+        separate_coincident(&reached, centre, trial, &w);
         if (result) {
             *result = reached;
         }
@@ -360,7 +369,7 @@ ms_status ms_cluster_run(ms_cluster_result *result, double (*centre)[4], size_t 
 }
 
 /* The first point at which the sum of the chances exceeds a random part of it; the last with any. */
-static size_t choose(const double *chance, size_t count, double part)
+static size_t choose_by_chance(const double *chance, size_t count, double part)
 {
     double total = 0, sum = 0;
     size_t chosen = 0;
@@ -392,7 +401,7 @@ ms_status ms_cluster_start(double (*centre)[4], size_t given, size_t wanted, con
                 chance[p] = spread == MS_CLUSTER_FAR && i > 0 ? square[p] : square[p] > 0;
             }
             if (i >= given) {
-                get_point(centre[i], cluster, choose(chance, cluster->count, gsl_rng_uniform(random)));
+                get_point(centre[i], cluster, choose_by_chance(chance, cluster->count, gsl_rng_uniform(random)));
             }
             for (size_t p = 0; p < cluster->count; p++) {
                 double point[AXES];
@@ -412,18 +421,18 @@ ms_status ms_cluster_start(double (*centre)[4], size_t given, size_t wanted, con
 ms_status ms_cluster_memberships(double *u, const double (*centre)[4], size_t count, const ms_cluster *cluster,
                                  double fuzzifier, ms_error *err)
 {
-    double(*weight)[LANES] = malloc((count + 1) * sizeof *weight), nearest[LANES], total[LANES];
-    if (!weight) {
+    weights w = {.of = malloc((count + 1) * sizeof *w.of)};
+    if (!w.of) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu clusters", count);
     }
     for (size_t p = 0; p < cluster->count; p++) {
         if (p % LANES == 0) {
-            weigh_block(weight, nearest, total, cluster, p / LANES, centre, count, fuzzifier);
+            weigh_block(&w, cluster, p / LANES, centre, count, fuzzifier);
         }
         for (size_t i = 0; i < count; i++) { /* w_i (d / d_i) is w_i^m */
-            u[p * count + i] = pow(weight[i][p % LANES], 1 / fuzzifier) / total[p % LANES];
+            u[p * count + i] = pow(w.of[i][p % LANES], 1 / fuzzifier) / w.total[p % LANES];
         }
     }
-    free(weight);
+    free(w.of);
     return MS_OK;
 }

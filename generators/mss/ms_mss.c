@@ -221,17 +221,17 @@ static void report(size_t chosen, void *context)
 static size_t choose(ms_ball *chosen, size_t limit, mss *m)
 {
     const int automatic = option(m, SPACING) == 0;
-    const ms_mss_select_rule rule = {.spacing = m->spacing,
-                                     .least_radius = automatic ? m->spacing / 2 : 0,
-                                     .one_set = option(m, ORDER) == ORDER_GAIN,
-                                     .may_wait = automatic && m->spacing > 1,
-                                     .fit = fit_mean,
-                                     .report = report,
-                                     .context = m};
-    double centroid[3], unused;
-    ms_target_to_voxels(centroid, &unused, &m->run->target->grid, m->run->target->body.centroid, 0);
+    ms_mss_select_rule rule = {.spacing = m->spacing,
+                               .least_radius = automatic ? m->spacing / 2 : 0,
+                               .one_set = option(m, ORDER) == ORDER_GAIN,
+                               .may_wait = automatic && m->spacing > 1,
+                               .fit = fit_mean,
+                               .report = report,
+                               .context = m};
+    double unused;
+    ms_target_to_voxels(rule.centroid, &unused, &m->run->target->grid, m->run->target->body.centroid, 0);
     return ms_mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball, m->field.raster.n_balls,
-                         centroid, &rule);
+                         &rule);
 }
 
 /* Adds the spheres of a step to S~ and to the clump, and finds the new maxima. */

@@ -178,14 +178,15 @@ static size_t place_equals(ms_ball *chosen, size_t limit, ms_mss_candidate *c, s
 
 /* Chooses among candidates of one rank; `chosen` is the end of p.step. */
 static size_t select_equals(ms_ball *chosen, size_t limit, ms_mss_candidate *c, size_t count, placed p,
-                            const double centroid[3], const ms_mss_select_rule *rule)
+                            const ms_mss_select_rule *rule)
 {
     size_t taken = 0;
     for (size_t s = 0; s < p.n_step; s++) {
         keep_apart_now(c, count, &p.step[s]);
     }
     while ((count = gather_eligible(c, count, rule->spacing, 0)) > 0 && taken < limit && !(rule->one_set && taken)) {
-        const size_t set = p.n_earlier + p.n_step ? gather_farthest(c, count) : gather_central(c, count, centroid);
+        const size_t set =
+            p.n_earlier + p.n_step ? gather_farthest(c, count) : gather_central(c, count, rule->centroid);
         const size_t placed_now = place_equals(chosen + taken, limit - taken, c, set, &p, rule);
         c += set; /* placed, merged into one that is, or waiting */
         count -= set;
@@ -200,7 +201,7 @@ static size_t select_equals(ms_ball *chosen, size_t limit, ms_mss_candidate *c, 
 }
 
 size_t ms_mss_select(ms_ball *chosen, size_t limit, ms_mss_candidate *candidates, size_t count, const ms_ball *spheres,
-                     size_t n_spheres, const double centroid[3], const ms_mss_select_rule *rule)
+                     size_t n_spheres, const ms_mss_select_rule *rule)
 {
     size_t taken = 0;
     for (size_t m = 0; m < count; m++) {
@@ -215,7 +216,7 @@ size_t ms_mss_select(ms_ball *chosen, size_t limit, ms_mss_candidate *candidates
             to++;
         }
         const placed p = {spheres, chosen, n_spheres, taken};
-        taken += select_equals(chosen + taken, limit - taken, candidates + from, to - from, p, centroid, rule);
+        taken += select_equals(chosen + taken, limit - taken, candidates + from, to - from, p, rule);
         from = to;
     }
     return taken;

@@ -17,6 +17,7 @@ typedef struct ms_mss_candidate {
 typedef struct ms_mss_select_rule {
     double spacing;      /* delta_min, in voxels */
     double least_radius; /* smaller ones wait for a later step; in voxels */
+    double centroid[3];  /* of the target, in voxels */
     int one_set;         /* only the first set of equals (mirror images of one another) */
     int may_wait;        /* delta_min will shrink: a set that cannot be placed whole waits for that */
     /**
@@ -44,10 +45,9 @@ void ms_mss_select_keep_apart(ms_mss_candidate *candidates, size_t count, const 
  * @param[out]    chosen     room for `limit` balls
  * @param[in,out] candidates reordered
  * @param         spheres    those placed before
- * @param         centroid   of the target, in voxels
  * @return how many were chosen
  */
 size_t ms_mss_select(ms_ball *chosen, size_t limit, ms_mss_candidate *candidates, size_t count, const ms_ball *spheres,
-                     size_t n_spheres, const double centroid[3], const ms_mss_select_rule *rule);
+                     size_t n_spheres, const ms_mss_select_rule *rule);
 
 #endif

@@ -13,7 +13,7 @@ static int try_move(ms_ball *out, const ms_ball *ball, int which, double step, c
 {
     const double by = which % 2 ? -step : step;
     *out = *ball;
-    if (which < 6 && ms_mirror_holds(&fit->ms_mirror, ball, which / 2)) {
+    if (which < 6 && ms_mirror_holds(&fit->mirror, ball, which / 2)) {
         return 0;
     }
     if (which < 6) {
@@ -23,12 +23,12 @@ static int try_move(ms_ball *out, const ms_ball *ball, int which, double step, c
     } else {
         out->radius += by;
     }
-    const double most = ms_surface_fit_most_radius(fit, out->centre);
+    const double most = ms_bounds_most_radius(&fit->bounds, fit->field, out->centre);
     if (fit->bounds.equal) {
         return out->radius <= most;
     }
     if (most < HUGE_VAL && which < 6) {
-        const int was_tight = ball->radius > ms_surface_fit_most_radius(fit, ball->centre) - step;
+        const int was_tight = ball->radius > ms_bounds_most_radius(&fit->bounds, fit->field, ball->centre) - step;
         out->radius = was_tight ? most : out->radius;
     }
     out->radius = fmin(out->radius, most);
@@ -63,17 +63,17 @@ static int64_t gain_of(ms_coverage_count *o, const ms_ball *ball, const ms_mirro
 static int move_one(ms_ball *ball, ms_coverage_count *o, double step, const ms_surface_fit *fit)
 {
     ms_ball best = *ball, tried;
-    const int64_t before = -change(o, ball, &fit->ms_mirror, ms_coverage_count_remove);
+    const int64_t before = -change(o, ball, &fit->mirror, ms_coverage_count_remove);
     int64_t most = before;
     for (int which = 0; which < 8; which++) {
-        const int64_t gain = try_move(&tried, ball, which, step, fit) ? gain_of(o, &tried, &fit->ms_mirror) : before;
+        const int64_t gain = try_move(&tried, ball, which, step, fit) ? gain_of(o, &tried, &fit->mirror) : before;
         if (gain > most) {
             most = gain;
             best = tried;
         }
     }
     *ball = best;
-    change(o, ball, &fit->ms_mirror, ms_coverage_count_add);
+    change(o, ball, &fit->mirror, ms_coverage_count_add);
     return most > before;
 }
 
@@ -86,7 +86,7 @@ ms_status ms_pattern_search(ms_ball *ball, size_t count, const ms_grid *grid, co
     if (!all) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     }
-    ms_status status = ms_coverage_count_open(&o, grid, all, ms_mirror_expand(all, ball, count, &fit->ms_mirror), err);
+    ms_status status = ms_coverage_count_open(&o, grid, all, ms_mirror_expand(all, ball, count, &fit->mirror), err);
     for (int round = 0; status == MS_OK && round < rounds && step > LAST_STEP; round++) {
         size_t moved = 0;
         for (size_t b = 0; b < count; b++) {

@@ -4,11 +4,10 @@
 #include <stdlib.h>
 
 #include "base/ms_vector.h"
-#include "ms_variational_start.h"
 
 /* Counts all spheres and their images on the grid; `all` is how many there are. */
-static ms_status count_all(ms_coverage_count *out, size_t *all, const ms_ball *ball, size_t count, const ms_grid *grid,
-                           int step, const ms_mirror *m, ms_error *err)
+static ms_status count_all(ms_coverage_count *out, size_t *all, const ms_ball *ball, size_t count,
+                           const ms_coarse_view *view, const ms_mirror *m, ms_error *err)
 {
     ms_ball *image = malloc((8 * count + 1) * sizeof *image);
     if (!image) {
@@ -17,21 +16,21 @@ static ms_status count_all(ms_coverage_count *out, size_t *all, const ms_ball *b
     }
     *all = ms_mirror_expand(image, ball, count, m);
     for (size_t i = 0; i < *all; i++) {
-        image[i] = ms_variational_start_to_coarse(&image[i], step);
+        image[i] = ms_coarse_view_ball(view, &image[i]);
     }
-    const ms_status status = ms_coverage_count_open(out, grid, image, *all, err);
+    const ms_status status = ms_coverage_count_open(out, &view->grid, image, *all, err);
     free(image);
     return status;
 }
 
 /* Takes away a sphere and its images; returns by how much the mismatch grows. */
-static int64_t take(ms_coverage_count *o, ms_ball image[8], size_t *images, const ms_ball *ball, int step,
-                    const ms_mirror *m)
+static int64_t take_away(ms_coverage_count *o, ms_ball image[8], size_t *images, const ms_ball *ball,
+                         const ms_coarse_view *view, const ms_mirror *m)
 {
     const int64_t before = o->mismatch;
     *images = ms_mirror_expand(image, ball, 1, m);
     for (size_t i = 0; i < *images; i++) {
-        image[i] = ms_variational_start_to_coarse(&image[i], step);
+        image[i] = ms_coarse_view_ball(view, &image[i]);
         ms_coverage_count_remove(o, &image[i]);
     }
     return o->mismatch - before;
@@ -45,23 +44,23 @@ static void put_back(ms_coverage_count *o, const ms_ball image[8], size_t images
 }
 
 /* What the mismatch would grow by without each sphere; of images together, for each of them: as they overlap. */
-static ms_status find_losses(int64_t *loss, const ms_ball *ball, size_t count, const ms_grid *grid, int step,
+static ms_status find_losses(int64_t *loss, const ms_ball *ball, size_t count, const ms_coarse_view *view,
                              const ms_mirror *m, ms_error *err)
 {
     ms_coverage_count o;
     size_t all = 0;
-    const ms_status status = count_all(&o, &all, ball, count, grid, step, m, err);
+    const ms_status status = count_all(&o, &all, ball, count, view, m, err);
     const size_t alone = status == MS_OK && all == count ? count : 0;
     const size_t paired = status == MS_OK && all > count ? count : 0;
 #pragma omp parallel for schedule(dynamic, 4)
     for (size_t b = 0; b < alone; b++) {
-        const ms_ball coarse = ms_variational_start_to_coarse(&ball[b], step);
+        const ms_ball coarse = ms_coarse_view_ball(view, &ball[b]);
         loss[b] = ms_coverage_count_loss(&o, &coarse);
     }
     for (size_t b = 0; b < paired; b++) {
         ms_ball image[8];
         size_t images;
-        loss[b] = take(&o, image, &images, &ball[b], step, m);
+        loss[b] = take_away(&o, image, &images, &ball[b], view, m);
         put_back(&o, image, images);
         loss[b] /= (int64_t)images;
     }
@@ -94,8 +93,8 @@ static int do_overlap(const ms_ball *a, const ms_ball *b)
 }
 
 /* The cheapest sphere that overlaps none of those dropped already and has no more than that many images. */
-static size_t cheapest(const ms_ball *ball, size_t count, const int64_t *loss, size_t images, const ms_mirror *m,
-                       const ms_ball *dropped, size_t n_dropped)
+static size_t find_cheapest(const ms_ball *ball, size_t count, const int64_t *loss, size_t images, const ms_mirror *m,
+                            const ms_ball *dropped, size_t n_dropped)
 {
     size_t best = SIZE_MAX;
     for (size_t b = 0; b < count; b++) {
@@ -110,16 +109,16 @@ static size_t cheapest(const ms_ball *ball, size_t count, const int64_t *loss, s
     return best;
 }
 
-ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_grid *grid, int step,
-                            const ms_mirror *m, ms_error *err)
+ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_coarse_view *view, const ms_mirror *m,
+                            ms_error *err)
 {
     ms_ball *dropped = malloc((most + 1) * sizeof *dropped);
     int64_t *loss = malloc((*count + 1) * sizeof *loss);
     size_t n_dropped = 0, gone = 0, b;
-    ms_status status = dropped && loss ? find_losses(loss, ball, *count, grid, step, m, err)
+    ms_status status = dropped && loss ? find_losses(loss, ball, *count, view, m, err)
                                        : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
     while (status == MS_OK && gone < most &&
-           (b = cheapest(ball, *count, loss, most - gone, m, dropped, n_dropped)) != SIZE_MAX) {
+           (b = find_cheapest(ball, *count, loss, most - gone, m, dropped, n_dropped)) != SIZE_MAX) {
         dropped[n_dropped++] = ball[b];
         gone += ms_mirror_images(m, &ball[b]);
         ball[b] = ball[--*count];
@@ -134,13 +133,14 @@ ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_
 }
 
 /* Once; a sphere that stays may become idle when a later one goes. Returns how many went. */
-static size_t drop_once(ms_ball *ball, size_t *count, ms_coverage_count *o, const ms_mirror *m)
+static size_t drop_idle(ms_ball *ball, size_t *count, ms_coverage_count *o, const ms_coarse_view *view,
+                        const ms_mirror *m)
 {
     size_t kept = 0;
     for (size_t b = 0; b < *count; b++) {
         ms_ball image[8];
         size_t images;
-        if (take(o, image, &images, &ball[b], 1, m) > 0) {
+        if (take_away(o, image, &images, &ball[b], view, m) > 0) {
             put_back(o, image, images);
             ball[kept++] = ball[b];
         }
@@ -152,10 +152,11 @@ static size_t drop_once(ms_ball *ball, size_t *count, ms_coverage_count *o, cons
 
 ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_grid *grid, const ms_mirror *m, ms_error *err)
 {
+    const ms_coarse_view whole = {.step = 1, .grid = *grid}; /* borrows the voxels */
     ms_coverage_count o;
     size_t all;
-    const ms_status status = count_all(&o, &all, ball, *count, grid, 1, m, err);
-    while (status == MS_OK && drop_once(ball, count, &o, m) > 0) {
+    const ms_status status = count_all(&o, &all, ball, *count, &whole, m, err);
+    while (status == MS_OK && drop_idle(ball, count, &o, &whole, m) > 0) {
     }
     ms_coverage_count_close(&o);
     return status;

@@ -4,27 +4,17 @@
 
 #include <stdint.h>
 
+#include "ms_bounds.h"
 #include "ms_mirror.h"
-#include "ms_signed_distance.h"
-#include "shared/ms_planes.h"
-#include "voxel/ms_raster.h"
-
-/** What the spheres of a fit have to keep to; lengths in voxels. */
-typedef struct ms_surface_fit_bounds {
-    double least;              /* no radius below this */
-    double protrusion;         /* no sphere sticks out by more; HUGE_VAL: no bound */
-    int equal;                 /* nonzero: one radius for all */
-    const ms_settings *planes; /* those that no sphere crosses; NULL: none */
-} ms_surface_fit_bounds;
 
 /** A fit in progress. */
 typedef struct ms_surface_fit {
     const ms_signed_distance *field; /* borrowed */
-    ms_surface_fit_bounds bounds;
-    ms_mirror ms_mirror; /* each sphere stands for its images, too; zero: for itself */
-    int points;          /* per sphere */
-    uint64_t seed;       /* of the turns of the points */
-    uint64_t turns;      /* made so far */
+    ms_bounds bounds;
+    ms_mirror mirror; /* each sphere stands for its images, too; zero: for itself */
+    int points;       /* per sphere */
+    uint64_t seed;    /* of the turns of the points */
+    uint64_t turns;   /* made so far */
 } ms_surface_fit;
 
 /**
@@ -35,7 +25,7 @@ typedef struct ms_surface_fit {
  * distance to the surface. The step (dc, dR) minimises the sum of w (phi + u.dc + dR)^2 with
  * w = 1 / max(1/4, |phi|): at rest, the sum of sign(phi) (u, 1) is 0, and that is the derivative of
  * |S xor U| for the sphere (exposed area outside S less exposed area inside S). Places that stick out
- * too much, or lie beyond a plane, weigh a thousand times more; the bound itself is ms_surface_fit_confine's to keep.
+ * too much, or lie beyond a plane, weigh a thousand times more; the bound itself is ms_bounds_confine's to keep.
  *
  * @param ball    `count` spheres, in voxels; those on a plane of symmetry stay on it
  * @param damping of the first and of the last step: part of (dc, dR) that is made
@@ -45,17 +35,5 @@ typedef struct ms_surface_fit {
  */
 ms_status ms_surface_fit_steps(ms_surface_fit *fit, ms_ball *ball, size_t count, int steps, const double damping[2],
                                ms_error *err);
-
-/** Nonzero if protrusion is bounded or there are planes. */
-int ms_surface_fit_is_bounded(const ms_surface_fit_bounds *bounds);
-
-/**
- * The largest radius allowed about a place: one that sticks out by the bound, or reaches to a plane. HUGE_VAL without.
- * Exact where the target has a closed mesh. Cost: once ms_closest_signed_distance.
- */
-double ms_surface_fit_most_radius(const ms_surface_fit *fit, const double centre[3]);
-
-/** Cuts radii to what is allowed, all of them to the same if they are to be equal; to 0 where none is. */
-void ms_surface_fit_confine(const ms_surface_fit *fit, ms_ball *ball, size_t count);
 
 #endif

@@ -93,10 +93,10 @@ static ms_variational_settings read_settings(const ms_run *run)
                                         .bounds = {.protrusion = value[PROTRUSION] < 0 ? HUGE_VAL : value[PROTRUSION],
                                                    .equal = value[EQUAL_RADIUS] != 0,
                                                    .planes = run->settings},
-                                        .ms_mirror = {.across = {across[0], across[1], across[2]}},
+                                        .mirror = {.across = {across[0], across[1], across[2]}},
                                         .refine = &run->settings->clump};
     double unused;
-    ms_target_to_voxels(settings.ms_mirror.at, &unused, &run->target->grid, run->target->body.centroid, 0);
+    ms_target_to_voxels(settings.mirror.at, &unused, &run->target->grid, run->target->body.centroid, 0);
     return settings;
 }
 

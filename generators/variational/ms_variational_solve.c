@@ -48,8 +48,7 @@ typedef struct solver {
     const ms_run *run;
     const ms_variational_settings *settings;
     float *walled; /* the target's distances, cut down to those to planes; NULL without planes */
-    ms_grid coarse;
-    int step; /* of the coarse grid, in voxels */
+    ms_coarse_view coarse;
     ms_signed_distance field;
     ms_surface_fit fit;
     size_t count, wanted; /* spheres that are fitted; asked for, mirror images among them */
@@ -71,9 +70,9 @@ static int choose_step(const ms_target *target, size_t n)
     return step < 1.5 ? 1 : (int)fmin(fmax(step, 2), MAX_STEP);
 }
 
-static void solver_free(solver *s)
+static void free_solver(solver *s)
 {
-    ms_grid_free(&s->coarse);
+    ms_coarse_view_free(&s->coarse);
     ms_signed_distance_free(&s->field);
     free(s->walled);
     free(s->ball);
@@ -82,36 +81,36 @@ static void solver_free(solver *s)
     memset(s, 0, sizeof *s);
 }
 
-static double least_radius(const ms_run *run)
+static double find_least_radius(const ms_run *run)
 {
     return fmax(0, run->stop.radius / run->target->grid.h);
 }
 
 /* Fills in the mirror images; returns how many spheres there are in all. */
-static size_t expand(solver *s)
+static size_t expand_images(solver *s)
 {
-    return ms_mirror_expand(s->all, s->ball, s->count, &s->settings->ms_mirror);
+    return ms_mirror_expand(s->all, s->ball, s->count, &s->settings->mirror);
 }
 
-static size_t total(const solver *s)
+static size_t count_with_images(const solver *s)
 {
     size_t sum = 0;
     for (size_t b = 0; b < s->count; b++) {
-        sum += ms_mirror_images(&s->settings->ms_mirror, &s->ball[b]);
+        sum += ms_mirror_images(&s->settings->mirror, &s->ball[b]);
     }
     return sum;
 }
 
-static ms_status fit(solver *s, int steps, double from, double to, ms_error *err)
+static ms_status fit_spheres(solver *s, int steps, double from, double to, ms_error *err)
 {
     const double damping[2] = {from, to};
     return ms_surface_fit_steps(&s->fit, s->ball, s->count, steps, damping, err);
 }
 
-static ms_status mismatch(int64_t *out, solver *s, ms_error *err)
+static ms_status count_mismatch(int64_t *out, solver *s, ms_error *err)
 {
     ms_coverage_count o;
-    const ms_status status = ms_coverage_count_open(&o, &s->run->target->grid, s->all, expand(s), err);
+    const ms_status status = ms_coverage_count_open(&o, &s->run->target->grid, s->all, expand_images(s), err);
     *out = o.mismatch;
     ms_coverage_count_close(&o);
     return status;
@@ -119,19 +118,19 @@ static ms_status mismatch(int64_t *out, solver *s, ms_error *err)
 
 /* A fit that is taken back where it makes the mismatch larger. Of spheres that may not stick out, the
  * mismatch says nothing before they are confined. */
-static ms_status improve(solver *s, int steps, double from, double to, ms_error *err)
+static ms_status improve_fit(solver *s, int steps, double from, double to, ms_error *err)
 {
     int64_t before = 0, after = 0;
-    if (ms_surface_fit_is_bounded(&s->fit.bounds)) {
-        return fit(s, steps, from, to, err);
+    if (ms_bounds_are_set(&s->fit.bounds)) {
+        return fit_spheres(s, steps, from, to, err);
     }
     memcpy(s->best, s->ball, s->count * sizeof *s->ball);
-    ms_status status = mismatch(&before, s, err);
+    ms_status status = count_mismatch(&before, s, err);
     if (status == MS_OK) {
-        status = fit(s, steps, from, to, err);
+        status = fit_spheres(s, steps, from, to, err);
     }
     if (status == MS_OK) {
-        status = mismatch(&after, s, err);
+        status = count_mismatch(&after, s, err);
     }
     if (status == MS_OK && after >= before) {
         memcpy(s->ball, s->best, s->count * sizeof *s->ball);
@@ -147,7 +146,7 @@ static ms_status sharpen_field(solver *s, ms_error *err)
     if (s->field.step == 1 || !target->mesh || !target->closed) {
         return MS_OK;
     }
-    ms_status status = mismatch(&left, s, err);
+    ms_status status = count_mismatch(&left, s, err);
     const double h = target->grid.h, area = ms_mesh_area(target->mesh) / (h * h);
     if (status == MS_OK && (double)left < SHARP * area) {
         ms_signed_distance_free(&s->field);
@@ -157,37 +156,37 @@ static ms_status sharpen_field(solver *s, ms_error *err)
 }
 
 /* Makes the spheres keep to their bounds, and moves them within. */
-static ms_status settle(solver *s, ms_error *err)
+static ms_status search_within_bounds(solver *s, ms_error *err)
 {
-    if (!ms_surface_fit_is_bounded(&s->fit.bounds)) {
+    if (!ms_bounds_are_set(&s->fit.bounds)) {
         return MS_OK;
     }
-    ms_surface_fit_confine(&s->fit, s->ball, s->count);
+    ms_bounds_confine(&s->fit.bounds, &s->field, s->ball, s->count);
     return ms_pattern_search(s->ball, s->count, &s->run->target->grid, &s->fit, SEARCH_ROUNDS, err);
 }
 
 /* All spheres, images too, in voxels of the coarse grid; returns how many. */
 static size_t all_to_coarse(solver *s)
 {
-    const size_t all = expand(s);
+    const size_t all = expand_images(s);
     for (size_t b = 0; b < all; b++) {
-        s->all[b] = ms_variational_start_to_coarse(&s->all[b], s->step);
+        s->all[b] = ms_coarse_view_ball(&s->coarse, &s->all[b]);
     }
     return all;
 }
 
-static ms_status prune(solver *s, ms_error *err)
+static ms_status prune_surplus(solver *s, ms_error *err)
 {
-    size_t count = total(s);
+    size_t count = count_with_images(s);
     const size_t surplus = count > s->wanted ? count - s->wanted : 0, most = (size_t)ceil(DROP * (double)surplus);
     ms_status status = MS_OK;
     while (status == MS_OK && count > s->wanted) {
         const size_t gone = count - s->wanted < most ? count - s->wanted : most;
-        status = ms_prune_cheapest(s->ball, &s->count, gone, &s->coarse, s->step, &s->settings->ms_mirror, err);
+        status = ms_prune_cheapest(s->ball, &s->count, gone, &s->coarse, &s->settings->mirror, err);
         if (status == MS_OK) {
-            status = fit(s, DROP_STEPS, 0.5, 0.3, err);
+            status = fit_spheres(s, DROP_STEPS, 0.5, 0.3, err);
         }
-        count = total(s);
+        count = count_with_images(s);
         if (s->run->progress) {
             s->run->progress(s->run->progress_context, count, (double)NAN);
         }
@@ -196,81 +195,85 @@ static ms_status prune(solver *s, ms_error *err)
 }
 
 /* Leaves only what is above each plane of symmetry to be covered. */
-static void keep_upper_side(ms_grid *coarse, const solver *s)
+static void keep_upper_side(ms_coarse_view *view, const ms_mirror *m)
 {
-    const ms_mirror *m = &s->settings->ms_mirror;
+    ms_grid *coarse = &view->grid;
     const size_t nx = (size_t)coarse->n[0], stride[3] = {1, nx, nx * (size_t)coarse->n[1]};
     for (int a = 0; a < 3; a++) {
         for (size_t v = 0; m->across[a] && v < ms_grid_voxels(coarse); v++) {
-            const double at = s->step * (double)(v / stride[a] % (size_t)coarse->n[a]);
+            const double at = view->step * (double)(v / stride[a] % (size_t)coarse->n[a]);
             coarse->inside[v] = coarse->inside[v] && at >= m->at[a];
         }
     }
 }
 
-/* Appends inscribed spheres that cover most of a coarse grid: up to `most`, mirror images among them. */
-static ms_status cover(solver *s, ms_grid *left, size_t most, ms_error *err)
+/* The target at every step-th voxel, as this run sees it. */
+static ms_status make_view(ms_coarse_view *view, const solver *s, int step, ms_error *err)
 {
     const ms_target *target = s->run->target;
-    const size_t before = s->count, limit = total(s) + most;
+    return ms_coarse_view_make(view, target, s->walled ? s->walled : target->distance, step, err);
+}
+
+/* Appends inscribed spheres that cover most of what is left in a view: up to `most`, mirror images among them. */
+static ms_status append_cover(solver *s, ms_coarse_view *left, size_t most, ms_error *err)
+{
+    const size_t before = s->count, limit = count_with_images(s) + most;
     size_t added = 0;
-    keep_upper_side(left, s);
-    const ms_status status = ms_variational_start_cover(
-        s->ball + before, &added, target, s->walled ? s->walled : target->distance, left, s->step,
-        most < s->room - before ? most : s->room - before, least_radius(s->run), err);
+    keep_upper_side(left, &s->settings->mirror);
+    const ms_status status =
+        ms_variational_start_cover(s->ball + before, &added, left, most < s->room - before ? most : s->room - before,
+                                   find_least_radius(s->run), err);
     for (size_t b = before; b < before + added; b++) {
-        ms_mirror_fold(&s->ball[b], &s->settings->ms_mirror, SNAP);
+        ms_mirror_fold(&s->ball[b], &s->settings->mirror, SNAP);
     }
     s->count += added;
-    while (s->count > before + 1 && total(s) > limit) {
+    while (s->count > before + 1 && count_with_images(s) > limit) {
         s->count--;
     }
     return status;
 }
 
 /* Adds up to `most` spheres where the union leaves most. */
-static ms_status add(solver *s, size_t most, ms_error *err)
+static ms_status add_spheres(solver *s, size_t most, ms_error *err)
 {
-    ms_grid left = {0};
-    ms_status status = ms_variational_start_coarsen(&left, s->run->target, s->step, err);
+    ms_coarse_view left = {0};
+    ms_status status = make_view(&left, s, s->coarse.step, err);
     if (status == MS_OK) {
         const size_t all = all_to_coarse(s);
-        ms_coverage_count_clear(&left, s->all, all);
-        status = cover(s, &left, most, err);
+        ms_coverage_count_clear(&left.grid, s->all, all);
+        status = append_cover(s, &left, most, err);
     }
-    ms_grid_free(&left);
+    ms_coarse_view_free(&left);
     return status;
 }
 
 /* The cover to start from; on a finer grid where it gives too few spheres. */
-static ms_status start(solver *s, ms_error *err)
+static ms_status start_from_cover(solver *s, ms_error *err)
 {
-    ms_status status = MS_OK;
-    for (s->step = choose_step(s->run->target, s->wanted);; s->step--) {
-        status = ms_variational_start_coarsen(&s->coarse, s->run->target, s->step, err);
+    for (int step = choose_step(s->run->target, s->wanted);; step--) {
+        ms_coarse_view half = {0};
+        ms_status status = make_view(&s->coarse, s, step, err);
         s->count = 0;
         if (status == MS_OK) {
-            ms_grid half = {0};
-            status = ms_variational_start_coarsen(&half, s->run->target, s->step, err);
-            if (status == MS_OK) {
-                status = cover(s, &half, s->room, err);
-            }
-            ms_grid_free(&half);
+            status = make_view(&half, s, step, err);
         }
-        if (status != MS_OK || total(s) >= s->wanted || s->step == 1) {
+        if (status == MS_OK) {
+            status = append_cover(s, &half, s->room, err);
+        }
+        ms_coarse_view_free(&half);
+        if (status != MS_OK || count_with_images(s) >= s->wanted || step == 1) {
             return status;
         }
-        ms_grid_free(&s->coarse);
+        ms_coarse_view_free(&s->coarse);
     }
 }
 
 /* Spheres that are given, one of each set of mirror images, and others where they are too few. */
-static ms_status start_from(solver *s, const ms_clump *given, ms_error *err)
+static ms_status start_from_given(solver *s, const ms_clump *given, ms_error *err)
 {
     const ms_target *target = s->run->target;
-    const ms_mirror *m = &s->settings->ms_mirror;
-    s->step = choose_step(target, s->wanted);
-    ms_status status = ms_variational_start_coarsen(&s->coarse, target, s->step, err);
+    const ms_mirror *m = &s->settings->mirror;
+    const ms_status status = make_view(&s->coarse, s, choose_step(target, s->wanted), err);
     for (size_t g = 0; g < given->n_spheres; g++) {
         ms_ball *ball = &s->ball[s->count];
         ms_target_to_voxels(ball->centre, &ball->radius, &target->grid, given->sphere[g].centre,
@@ -285,14 +288,14 @@ static ms_status start_from(solver *s, const ms_clump *given, ms_error *err)
             s->count++;
         }
     }
-    const size_t all = total(s);
-    return status == MS_OK && all < s->wanted ? add(s, s->wanted - all, err) : status;
+    const size_t all = count_with_images(s);
+    return status == MS_OK && all < s->wanted ? add_spheres(s, s->wanted - all, err) : status;
 }
 
-static ms_status solver_begin(solver *s, const ms_run *run, const ms_variational_settings *settings, size_t n,
+static ms_status begin_solver(solver *s, const ms_run *run, const ms_variational_settings *settings, size_t n,
                               ms_error *err)
 {
-    const int *across = settings->ms_mirror.across;
+    const int *across = settings->mirror.across;
     const ms_clump *given = settings->refine;
     const size_t most = n < run->target->voxels ? n : run->target->voxels; /* more would be alike */
     const size_t room = (size_t)ceil(SURPLUS * (double)most) + MORE;
@@ -311,45 +314,46 @@ static ms_status solver_begin(solver *s, const ms_run *run, const ms_variational
         }
         ms_planes_cut(s->walled, run->target, run->settings);
     }
-    ms_status status = given->n_spheres > 0 ? start_from(s, given, err) : start(s, err);
+    ms_status status = given->n_spheres > 0 ? start_from_given(s, given, err) : start_from_cover(s, err);
     if (status == MS_OK) {
-        status = ms_signed_distance_alloc(&s->field, run->target, s->step < FIELD_STEP ? s->step : FIELD_STEP, err);
+        status = ms_signed_distance_alloc(&s->field, run->target,
+                                          s->coarse.step < FIELD_STEP ? s->coarse.step : FIELD_STEP, err);
     }
     s->fit = (ms_surface_fit){.field = &s->field,
                               .bounds = settings->bounds,
-                              .ms_mirror = settings->ms_mirror,
+                              .mirror = settings->mirror,
                               .points = settings->points,
                               .seed = run->seed};
-    s->fit.bounds.least = fmax(least_radius(run), LEAST_RADIUS);
+    s->fit.bounds.least = fmax(find_least_radius(run), LEAST_RADIUS);
     return status;
 }
 
 /* Adds spheres, drops those above the number that is wanted; taken back where it makes the mismatch no smaller. */
-static ms_status round_trip(solver *s, size_t more, ms_error *err)
+static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
 {
     int64_t before = 0, after = 0;
     const size_t count = s->count;
     ms_ball *kept = malloc((count + 1) * sizeof *kept);
     ms_status status =
-        kept ? mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
+        kept ? count_mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     if (status == MS_OK) {
         memcpy(kept, s->ball, count * sizeof *kept);
-        status = add(s, more, err);
+        status = add_spheres(s, more, err);
     }
     if (status == MS_OK) {
-        status = fit(s, DROP_STEPS, 0.8, 0.3, err);
+        status = fit_spheres(s, DROP_STEPS, 0.8, 0.3, err);
     }
     if (status == MS_OK) {
-        status = prune(s, err);
+        status = prune_surplus(s, err);
     }
     if (status == MS_OK) {
-        status = fit(s, LAST_STEPS, 0.5, 0.05, err);
+        status = fit_spheres(s, LAST_STEPS, 0.5, 0.05, err);
     }
     if (status == MS_OK) {
-        status = settle(s, err);
+        status = search_within_bounds(s, err);
     }
     if (status == MS_OK) {
-        status = mismatch(&after, s, err);
+        status = count_mismatch(&after, s, err);
     }
     if (status == MS_OK && after >= before) {
         memcpy(s->ball, kept, count * sizeof *kept);
@@ -360,45 +364,45 @@ static ms_status round_trip(solver *s, size_t more, ms_error *err)
 }
 
 /* Puts idle spheres where the union leaves most, and drops those that are idle there, too. */
-static ms_status repair(solver *s, ms_error *err)
+static ms_status replace_idle(solver *s, ms_error *err)
 {
     const ms_grid *grid = &s->run->target->grid;
-    ms_status status = ms_prune_idle(s->ball, &s->count, grid, &s->settings->ms_mirror, err);
-    for (int round = 0; round < REPAIRS && status == MS_OK && total(s) < s->wanted; round++) {
-        status = round_trip(s, s->wanted - total(s), err);
+    ms_status status = ms_prune_idle(s->ball, &s->count, grid, &s->settings->mirror, err);
+    for (int round = 0; round < REPAIRS && status == MS_OK && count_with_images(s) < s->wanted; round++) {
+        status = add_and_prune(s, s->wanted - count_with_images(s), err);
         if (status == MS_OK) {
-            status = ms_prune_idle(s->ball, &s->count, grid, &s->settings->ms_mirror, err);
+            status = ms_prune_idle(s->ball, &s->count, grid, &s->settings->mirror, err);
         }
     }
     return status;
 }
 
 /* All stages. */
-static ms_status solve(solver *s, ms_error *err)
+static ms_status run_stages(solver *s, ms_error *err)
 {
     ms_status status = MS_OK;
-    if (total(s) > s->wanted) {
-        status = fit(s, START_STEPS, 0.8, 0.2, err);
+    if (count_with_images(s) > s->wanted) {
+        status = fit_spheres(s, START_STEPS, 0.8, 0.2, err);
     }
     if (status == MS_OK) {
-        status = prune(s, err);
+        status = prune_surplus(s, err);
     }
     if (status == MS_OK) {
-        status = improve(s, LONG_STEPS, 0.8, 0.2, err);
+        status = improve_fit(s, LONG_STEPS, 0.8, 0.2, err);
     }
     if (status == MS_OK) {
         status = sharpen_field(s, err);
     }
     if (status == MS_OK) {
-        status = improve(s, LAST_STEPS, 0.5, 0.05, err);
+        status = improve_fit(s, LAST_STEPS, 0.5, 0.05, err);
     }
     if (status == MS_OK) {
-        status = settle(s, err);
+        status = search_within_bounds(s, err);
     }
     for (int round = 0; round < s->settings->rounds && status == MS_OK && s->count > 0; round++) {
-        status = round_trip(s, (size_t)ceil(ADD[round % ADDS] * (double)s->wanted), err);
+        status = add_and_prune(s, (size_t)ceil(ADD[round % ADDS] * (double)s->wanted), err);
     }
-    return status == MS_OK ? repair(s, err) : status;
+    return status == MS_OK ? replace_idle(s, err) : status;
 }
 
 ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
@@ -407,15 +411,15 @@ ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
     solver s;
     *ball = NULL;
     *count = 0;
-    ms_status status = solver_begin(&s, run, settings, n, err);
+    ms_status status = begin_solver(&s, run, settings, n, err);
     if (status == MS_OK) {
-        status = solve(&s, err);
+        status = run_stages(&s, err);
     }
     if (status == MS_OK) {
-        *count = expand(&s);
+        *count = expand_images(&s);
         *ball = s.all;
         s.all = NULL;
     }
-    solver_free(&s);
+    free_solver(&s);
     return status;
 }

@@ -6,10 +6,10 @@
 #include "ms_surface_fit.h"
 
 typedef struct ms_variational_settings {
-    int rounds;                   /* of adding spheres and dropping others after the fit */
-    int points;                   /* per sphere */
-    ms_surface_fit_bounds bounds; /* `least` is found from the stop rule */
-    ms_mirror ms_mirror;
+    int rounds;       /* of adding spheres and dropping others after the fit */
+    int points;       /* per sphere */
+    ms_bounds bounds; /* `least` is found from the stop rule */
+    ms_mirror mirror;
     const ms_clump *refine; /* spheres to start from; empty: none */
 } ms_variational_settings;
 

@@ -9,35 +9,12 @@
  * direction is more than 27 degrees from one. */
 static const double RISING = 0.85;
 
-ms_status ms_variational_start_coarsen(ms_grid *coarse, const ms_target *target, int step, ms_error *err)
-{
-    const ms_grid *grid = &target->grid;
-    int n[3];
-    for (int a = 0; a < 3; a++) {
-        n[a] = (grid->n[a] + step - 1) / step;
-    }
-    const ms_status status = ms_grid_alloc(coarse, n, grid->h * step, grid->origin, err);
-    for (int k = 0; status == MS_OK && k < n[2]; k++) {
-        for (int j = 0; j < n[1]; j++) {
-            for (int i = 0; i < n[0]; i++) {
-                coarse->inside[ms_grid_index(coarse, i, j, k)] =
-                    grid->inside[ms_grid_index(grid, i * step, j * step, k * step)];
-            }
-        }
-    }
-    return status;
-}
-
-ms_ball ms_variational_start_to_coarse(const ms_ball *ball, int step)
-{
-    const double *c = ball->centre;
-    return (ms_ball){.centre = {c[0] / step, c[1] / step, c[2] / step}, .radius = ball->radius / step};
-}
-
 /* Does no neighbour's inscribed sphere contain that of this voxel, but for some slack? */
-static int is_ridge(const ms_target *target, const float *e, const ms_grid *coarse, int step, int i, int j, int k)
+static int is_ridge(const ms_coarse_view *view, int i, int j, int k)
 {
-    const ms_grid *grid = &target->grid;
+    const ms_grid *grid = &view->target->grid, *coarse = &view->grid;
+    const float *e = view->distance;
+    const int step = view->step;
     const double here = (double)e[ms_grid_index(grid, i * step, j * step, k * step)];
     for (int t = 0; t < 27; t++) {
         const int d[3] = {t % 3 - 1, t / 3 % 3 - 1, t / 9 - 1}, x = i + d[0], y = j + d[1], z = k + d[2];
@@ -53,9 +30,10 @@ static int is_ridge(const ms_target *target, const float *e, const ms_grid *coar
 }
 
 /* The inscribed spheres about the ridge, in coarse voxels. */
-static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_target *target, const float *e,
-                            const ms_grid *coarse, int step, double least, ms_error *err)
+static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_coarse_view *view, double least, ms_error *err)
 {
+    const ms_grid *coarse = &view->grid;
+    const int step = view->step;
     *count = 0;
     *ball = malloc(ms_grid_voxels(coarse) * sizeof **ball);
     if (!*ball) {
@@ -64,9 +42,9 @@ static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_target *targ
     for (int k = 0; k < coarse->n[2]; k++) {
         for (int j = 0; j < coarse->n[1]; j++) {
             for (int i = 0; i < coarse->n[0]; i++) {
-                const size_t voxel = ms_grid_index(&target->grid, i * step, j * step, k * step);
-                const double radius = (double)e[voxel] - 0.5;
-                if (radius > 0 && radius >= least && is_ridge(target, e, coarse, step, i, j, k)) {
+                const size_t voxel = ms_grid_index(&view->target->grid, i * step, j * step, k * step);
+                const double radius = (double)view->distance[voxel] - 0.5;
+                if (radius > 0 && radius >= least && is_ridge(view, i, j, k)) {
                     (*ball)[(*count)++] = (ms_ball){.centre = {i, j, k}, .radius = radius / step};
                 }
             }
@@ -75,24 +53,19 @@ static ms_status list_ridge(ms_ball **ball, size_t *count, const ms_target *targ
     return MS_OK;
 }
 
-ms_status ms_variational_start_cover(ms_ball *ball, size_t *count, const ms_target *target, const float *e,
-                                     const ms_grid *coarse, int step, size_t wanted, double least, ms_error *err)
+ms_status ms_variational_start_cover(ms_ball *ball, size_t *count, const ms_coarse_view *view, size_t wanted,
+                                     double least, ms_error *err)
 {
     ms_ball *candidate;
     ms_cover *cover = NULL;
     size_t candidates, which;
     *count = 0;
-    ms_status status = list_ridge(&candidate, &candidates, target, e, coarse, step, least, err);
+    ms_status status = list_ridge(&candidate, &candidates, view, least, err);
     if (status == MS_OK) {
-        status = ms_cover_build(&cover, coarse, candidate, candidates, 0, err);
+        status = ms_cover_build(&cover, &view->grid, candidate, candidates, 0, err);
     }
     while (status == MS_OK && *count < wanted && ms_cover_next(&which, cover)) {
-        ms_ball *taken = &ball[(*count)++];
-        *taken = candidate[which];
-        for (int a = 0; a < 3; a++) {
-            taken->centre[a] *= step;
-        }
-        taken->radius *= step;
+        ball[(*count)++] = ms_coarse_view_target_ball(view, &candidate[which]);
     }
     ms_cover_free(cover);
     free(candidate);

@@ -173,7 +173,8 @@ static void spheres_are_dropped_by_their_loss(void **state)
             least = without < least ? without : least;
         }
         if (count > 0) {
-            assert_int_equal(ms_prune_cheapest(ball, &count, 1, &grid, 1, &NONE, &err), MS_OK);
+            const ms_coarse_view whole = {.step = 1, .grid = grid};
+            assert_int_equal(ms_prune_cheapest(ball, &count, 1, &whole, &NONE, &err), MS_OK);
             assert_int_equal(brute_mismatch(&grid, ball, count), least);
         }
     }
@@ -257,7 +258,7 @@ static void search_never_raises_the_mismatch(void **state)
         } while (ms_signed_distance_at(&field, ball[b].centre) > -2);
         ball[b].radius = 50;
     }
-    ms_surface_fit_confine(&fit, ball, 8);
+    ms_bounds_confine(&fit.bounds, &field, ball, 8);
     int64_t before = brute_mismatch(&target->grid, ball, 8);
     const int64_t first = before;
     for (int round = 0; round < 6; round++) {
@@ -266,7 +267,7 @@ static void search_never_raises_the_mismatch(void **state)
         assert_true(after <= before);
         before = after;
         for (int b = 0; b < 8; b++) {
-            assert_true(ball[b].radius <= ms_surface_fit_most_radius(&fit, ball[b].centre) + 1e-9);
+            assert_true(ball[b].radius <= ms_bounds_most_radius(&fit.bounds, &field, ball[b].centre) + 1e-9);
         }
     }
     assert_true(before < first);

@@ -1,0 +1,64 @@
+/** What of a sphere's surface others cover. Private to variational. */
+#ifndef MS_CAPS_H
+#define MS_CAPS_H
+
+#include <stdint.h>
+
+#include "voxel/ms_raster.h"
+
+/** The left end of a sphere along x. */
+typedef struct ms_caps_end {
+    double left;
+    uint32_t ball;
+} ms_caps_end;
+
+/** Spheres in the order of their left ends along x, so that those near one are found in a window as
+ * wide as the widest. The few that are much larger than the mean stand apart: they would make all
+ * windows wide. */
+typedef struct ms_caps_window {
+    size_t count;
+    ms_ball *ball;    /* those that are fitted, and behind them their images */
+    ms_caps_end *end; /* in order, and behind them the large ones; room for `count` */
+    size_t n_small;   /* in order */
+    double widest;    /* diameter of those */
+} ms_caps_window;
+
+/** The parts of a sphere's surface that others cover: u.axis > least for the normals u there. Blocks of them are
+ * compared at once. */
+enum { MS_CAPS_BLOCK = 8 };
+typedef struct ms_caps {
+    float axis[3][MS_CAPS_BLOCK]; /* to the other centres, in radii */
+    float least[MS_CAPS_BLOCK];
+} ms_caps;
+
+/** Sorts the ends of `count` balls. */
+void ms_caps_sort(ms_caps_window *s);
+
+/**
+ * What other spheres cover of one's surface.
+ *
+ * @param[out] block room for count / MS_CAPS_BLOCK + 1
+ * @return how many blocks
+ */
+size_t ms_caps_find(ms_caps *block, const ms_caps_window *s, uint32_t self);
+
+/** Is the place with this normal covered? The block that covers it is tried first next time. */
+static inline int ms_caps_cover(size_t *first, const ms_caps *block, size_t blocks, const float normal[3])
+{
+    for (size_t b = 0; b < blocks; b++) {
+        const size_t at = b == 0 ? *first : b <= *first ? b - 1 : b;
+        const ms_caps *c = &block[at];
+        int covered = 0;
+#pragma omp simd reduction(| : covered)
+        for (int i = 0; i < MS_CAPS_BLOCK; i++) {
+            covered |= c->axis[0][i] * normal[0] + c->axis[1][i] * normal[1] + c->axis[2][i] * normal[2] > c->least[i];
+        }
+        if (covered) {
+            *first = at;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+#endif

@@ -1,0 +1,12 @@
+/** Cholesky for the four unknowns of a sphere. Private to variational. */
+#ifndef MS_CHOLESKY_H
+#define MS_CHOLESKY_H
+
+/** Cholesky's decomposition of a positive definite matrix, in place. Reads and writes the lower triangle. */
+void ms_cholesky_decompose(double a[4][4]);
+
+/** Solves l x = b for the first n unknowns, x in place of b; and l^T x = b. */
+void ms_cholesky_solve_lower(double l[4][4], double *b, int n);
+void ms_cholesky_solve_upper(double l[4][4], double *b, int n);
+
+#endif
