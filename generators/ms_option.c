@@ -101,7 +101,7 @@ static ms_status set_flag(double *value, const ms_option *option, const char *te
 }
 
 /* The word of that rank in "first|second|..."; length 0 behind the last. */
-static ms_word choice(const char *choices, int rank)
+static ms_word find_choice(const char *choices, int rank)
 {
     const char *start = choices;
     for (; rank > 0; rank--) {
@@ -117,7 +117,7 @@ static ms_word choice(const char *choices, int rank)
 static ms_status set_choice(double *value, const ms_option *option, const char *text, ms_error *err)
 {
     for (int rank = 0;; rank++) {
-        const ms_word word = choice(option->choices, rank);
+        const ms_word word = find_choice(option->choices, rank);
         if (word.length == 0) {
             return ms_fail(err, MS_ERR_ARG, "%s=%s is not one of %s", option->name, text, option->choices);
         }
@@ -204,7 +204,7 @@ void ms_option_settings_text(char *out, size_t size, const ms_settings *settings
     } else if (o->type == MS_OPTION_FLAG) {
         snprintf(out, size, "%s", value != 0 ? "on" : "off");
     } else if (o->type == MS_OPTION_CHOICE) {
-        const ms_word word = choice(o->choices, (int)value);
+        const ms_word word = find_choice(o->choices, (int)value);
         snprintf(out, size, "%.*s", (int)word.length, word.start);
     } else {
         snprintf(out, size, "%.15g", value); /* as it was written: 0.9, not 0.90000000000000002 */

@@ -92,7 +92,7 @@ static void free_output(ms_output *output)
 }
 
 /* A link is followed, so that the file it names is replaced and not the link. */
-static char *resolve(const char *path)
+static char *resolve_link(const char *path)
 {
     struct stat info;
     char *target = NULL;
@@ -148,7 +148,7 @@ static ms_status open_path(ms_output *output, const char *path, ms_error *err)
     if (path[0] == '\0') {
         return ms_fail(err, MS_ERR_IO, "the name of the file to write is empty; name a file, or - for standard output");
     }
-    output->path = resolve(path);
+    output->path = resolve_link(path);
     if (!output->path) {
         return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to write it", path);
     }

@@ -39,7 +39,7 @@ ms_status ms_clump_alloc_masses(ms_clump *clump, ms_error *err)
     return MS_OK;
 }
 
-static int overlap(const ms_sphere *a, const ms_sphere *b)
+static int do_spheres_overlap(const ms_sphere *a, const ms_sphere *b)
 {
     const double reach = a->radius + b->radius;
     return ms_squared_distance(a->centre, b->centre) < reach * reach;
@@ -65,7 +65,7 @@ ms_status ms_clump_pieces(size_t *pieces, const ms_clump *clump, ms_error *err)
             ++*pieces;
         }
         for (size_t at = reached; at < n; at++) {
-            if (overlap(&clump->sphere[order[done]], &clump->sphere[order[at]])) {
+            if (do_spheres_overlap(&clump->sphere[order[done]], &clump->sphere[order[at]])) {
                 const size_t swap = order[at];
                 order[at] = order[reached];
                 order[reached++] = swap;

@@ -123,7 +123,7 @@ static ms_linear_program *make_programme(const equations *e, double least, doubl
 }
 
 /* Do all centres lie on a point (0), a line (1), in a plane (2), or not (3)? */
-static int dimensions(const equations *e)
+static int count_dimensions(const equations *e)
 {
     ms_principal principal;
     ms_body spread = {.volume = 1};
@@ -157,12 +157,12 @@ static ms_status fail_centre(const equations *e, double least_error, double tole
                    "no masses of these %zu spheres have the centre of mass of the particle (Yuan's eq. 4): %s; the "
                    "nearest they come is %.3g radii of gyration along an axis, and %.3g is allowed. More spheres would "
                    "help, or a tolerance on the centre of mass of %.2g",
-                   e->n, WHY[dimensions(e)], least_error, tolerance, 1.01 * least_error);
+                   e->n, WHY[count_dimensions(e)], least_error, tolerance, 1.01 * least_error);
 }
 
 /* What the masses sum to, by other means than the rows of the programme. */
-static ms_status judge(ms_density_report *report, const equations *e, const ms_clump *clump,
-                       const ms_particle *particle, ms_error *err)
+static ms_status judge_masses(ms_density_report *report, const equations *e, const ms_clump *clump,
+                              const ms_particle *particle, ms_error *err)
 {
     ms_particle sum;
     const double unit = ms_particle_gyration(particle), metres = unit * particle->scale;
@@ -192,8 +192,8 @@ static ms_status judge(ms_density_report *report, const equations *e, const ms_c
     return MS_OK;
 }
 
-static ms_status solve(ms_clump *clump, ms_density_report *report, const equations *e, ms_linear_program *p,
-                       const ms_particle *particle, double centre_tolerance, ms_error *err)
+static ms_status solve_masses(ms_clump *clump, ms_density_report *report, const equations *e, ms_linear_program *p,
+                              const ms_particle *particle, double centre_tolerance, ms_error *err)
 {
     double reached[GOALS] = {0};
     ms_status status = MS_OK;
@@ -215,11 +215,11 @@ static ms_status solve(ms_clump *clump, ms_density_report *report, const equatio
     report->centre = reached[CENTRE];
     report->epsilon = reached[EPSILON];
     report->products = reached[PRODUCTS];
-    return status == MS_OK ? judge(report, e, clump, particle, err) : status;
+    return status == MS_OK ? judge_masses(report, e, clump, particle, err) : status;
 }
 
-static ms_status check(const ms_clump *clump, double least, double most, const ms_density_options *options,
-                       ms_error *err)
+static ms_status check_clump(const ms_clump *clump, double least, double most, const ms_density_options *options,
+                             ms_error *err)
 {
     const double n = (double)clump->n_spheres;
     if (clump->n_spheres == 0) {
@@ -253,14 +253,14 @@ ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_
     equations e = {0};
     ms_linear_program *programme = NULL;
     memset(report, 0, sizeof *report);
-    ms_status status = check(clump, least, most, options, err);
+    ms_status status = check_clump(clump, least, most, options, err);
     if (status == MS_OK) {
         status = make_equations(&e, clump, particle, options->input_frame, err);
     }
     if (status == MS_OK) {
         programme = make_programme(&e, least, most, options->input_frame, err);
-        status =
-            programme ? solve(clump, report, &e, programme, particle, options->centre_tolerance, err) : MS_ERR_NOMEM;
+        status = programme ? solve_masses(clump, report, &e, programme, particle, options->centre_tolerance, err)
+                           : MS_ERR_NOMEM;
     }
     if (status != MS_OK) {
         memset(report, 0, sizeof *report);

@@ -24,7 +24,7 @@ typedef struct guard {
     int terminal; /* its former setting */
 } guard;
 
-static void leave(void *info)
+static void leave_solver(void *info)
 {
     longjmp(((guard *)info)->back, 1);
 }
@@ -32,7 +32,7 @@ static void leave(void *info)
 static void begin_quiet(guard *g)
 {
     g->terminal = glp_term_out(GLP_OFF);
-    glp_error_hook(leave, g);
+    glp_error_hook(leave_solver, g);
 }
 
 static void end_quiet(const guard *g)
@@ -150,7 +150,7 @@ ms_status ms_linear_program_equation(ms_linear_program *p, const double *row, do
 }
 
 /* Minimises the objective that is set. */
-static ms_status minimise(ms_linear_program *p, ms_error *err)
+static ms_status minimise_objective(ms_linear_program *p, ms_error *err)
 {
     glp_smcp how;
     guard g;
@@ -177,7 +177,7 @@ ms_status ms_linear_program_minimise(ms_linear_program *p, int goal, double zero
 {
     const int column = (int)p->n + 2 + goal;
     glp_set_obj_coef(p->problem, column, 1);
-    ms_status status = minimise(p, err);
+    ms_status status = minimise_objective(p, err);
     if (status != MS_OK) {
         return status;
     }
@@ -193,7 +193,7 @@ ms_status ms_linear_program_spread(ms_linear_program *p, double *share, ms_error
 {
     const int u = (int)p->n + 1;
     glp_set_obj_coef(p->problem, u, -1);
-    ms_status status = minimise(p, err);
+    ms_status status = minimise_objective(p, err);
     for (size_t s = 0; s < p->n && status == MS_OK; s++) {
         share[s] = glp_get_col_prim(p->problem, u) + glp_get_col_prim(p->problem, (int)s + 1);
     }

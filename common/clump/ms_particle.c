@@ -11,7 +11,7 @@ static int is_positive(double value)
     return isfinite(value) && value >= DBL_MIN;
 }
 
-static ms_status check(ms_particle *particle, ms_error *err)
+static ms_status check_particle(ms_particle *particle, ms_error *err)
 {
     for (int k = 0; k < 3; k++) {
         if (!is_positive(particle->mass) || !isfinite(particle->centre[k]) || !is_positive(particle->inertia[k][k])) {
@@ -39,11 +39,11 @@ ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, doub
             particle->inertia[i][j] = density * body->inertia[i][j] * scale * scale * scale * scale * scale;
         }
     }
-    return check(particle, err);
+    return check_particle(particle, err);
 }
 
 /* Adds the tensor of a solid sphere about the centre, in the clump's unit. */
-static void add_sphere(double inertia[3][3], const ms_sphere *sphere, double mass, const double centre[3])
+static void add_solid(double inertia[3][3], const ms_sphere *sphere, double mass, const double centre[3])
 {
     double p[3], square = 0;
     for (int k = 0; k < 3; k++) {
@@ -73,13 +73,13 @@ ms_status ms_particle_from_spheres(ms_particle *particle, const ms_clump *clump,
         }
     }
     for (size_t s = 0; s < clump->n_spheres; s++) {
-        add_sphere(particle->inertia, &clump->sphere[s], clump->mass[s], particle->centre);
+        add_solid(particle->inertia, &clump->sphere[s], clump->mass[s], particle->centre);
     }
     for (int i = 0; i < 9; i++) {
         particle->inertia[i / 3][i % 3] *= scale * scale;
     }
     particle->scale = scale;
-    return check(particle, err);
+    return check_particle(particle, err);
 }
 
 double ms_particle_gyration(const ms_particle *p)
@@ -108,7 +108,7 @@ static ms_status grid_around(ms_grid *grid, const ms_clump *clump, double h, siz
     return ms_grid_alloc(grid, n, h, origin, err);
 }
 
-static ms_status count_union(ms_body *body, const ms_clump *clump, double h, size_t max_voxels, ms_error *err)
+static ms_status count_fine_union(ms_body *body, const ms_clump *clump, double h, size_t max_voxels, ms_error *err)
 {
     ms_grid grid;
     ms_raster raster;
@@ -150,9 +150,9 @@ ms_status ms_particle_union(ms_body *body, const ms_clump *clump, size_t max_vox
     for (size_t s = 0; s < clump->n_spheres; s++) {
         largest = fmax(largest, clump->sphere[s].radius);
     }
-    ms_status status = count_union(body, clump, fmin(side / FIRST_CELLS, largest / 8), max_voxels, err);
+    ms_status status = count_fine_union(body, clump, fmin(side / FIRST_CELLS, largest / 8), max_voxels, err);
     if (status == MS_OK) {
-        status = count_union(body, clump, cbrt(6 * body->volume / acos(-1.0)) / CELLS, max_voxels, err);
+        status = count_fine_union(body, clump, cbrt(6 * body->volume / acos(-1.0)) / CELLS, max_voxels, err);
     }
     if (status != MS_OK) {
         *body = (ms_body){0};

@@ -12,7 +12,7 @@ static ms_status principal_of(ms_principal *principal, const ms_particle *partic
     return ms_inertia_principal(principal, &body, err);
 }
 
-static ms_status carry(ms_template *made, const ms_clump *clump, ms_error *err)
+static ms_status carry_spheres(ms_template *made, const ms_clump *clump, ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t s = 0; s < clump->n_spheres && status == MS_OK; s++) {
@@ -50,7 +50,7 @@ ms_status ms_template_make(ms_template *made, const ms_clump *clump, const ms_pa
     for (int m = 0; m < 3; m++) {
         made->particle.inertia[m][m] = principal.moment[m];
     }
-    status = carry(made, clump, err);
+    status = carry_spheres(made, clump, err);
     if (status != MS_OK) {
         ms_template_free(made);
     }

@@ -37,7 +37,7 @@ static void join_parts(ms_standout *out, const part *parts, size_t count)
 }
 
 /* The spheres that may hide a part of sphere s, as indices. */
-static size_t find_neighbours(uint32_t *neighbour, const ms_clump *clump, size_t s)
+static size_t find_touching(uint32_t *neighbour, const ms_clump *clump, size_t s)
 {
     const ms_sphere *sphere = &clump->sphere[s];
     size_t count = 0;
@@ -52,7 +52,7 @@ static size_t find_neighbours(uint32_t *neighbour, const ms_clump *clump, size_t
 }
 
 /* Of equal spheres the first counts as exposed. */
-static int hidden(const double point[3], const ms_clump *clump, size_t s, const uint32_t *neighbour, size_t count)
+static int is_hidden(const double point[3], const ms_clump *clump, size_t s, const uint32_t *neighbour, size_t count)
 {
     for (size_t at = 0; at < count; at++) {
         const ms_sphere *other = &clump->sphere[neighbour[at]];
@@ -87,14 +87,14 @@ static part sphere_part(const ms_target *target, const ms_clump *clump, size_t s
     const double h = target->grid.h, area = 4 * PI * sphere->radius * sphere->radius;
     const int samples = (int)fmin(1000, fmax(32, ceil(area / (4 * h * h))));
     const double golden = PI * (3 - sqrt(5.0));
-    const size_t count = find_neighbours(neighbour, clump, s);
+    const size_t count = find_touching(neighbour, clump, s);
     part sum = {0};
     for (int m = 0; m < samples; m++) {
         const double z = 1 - (2 * m + 1.0) / samples, ring = sqrt(1 - z * z), turn = golden * m;
         const double point[3] = {sphere->centre[0] + sphere->radius * ring * cos(turn),
                                  sphere->centre[1] + sphere->radius * ring * sin(turn),
                                  sphere->centre[2] + sphere->radius * z};
-        if (!hidden(point, clump, s, neighbour, count)) {
+        if (!is_hidden(point, clump, s, neighbour, count)) {
             part_add(&sum, area / samples, outside_distance(target, point));
         }
     }

@@ -15,7 +15,7 @@ typedef struct box {
 
 static const box no_box = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
 
-static void grow(box *b, const double lo[3], const double hi[3])
+static void grow_box(box *b, const double lo[3], const double hi[3])
 {
     for (int k = 0; k < 3; k++) {
         b->lo[k] = lo[k] < b->lo[k] ? lo[k] : b->lo[k];
@@ -68,7 +68,7 @@ static double best_cut(int *cut, const bin bins[BINS])
     box upper = no_box;
     uint32_t n = 0;
     for (int k = BINS - 1; k > 0; k--) {
-        grow(&upper, bins[k].bounds.lo, bins[k].bounds.hi);
+        grow_box(&upper, bins[k].bounds.lo, bins[k].bounds.hi);
         n += bins[k].n;
         upper_cost[k] = half_area(&upper) * n;
     }
@@ -76,7 +76,7 @@ static double best_cut(int *cut, const bin bins[BINS])
     n = 0;
     double least = HUGE_VAL;
     for (int k = 1; k < BINS; k++) {
-        grow(&lower, bins[k - 1].bounds.lo, bins[k - 1].bounds.hi);
+        grow_box(&lower, bins[k - 1].bounds.lo, bins[k - 1].bounds.hi);
         n += bins[k - 1].n;
         double cost = half_area(&lower) * n + upper_cost[k];
         if (cost < least) {
@@ -95,7 +95,7 @@ static void swap_items(item *a, item *b)
 }
 
 /* Moves the items of lower bins to the front; returns how many. */
-static uint32_t partition(item *list, uint32_t n, int axis, int cut, const box *centres)
+static uint32_t partition_items(item *list, uint32_t n, int axis, int cut, const box *centres)
 {
     double extent = centres->hi[axis] - centres->lo[axis];
     uint32_t front = 0;
@@ -108,11 +108,11 @@ static uint32_t partition(item *list, uint32_t n, int axis, int cut, const box *
 }
 
 /* Cuts a node's list in two; returns the size of the first part. */
-static uint32_t split(item *list, uint32_t n, uint32_t depth)
+static uint32_t split_items(item *list, uint32_t n, uint32_t depth)
 {
     box centres = no_box;
     for (uint32_t k = 0; k < n; k++) {
-        grow(&centres, list[k].centre, list[k].centre);
+        grow_box(&centres, list[k].centre, list[k].centre);
     }
     int best_axis = -1;
     int cut = 0;
@@ -128,7 +128,7 @@ static uint32_t split(item *list, uint32_t n, uint32_t depth)
         }
         for (uint32_t k = 0; k < n; k++) {
             bin *b = &bins[bin_of(list[k].centre[axis], centres.lo[axis], extent)];
-            grow(&b->bounds, list[k].bounds.lo, list[k].bounds.hi);
+            grow_box(&b->bounds, list[k].bounds.lo, list[k].bounds.hi);
             b->n++;
         }
         int at = 0;
@@ -139,7 +139,7 @@ static uint32_t split(item *list, uint32_t n, uint32_t depth)
             cut = at;
         }
     }
-    uint32_t front = best_axis < 0 ? 0 : partition(list, n, best_axis, cut, &centres);
+    uint32_t front = best_axis < 0 ? 0 : partition_items(list, n, best_axis, cut, &centres);
     return front == 0 || front == n ? n / 2 : front;
 }
 
@@ -147,7 +147,7 @@ static void put_box(ms_bvh_node *node, int c, const item *list, uint32_t first, 
 {
     box bounds = no_box;
     for (uint32_t k = 0; k < n; k++) {
-        grow(&bounds, list[first + k].bounds.lo, list[first + k].bounds.hi);
+        grow_box(&bounds, list[first + k].bounds.lo, list[first + k].bounds.hi);
     }
     for (int k = 0; k < 3; k++) {
         node->lo[k][c] = bounds.lo[k];
@@ -166,7 +166,7 @@ static void build_nodes(builder *b, uint32_t n)
     b->n_nodes = 1;
     while (waiting > 0) {
         task now = stack[--waiting];
-        uint32_t front = now.n > LEAF ? split(b->list + now.first, now.n, now.depth) : now.n / 2;
+        uint32_t front = now.n > LEAF ? split_items(b->list + now.first, now.n, now.depth) : now.n / 2;
         const uint32_t first[2] = {now.first, now.first + front};
         /* A single triangle stands in both boxes: none is ever empty. */
         const uint32_t count[2] = {front > 0 ? front : 1, now.n - front};
@@ -191,7 +191,7 @@ static void put_item(item *out, const ms_mesh *mesh, uint32_t t, const double ce
         for (int k = 0; k < 3; k++) {
             p[k] = mesh->vertex[mesh->triangle[t][corner]][k] - centre[k];
         }
-        grow(&out->bounds, p, p);
+        grow_box(&out->bounds, p, p);
     }
     for (int k = 0; k < 3; k++) {
         out->centre[k] = (out->bounds.lo[k] + out->bounds.hi[k]) / 2;
@@ -201,7 +201,7 @@ static void put_item(item *out, const ms_mesh *mesh, uint32_t t, const double ce
 /* Thinner than this part of its longest edge, a triangle's plane is mostly rounding. */
 #define SLIVER 1e-6
 
-static void put_triangle(ms_bvh_triangle *out, const ms_mesh *mesh, uint32_t t, const double centre[3])
+static void put_leaf_triangle(ms_bvh_triangle *out, const ms_mesh *mesh, uint32_t t, const double centre[3])
 {
     const uint32_t *corner = mesh->triangle[t];
     double normal[3], longest = 0, twice_area = 0;
@@ -256,7 +256,7 @@ ms_status ms_bvh_build(ms_bvh *bvh, const ms_mesh *mesh, ms_error *err)
     }
     build_nodes(&b, n);
     for (uint32_t k = 0; k < n; k++) {
-        put_triangle(&bvh->triangle[k], mesh, b.list[k].id, bvh->centre);
+        put_leaf_triangle(&bvh->triangle[k], mesh, b.list[k].id, bvh->centre);
     }
     free(b.list);
     ms_bvh_node *fitted = realloc(b.node, b.n_nodes * sizeof *fitted);

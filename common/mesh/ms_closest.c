@@ -39,19 +39,19 @@ void ms_closest_free(ms_closest *closest)
 typedef enum region { CORNER_A, CORNER_B, CORNER_C, EDGE, FACE } region;
 
 /* A point as a + v ab + w ac. */
-typedef struct place {
+typedef struct triangle_place {
     double v, w;
     region at;
-} place;
+} triangle_place;
 
 /* Ericson 5.1.5: the region of the triangle's plane (corner, edge or face) in which the
    point's projection lies. ap, bp, cp run from the corners to the point. */
-static place nearest_place(const ms_bvh_triangle *t, const double ap[3])
+static triangle_place nearest_place(const ms_bvh_triangle *t, const double ap[3])
 {
     double d1 = ms_dot(t->ab, ap);
     double d2 = ms_dot(t->ac, ap);
     if (d1 <= 0 && d2 <= 0) {
-        return (place){0, 0, CORNER_A};
+        return (triangle_place){0, 0, CORNER_A};
     }
     double bp[3], cp[3];
     for (int k = 0; k < 3; k++) {
@@ -61,32 +61,32 @@ static place nearest_place(const ms_bvh_triangle *t, const double ap[3])
     double d3 = ms_dot(t->ab, bp);
     double d4 = ms_dot(t->ac, bp);
     if (d3 >= 0 && d4 <= d3) {
-        return (place){1, 0, CORNER_B};
+        return (triangle_place){1, 0, CORNER_B};
     }
     double vc = d1 * d4 - d3 * d2;
     if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-        return (place){d1 / (d1 - d3), 0, EDGE};
+        return (triangle_place){d1 / (d1 - d3), 0, EDGE};
     }
     double d5 = ms_dot(t->ab, cp);
     double d6 = ms_dot(t->ac, cp);
     if (d6 >= 0 && d5 <= d6) {
-        return (place){0, 1, CORNER_C};
+        return (triangle_place){0, 1, CORNER_C};
     }
     double vb = d5 * d2 - d1 * d6;
     if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-        return (place){0, d2 / (d2 - d6), EDGE};
+        return (triangle_place){0, d2 / (d2 - d6), EDGE};
     }
     double va = d3 * d6 - d5 * d4;
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
         double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return (place){1 - w, w, EDGE};
+        return (triangle_place){1 - w, w, EDGE};
     }
     double sum = va + vb + vc;
-    return (place){vb / sum, vc / sum, FACE};
+    return (triangle_place){vb / sum, vc / sum, FACE};
 }
 
 /* Squared distance to a place; `offset` is from the triangle's corner a to the place. */
-static double distance_to(double offset[3], const ms_bvh_triangle *t, const double ap[3], place at)
+static double distance_to(double offset[3], const ms_bvh_triangle *t, const double ap[3], triangle_place at)
 {
     double square = 0;
     for (int k = 0; k < 3; k++) {
@@ -102,7 +102,7 @@ static double clamp_to_unit(double x)
 }
 
 /* In a sliver the regions drown in rounding: its three edges are tried one by one. */
-static place nearest_on_edges(const ms_bvh_triangle *t, const double ap[3])
+static triangle_place nearest_on_edges(const ms_bvh_triangle *t, const double ap[3])
 {
     double bc[3], bp[3], offset[3];
     for (int k = 0; k < 3; k++) {
@@ -110,10 +110,10 @@ static place nearest_on_edges(const ms_bvh_triangle *t, const double ap[3])
         bp[k] = ap[k] - t->ab[k];
     }
     double along_bc = clamp_to_unit(ms_dot(bc, bp) / ms_dot(bc, bc));
-    const place tried[4] = {{clamp_to_unit(ms_dot(t->ab, ap) / ms_dot(t->ab, t->ab)), 0, EDGE},
-                            {0, clamp_to_unit(ms_dot(t->ac, ap) / ms_dot(t->ac, t->ac)), EDGE},
-                            {1 - along_bc, along_bc, EDGE},
-                            nearest_place(t, ap)};
+    const triangle_place tried[4] = {{clamp_to_unit(ms_dot(t->ab, ap) / ms_dot(t->ab, t->ab)), 0, EDGE},
+                                     {0, clamp_to_unit(ms_dot(t->ac, ap) / ms_dot(t->ac, t->ac)), EDGE},
+                                     {1 - along_bc, along_bc, EDGE},
+                                     nearest_place(t, ap)};
     int best = 0;
     double least = HUGE_VAL;
     for (int k = 0; k < 4; k++) {
@@ -141,7 +141,7 @@ static void distances_to_boxes(double square[2], const ms_bvh_node *node, const 
     }
 }
 
-typedef struct search {
+typedef struct nearest_search {
     const ms_bvh *bvh;
     double point[3]; /* relative to the centre */
     double best;     /* squared: what is farther is of no interest */
@@ -149,7 +149,7 @@ typedef struct search {
     int found;
     int side_wanted; /* the second pass: `best` stays, `side` is summed */
     double side;     /* above 0 outside */
-} search;
+} nearest_search;
 
 /* The angle-weighted pseudonormal tells inside from outside at corners and edges too; where
    several places are equally near, each says the same. Source: Baerentzen & Aanaes, Signed
@@ -173,7 +173,7 @@ static double side_by_triangle(const ms_bvh_triangle *t, const double ap[3], con
     return angle * ms_dot(normal, from) / twice_area;
 }
 
-static void search_leaf(search *s, uint32_t first, uint32_t count)
+static void search_leaf(nearest_search *s, uint32_t first, uint32_t count)
 {
     for (uint32_t k = first; k < first + count; k++) {
         const ms_bvh_triangle *t = &s->bvh->triangle[k];
@@ -181,7 +181,7 @@ static void search_leaf(search *s, uint32_t first, uint32_t count)
         for (int i = 0; i < 3; i++) {
             ap[i] = s->point[i] - t->a[i];
         }
-        place at = t->sliver ? nearest_on_edges(t, ap) : nearest_place(t, ap);
+        triangle_place at = t->sliver ? nearest_on_edges(t, ap) : nearest_place(t, ap);
         double square = distance_to(offset, t, ap, at);
         if (square < s->best && s->side_wanted) {
             s->side += side_by_triangle(t, ap, offset, at.at);
@@ -197,7 +197,7 @@ static void search_leaf(search *s, uint32_t first, uint32_t count)
 
 /* The nearer box is searched first; the other waits and is dropped if a point nearer than it
    turns up. */
-static void search_tree(search *s)
+static void search_tree(nearest_search *s)
 {
     struct {
         double square;
@@ -233,9 +233,9 @@ static void search_tree(search *s)
     }
 }
 
-static void begin(search *s, const ms_closest *closest, const double point[3], double at_most)
+static void begin_search(nearest_search *s, const ms_closest *closest, const double point[3], double at_most)
 {
-    *s = (search){.bvh = &closest->bvh, .best = at_most > 0 ? at_most * at_most : 0};
+    *s = (nearest_search){.bvh = &closest->bvh, .best = at_most > 0 ? at_most * at_most : 0};
     for (int k = 0; k < 3; k++) {
         s->point[k] = point[k] - closest->bvh.centre[k];
     }
@@ -243,8 +243,8 @@ static void begin(search *s, const ms_closest *closest, const double point[3], d
 
 double ms_closest_distance(double nearest[3], const ms_closest *closest, const double point[3], double at_most)
 {
-    search s;
-    begin(&s, closest, point, at_most);
+    nearest_search s;
+    begin_search(&s, closest, point, at_most);
     search_tree(&s);
     if (!s.found) {
         return at_most;
@@ -257,12 +257,12 @@ double ms_closest_distance(double nearest[3], const ms_closest *closest, const d
 
 double ms_closest_signed_distance(const ms_closest *closest, const double point[3])
 {
-    search s;
-    begin(&s, closest, point, HUGE_VAL);
+    nearest_search s;
+    begin_search(&s, closest, point, HUGE_VAL);
     search_tree(&s);
     double distance = sqrt(s.best);
     /* All triangles as near as that, but for rounding. */
-    begin(&s, closest, point, distance + 1e-12 * (distance + closest->bvh.size));
+    begin_search(&s, closest, point, distance + 1e-12 * (distance + closest->bvh.size));
     s.side_wanted = 1;
     search_tree(&s);
     return s.side < 0 ? -distance : distance;

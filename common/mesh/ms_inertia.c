@@ -12,7 +12,7 @@ typedef struct sum {
     double value, carry;
 } sum;
 
-static void add(sum *s, double term)
+static void add_term(sum *s, double term)
 {
     double total = s->value + term;
     if (fabs(s->value) >= fabs(term)) {
@@ -23,7 +23,7 @@ static void add(sum *s, double term)
     s->value = total;
 }
 
-static double total(const sum *s)
+static double read_sum(const sum *s)
 {
     return s->value + s->carry;
 }
@@ -47,19 +47,19 @@ static void add_tetrahedron(integrals *sums, double p[3][3])
     }
     double volume = (p[0][0] * cross[0] + p[0][1] * cross[1] + p[0][2] * cross[2]) / 6;
     sums->gross += fabs(volume);
-    add(&sums->volume, volume);
+    add_term(&sums->volume, volume);
     for (int k = 0; k < 3; k++) {
-        add(&sums->first[k], volume * together[k] / 4);
+        add_term(&sums->first[k], volume * together[k] / 4);
     }
     for (int k = 0; k < 6; k++) {
         int i = pair[k][0];
         int j = pair[k][1];
         double products = p[0][i] * p[0][j] + p[1][i] * p[1][j] + p[2][i] * p[2][j];
-        add(&sums->second[k], volume * (products + together[i] * together[j]) / 20);
+        add_term(&sums->second[k], volume * (products + together[i] * together[j]) / 20);
     }
 }
 
-static void integrate(integrals *sums, const ms_mesh *mesh, const double centre[3])
+static void integrate_mesh(integrals *sums, const ms_mesh *mesh, const double centre[3])
 {
     for (size_t t = 0; t < mesh->n_triangles; t++) {
         double p[3][3];
@@ -77,13 +77,13 @@ static void integrate(integrals *sums, const ms_mesh *mesh, const double centre[
 static void fill_body(ms_body *body, const integrals *sums, const double centre[3])
 {
     double shift[3], moment[6];
-    body->volume = total(&sums->volume);
+    body->volume = read_sum(&sums->volume);
     for (int k = 0; k < 3; k++) {
-        shift[k] = total(&sums->first[k]) / body->volume;
+        shift[k] = read_sum(&sums->first[k]) / body->volume;
         body->centroid[k] = centre[k] + shift[k];
     }
     for (int k = 0; k < 6; k++) {
-        moment[k] = total(&sums->second[k]) - body->volume * shift[pair[k][0]] * shift[pair[k][1]];
+        moment[k] = read_sum(&sums->second[k]) - body->volume * shift[pair[k][0]] * shift[pair[k][1]];
     }
     for (int k = 0; k < 3; k++) {
         body->inertia[k][k] = moment[(k + 1) % 3] + moment[(k + 2) % 3];
@@ -107,8 +107,8 @@ ms_status ms_inertia_mesh(ms_body *body, const ms_mesh *mesh, ms_error *err)
     for (int k = 0; k < 3; k++) {
         centre[k] = lo[k] + (hi[k] - lo[k]) / 2;
     }
-    integrate(&sums, mesh, centre);
-    double volume = total(&sums.volume);
+    integrate_mesh(&sums, mesh, centre);
+    double volume = read_sum(&sums.volume);
     if (!isfinite(sums.gross)) {
         return ms_fail(err, MS_ERR_SHAPE, "the mesh has coordinates that are not finite or overflow when multiplied");
     }
@@ -140,9 +140,9 @@ double ms_mesh_area(const ms_mesh *mesh)
         double x = ab[1] * ac[2] - ab[2] * ac[1];
         double y = ab[2] * ac[0] - ab[0] * ac[2];
         double z = ab[0] * ac[1] - ab[1] * ac[0];
-        add(&area, sqrt(x * x + y * y + z * z) / 2);
+        add_term(&area, sqrt(x * x + y * y + z * z) / 2);
     }
-    return total(&area);
+    return read_sum(&area);
 }
 
 #define TIE 1e-9
@@ -197,7 +197,7 @@ static void orient_axes(ms_principal *principal)
 }
 
 /* GSL's solver takes any finite matrix whose squares do not overflow. */
-static ms_status solve(ms_principal *principal, double matrix[9], double scale, ms_error *err)
+static ms_status solve_eigensystem(ms_principal *principal, double matrix[9], double scale, ms_error *err)
 {
     double value[3], vector[9];
     gsl_matrix_view matrix_view = gsl_matrix_view_array(matrix, 3, 3);
@@ -239,7 +239,7 @@ ms_status ms_inertia_principal(ms_principal *principal, const ms_body *body, ms_
         for (int k = 0; k < 9; k++) {
             matrix[k] /= scale;
         }
-        ms_status status = solve(principal, matrix, scale, err);
+        ms_status status = solve_eigensystem(principal, matrix, scale, err);
         if (status != MS_OK) {
             return status;
         }

@@ -3,14 +3,14 @@
 #include <stdlib.h>
 
 /* A side under its edge's vertex of lower number. */
-typedef struct entry {
+typedef struct half_edge {
     uint32_t other, opposite, side;
-} entry;
+} half_edge;
 
 static int compare_entries(const void *a, const void *b)
 {
-    const entry *x = a;
-    const entry *y = b;
+    const half_edge *x = a;
+    const half_edge *y = b;
     if (x->other != y->other) {
         return x->other < y->other ? -1 : 1;
     }
@@ -20,10 +20,10 @@ static int compare_entries(const void *a, const void *b)
     return (x->side > y->side) - (x->side < y->side);
 }
 
-static void sort_few(entry *list, size_t n)
+static void sort_few(half_edge *list, size_t n)
 {
     for (size_t k = 1; k < n; k++) {
-        entry moved = list[k];
+        half_edge moved = list[k];
         size_t at = k;
         for (; at > 0 && compare_entries(&moved, &list[at - 1]) < 0; at--) {
             list[at] = list[at - 1];
@@ -34,7 +34,7 @@ static void sort_few(entry *list, size_t n)
 
 /* Counting sort by the lower vertex, then a sort of each vertex's few sides. `first` has
    n_vertices + 1 zeros. */
-static void sort_sides(entry *list, uint32_t *first, const ms_mesh *mesh)
+static void sort_sides(half_edge *list, uint32_t *first, const ms_mesh *mesh)
 {
     uint32_t n_sides = (uint32_t)(3 * mesh->n_triangles);
     for (uint32_t side = 0; side < n_sides; side++) {
@@ -51,7 +51,7 @@ static void sort_sides(entry *list, uint32_t *first, const ms_mesh *mesh)
     for (uint32_t side = 0; side < n_sides; side++) {
         uint32_t a = ms_mesh_edges_side_from(mesh, side);
         uint32_t b = ms_side_to(mesh, side);
-        list[first[a < b ? a : b]++] = (entry){a < b ? b : a, ms_side_opposite(mesh, side), side};
+        list[first[a < b ? a : b]++] = (half_edge){a < b ? b : a, ms_side_opposite(mesh, side), side};
     }
     /* Each first[v] has moved on to where v + 1 begins. */
     for (size_t v = 0; v < mesh->n_vertices; v++) {
@@ -66,7 +66,7 @@ static void sort_sides(entry *list, uint32_t *first, const ms_mesh *mesh)
 }
 
 /* A vertex's list ends where the next one's begins: there the edge changes in any case. */
-static void group(ms_edges *edges, const entry *list, const ms_mesh *mesh)
+static void group_edges(ms_edges *edges, const half_edge *list, const ms_mesh *mesh)
 {
     uint32_t n_sides = (uint32_t)(3 * mesh->n_triangles);
     uint32_t last_low = 0;
@@ -91,7 +91,7 @@ ms_status ms_edges_build(ms_edges *edges, const ms_mesh *mesh, ms_error *err)
                        mesh->n_triangles, (size_t)MS_EDGES_MAX_TRIANGLES);
     }
     size_t n_sides = 3 * mesh->n_triangles;
-    entry *list = malloc((n_sides + 1) * sizeof *list);
+    half_edge *list = malloc((n_sides + 1) * sizeof *list);
     uint32_t *first = calloc(mesh->n_vertices + 1, sizeof *first);
     edges->start = malloc((n_sides + 1) * sizeof *edges->start);
     edges->side = malloc((n_sides + 1) * sizeof *edges->side);
@@ -99,7 +99,7 @@ ms_status ms_edges_build(ms_edges *edges, const ms_mesh *mesh, ms_error *err)
     ms_status status = MS_OK;
     if (list && first && edges->start && edges->side && edges->edge_of) {
         sort_sides(list, first, mesh);
-        group(edges, list, mesh);
+        group_edges(edges, list, mesh);
     } else {
         ms_mesh_edges_free(edges);
         status = ms_fail(err, MS_ERR_NOMEM, "no memory for the edges of %zu triangles", mesh->n_triangles);

@@ -65,7 +65,7 @@ static void place_spokes(spoke *list, uint32_t n, const uint32_t *side, const ms
     qsort(list, n, sizeof *list, compare_spokes);
 }
 
-static void join(uint32_t *across, uint32_t a, uint32_t b)
+static void join_edges(uint32_t *across, uint32_t a, uint32_t b)
 {
     across[a] = b;
     across[b] = a;
@@ -91,7 +91,7 @@ static void pair_as_brackets(uint32_t *across, const spoke *list, uint32_t n, ui
         if (s->opens) {
             stack[depth++] = s->side;
         } else {
-            join(across, stack[--depth], s->side);
+            join_edges(across, stack[--depth], s->side);
         }
     }
 }
@@ -106,7 +106,7 @@ static void pair_neighbours(uint32_t *across, const spoke *list, uint32_t n)
     }
     uint32_t start = even <= 3.14159265358979 ? 0 : 1;
     for (uint32_t k = 0; k < n; k += 2) {
-        join(across, list[(start + k) % n].side, list[(start + k + 1) % n].side);
+        join_edges(across, list[(start + k) % n].side, list[(start + k + 1) % n].side);
     }
 }
 

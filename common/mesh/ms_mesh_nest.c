@@ -92,7 +92,7 @@ static void meet_triangle(ray *r, const ms_bvh_triangle *t)
     add_hit(r, shell, touches);
 }
 
-static void shoot(ray *r)
+static void shoot_ray(ray *r)
 {
     uint32_t stack[MS_BVH_STACK];
     int waiting = 0;
@@ -152,7 +152,7 @@ static int shoot_from(ray *r, const ms_mesh *mesh, uint32_t t)
     }
     for (int d = 0; d < DIRECTIONS; d++) {
         r->along = direction[d];
-        shoot(r);
+        shoot_ray(r);
         if (!r->grazes) {
             reduce_hits(r);
             return 1;

@@ -27,7 +27,7 @@ static int is_inside_out(const ms_mesh *mesh)
 }
 
 /* The walk over the surface, from triangle to triangle across their sides. */
-typedef struct walk {
+typedef struct shell_walk {
     const ms_mesh *mesh;
     const uint32_t *across;
     uint8_t *flip; /* relative to the shell's first triangle, then to the input */
@@ -35,11 +35,11 @@ typedef struct walk {
     uint32_t queued;  /* in shells.order */
     uint32_t twisted; /* a triangle whose two ways round disagree */
     int is_twisted;
-} walk;
+} shell_walk;
 
 #define UNSEEN UINT32_MAX
 
-static void visit(walk *w, uint32_t t)
+static void visit_triangle(shell_walk *w, uint32_t t)
 {
     for (uint32_t side = 3 * t; side < 3 * t + 3; side++) {
         uint32_t next_side = w->across[side];
@@ -59,7 +59,7 @@ static void visit(walk *w, uint32_t t)
 }
 
 /* Numbers the shells and lists their triangles; w->flip makes each agree with itself. */
-static ms_status walk_all(walk *w, ms_error *err)
+static ms_status walk_all(shell_walk *w, ms_error *err)
 {
     uint32_t n = (uint32_t)w->mesh->n_triangles;
     ms_shells *shells = &w->shells;
@@ -81,14 +81,14 @@ static ms_status walk_all(walk *w, ms_error *err)
         shells->shell_of[seed] = (uint32_t)shells->n;
         shells->order[w->queued++] = seed;
         for (uint32_t k = first; k < w->queued; k++) {
-            visit(w, shells->order[k]);
+            visit_triangle(w, shells->order[k]);
         }
         shells->shell[shells->n++] = (ms_shell){.first = first, .n = w->queued - first};
     }
     return MS_OK;
 }
 
-static void measure_shell(ms_shell *shell, const walk *w)
+static void measure_shell(ms_shell *shell, const shell_walk *w)
 {
     const ms_mesh *mesh = w->mesh;
     const uint32_t *list = w->shells.order + shell->first;
@@ -111,7 +111,7 @@ static void measure_shell(ms_shell *shell, const walk *w)
 }
 
 /* Every shell outward first, for only its size matters to the nesting. */
-static ms_status settle(walk *w, ms_mesh_report *report, ms_error *err)
+static ms_status settle_nesting(shell_walk *w, ms_mesh_report *report, ms_error *err)
 {
     ms_shells *shells = &w->shells;
     for (size_t s = 0; s < shells->n; s++) {
@@ -148,7 +148,7 @@ static void apply_flips(ms_mesh *mesh, const uint8_t *flip, ms_mesh_report *repo
     }
 }
 
-static ms_status orient(ms_mesh *mesh, walk *w, ms_mesh_report *report, ms_error *err)
+static ms_status orient_shells(ms_mesh *mesh, shell_walk *w, ms_mesh_report *report, ms_error *err)
 {
     ms_status status = walk_all(w, err);
     if (status != MS_OK) {
@@ -165,7 +165,7 @@ static ms_status orient(ms_mesh *mesh, walk *w, ms_mesh_report *report, ms_error
                        "a mesh editor",
                        v[0], v[1], v[2]);
     }
-    status = settle(w, report, err);
+    status = settle_nesting(w, report, err);
     if (status == MS_OK) {
         apply_flips(mesh, w->flip, report);
         report->bodies = report->shells - report->cavities;
@@ -178,7 +178,7 @@ ms_status ms_mesh_orient(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report *r
 {
     size_t n = mesh->n_triangles;
     uint32_t *across = malloc(3 * n * sizeof *across);
-    walk w = {.mesh = mesh, .across = across, .flip = calloc(n, 1)};
+    shell_walk w = {.mesh = mesh, .across = across, .flip = calloc(n, 1)};
     w.shells.order = malloc(n * sizeof *w.shells.order);
     w.shells.shell_of = malloc(n * sizeof *w.shells.shell_of);
     ms_status status = MS_OK;
@@ -188,7 +188,7 @@ ms_status ms_mesh_orient(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report *r
     }
     status = ms_mesh_link(across, mesh, edges, is_inside_out(mesh), err);
     if (status == MS_OK) {
-        status = orient(mesh, &w, report, err);
+        status = orient_shells(mesh, &w, report, err);
     }
 cleanup:
     free(across);

@@ -153,7 +153,7 @@ static void remove_unkept(ms_mesh *mesh, const uint8_t *keep)
     mesh->n_triangles = kept;
 }
 
-static ms_status prune(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report *report, ms_error *err)
+static ms_status prune_mesh(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report *report, ms_error *err)
 {
     size_t n = mesh->n_triangles;
     pruning p = {.mesh = mesh, .edges = edges};
@@ -230,7 +230,7 @@ ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err)
     size_t n_before = mesh->n_triangles;
     status = ms_edges_build(&edges, mesh, err);
     if (status == MS_OK) {
-        status = prune(mesh, &edges, report, err);
+        status = prune_mesh(mesh, &edges, report, err);
     }
     if (status == MS_OK && mesh->n_triangles < n_before) {
         ms_mesh_edges_free(&edges);

@@ -154,7 +154,7 @@ double ms_shape_ellipsoid_volume(const double *value)
 }
 
 /* Puts a mesh behind what is in the arrays, which have room for it. */
-static void append(ms_mesh *mesh, const ms_mesh *part, int reversed)
+static void append_mesh(ms_mesh *mesh, const ms_mesh *part, int reversed)
 {
     size_t v0 = mesh->n_vertices;
     size_t t0 = mesh->n_triangles;
@@ -187,10 +187,10 @@ ms_status ms_shape_hollow(ms_mesh *mesh, const double *value, ms_error *err)
     }
     if (status == MS_OK) {
         mesh->n_vertices = mesh->n_triangles = 0;
-        append(mesh, &ball, 0);
+        append_mesh(mesh, &ball, 0);
         ms_shape_scale(mesh, value[0], value[0], value[0]);
         ms_shape_scale(&ball, value[1], value[1], value[1]);
-        append(mesh, &ball, 1);
+        append_mesh(mesh, &ball, 1);
     }
     ms_mesh_free(&ball);
     return status;

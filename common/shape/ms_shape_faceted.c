@@ -12,7 +12,7 @@ typedef struct soup {
 
 enum { LATTICE_BITS = 21, LATTICE_MIDDLE = 1 << 20 };
 
-static uint64_t pack(const int p[3])
+static uint64_t pack_lattice(const int p[3])
 {
     uint64_t word = 0;
     for (int axis = 0; axis < 3; axis++) {
@@ -21,7 +21,7 @@ static uint64_t pack(const int p[3])
     return word;
 }
 
-static int unpack(uint64_t word, int axis)
+static int unpack_lattice(uint64_t word, int axis)
 {
     uint64_t mask = ((uint64_t)1 << LATTICE_BITS) - 1;
     return (int)(word >> (LATTICE_BITS * (2 - axis)) & mask) - LATTICE_MIDDLE;
@@ -65,7 +65,8 @@ static size_t sort_unique(uint64_t *word, size_t n)
 }
 
 /* Lattice number i of `half_count` becomes half[axis] * i / half_count[axis]. */
-static ms_status weld(ms_mesh *mesh, const soup *faces, const double half[3], const int half_count[3], ms_error *err)
+static ms_status weld_faces(ms_mesh *mesh, const soup *faces, const double half[3], const int half_count[3],
+                            ms_error *err)
 {
     uint64_t *point = malloc(faces->n * sizeof *point);
     if (!point) {
@@ -78,7 +79,7 @@ static ms_status weld(ms_mesh *mesh, const soup *faces, const double half[3], co
     ms_status status = ms_mesh_alloc(mesh, n_points, faces->n / 3, err);
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         for (int axis = 0; axis < 3; axis++) {
-            mesh->vertex[v][axis] = half[axis] * ((double)unpack(point[v], axis) / half_count[axis]);
+            mesh->vertex[v][axis] = half[axis] * ((double)unpack_lattice(point[v], axis) / half_count[axis]);
         }
     }
     for (size_t k = 0; k < 3 * mesh->n_triangles; k++) {
@@ -98,7 +99,7 @@ static void add_square(soup *faces, int axis, int side, int level, int u, int v)
         p[axis] = side * level;
         p[(axis + 1) % 3] = u + (k == 1 || k == 2 ? 2 : 0);
         p[(axis + 2) % 3] = v + (k >= 2 ? 2 : 0);
-        corner[k] = pack(p);
+        corner[k] = pack_lattice(p);
     }
     /* The diagonals of neighbouring quarters are mirror images, as the body is. */
     int start = (u < 0) != (v < 0);
@@ -139,7 +140,7 @@ static ms_status make_box(ms_mesh *mesh, const double edge[3], double fineness, 
             }
         }
     }
-    status = weld(mesh, &faces, half, count, err);
+    status = weld_faces(mesh, &faces, half, count, err);
     free(faces.corner);
     return status;
 }
@@ -179,7 +180,7 @@ static uint64_t face_point(const int face[3], int n, int i, int j)
         p[axis] = (n - i - j) * tetrahedron_corner[face[0]][axis] + i * tetrahedron_corner[face[1]][axis] +
                   j * tetrahedron_corner[face[2]][axis];
     }
-    return pack(p);
+    return pack_lattice(p);
 }
 
 static void add_face(soup *faces, const int face[3], int n)
@@ -210,7 +211,7 @@ ms_status ms_shape_tetrahedron(ms_mesh *mesh, const double *value, ms_error *err
         add_face(&faces, tetrahedron_face[face], n);
     }
     double half = value[0] / sqrt(8);
-    status = weld(mesh, &faces, (const double[3]){half, half, half}, (const int[3]){n, n, n}, err);
+    status = weld_faces(mesh, &faces, (const double[3]){half, half, half}, (const int[3]){n, n, n}, err);
     free(faces.corner);
     return status;
 }

@@ -72,7 +72,7 @@ static double field_at(field *f, const double direction[3])
 }
 
 /* Scales to the volume of a ball of that radius and moves the centre of mass to the origin. */
-static ms_status fit(ms_mesh *mesh, double radius, ms_error *err)
+static ms_status fit_to_ball(ms_mesh *mesh, double radius, ms_error *err)
 {
     ms_body body;
     ms_status status = ms_inertia_mesh(&body, mesh, err);
@@ -106,7 +106,7 @@ ms_status ms_shape_grain(ms_mesh *mesh, const double *value, ms_error *err)
     }
     ms_shape_scale(mesh, value[1], 1, 1 / value[2]);
     if (status == MS_OK) {
-        status = fit(mesh, value[0], err);
+        status = fit_to_ball(mesh, value[0], err);
     }
     if (status != MS_OK) {
         ms_mesh_free(mesh);

@@ -76,7 +76,7 @@ static void circle_point(double out[2], int q, int n)
     out[1] = quadrant >= 2 ? 0.0 - s : s;
 }
 
-static double (*circle(int n, ms_error *err))[2]
+static double (*make_circle(int n, ms_error *err))[2]
 {
     double(*direction)[2] = malloc((size_t)n * sizeof *direction);
     if (!direction) {
@@ -146,7 +146,7 @@ static void put_revolved_triangles(ms_mesh *mesh, int rings, int around)
 ms_status ms_shape_revolve(ms_mesh *mesh, const ms_profile *profile, int around, ms_error *err)
 {
     *mesh = (ms_mesh){0};
-    double(*direction)[2] = circle(around, err);
+    double(*direction)[2] = make_circle(around, err);
     if (!direction) {
         return MS_ERR_NOMEM;
     }
@@ -164,7 +164,7 @@ ms_status ms_shape_revolve(ms_mesh *mesh, const ms_profile *profile, int around,
 ms_status ms_shape_ring(ms_mesh *mesh, double ring, double tube, int around, ms_error *err)
 {
     *mesh = (ms_mesh){0};
-    double(*direction)[2] = circle(around, err);
+    double(*direction)[2] = make_circle(around, err);
     if (!direction) {
         return MS_ERR_NOMEM;
     }

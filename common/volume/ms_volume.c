@@ -4,14 +4,14 @@
 
 #include "ms_volume_formats.h"
 
-typedef struct format {
+typedef struct volume_reader {
     const char *ending;
     ms_status (*parse)(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels, ms_error *err);
-} format;
+} volume_reader;
 
-static const format *find_format(const char *path)
+static const volume_reader *find_reader(const char *path)
 {
-    static const format formats[] = {
+    static const volume_reader formats[] = {
         {"npy", ms_volume_parse_npy},   {"mhd", ms_volume_parse_mhd},   {"mha", ms_volume_parse_mhd},
         {"nrrd", ms_volume_parse_nrrd}, {"nhdr", ms_volume_parse_nrrd},
     };
@@ -27,12 +27,12 @@ static const format *find_format(const char *path)
 
 int ms_volume_is_volume_path(const char *path)
 {
-    return find_format(path) != NULL;
+    return find_reader(path) != NULL;
 }
 
 ms_status ms_volume_parse(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels, ms_error *err)
 {
-    const format *found = find_format(path);
+    const volume_reader *found = find_reader(path);
     *volume = (ms_volume){0};
     if (!found) {
         return ms_fail(err, MS_ERR_FORMAT,
@@ -49,7 +49,7 @@ ms_status ms_volume_read(ms_volume *volume, const char *path, size_t max_voxels,
 {
     ms_bytes bytes = {0};
     *volume = (ms_volume){0};
-    ms_status status = find_format(path) ? ms_file_read(&bytes, path, err) : MS_OK; /* without one, parse says so */
+    ms_status status = find_reader(path) ? ms_file_read(&bytes, path, err) : MS_OK; /* without one, parse says so */
     if (status == MS_OK) {
         status = ms_volume_parse(volume, &bytes, path, max_voxels, err);
     }

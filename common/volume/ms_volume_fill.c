@@ -57,7 +57,7 @@ static ms_status check_geometry(const ms_volume_header *header, const char *path
     return MS_OK;
 }
 
-static uint64_t load_bits(const uint8_t *at, size_t size, int big_endian)
+static uint64_t load_sample(const uint8_t *at, size_t size, int big_endian)
 {
     uint64_t bits = 0;
     for (size_t i = 0; i < size; i++) {
@@ -66,7 +66,7 @@ static uint64_t load_bits(const uint8_t *at, size_t size, int big_endian)
     return bits;
 }
 
-static double bits_to_double(uint64_t bits, ms_sample sample)
+static double sample_to_double(uint64_t bits, ms_sample sample)
 {
     double wide;
     float narrow;
@@ -114,12 +114,12 @@ static ms_status fill_binary(ms_volume *volume, size_t count, const ms_volume_he
     ms_sample sample = header->sample;
     double largest = sample.kind == MS_SAMPLE_BOOL ? 1.0 : (double)UINT32_MAX;
     for (size_t i = 0; i < count; i++) {
-        uint64_t bits = load_bits(data + i * sample.size, sample.size, header->big_endian);
+        uint64_t bits = load_sample(data + i * sample.size, sample.size, header->big_endian);
         if (sample.kind == MS_SAMPLE_UNSIGNED && bits <= UINT32_MAX) {
             volume->label[i] = (uint32_t)bits;
             continue;
         }
-        double value = bits_to_double(bits, sample);
+        double value = sample_to_double(bits, sample);
         if (!to_label(&volume->label[i], value, largest)) {
             return fail_value(value, i, header, path, err);
         }
@@ -195,7 +195,7 @@ static ms_status fill_unpacked(ms_volume *volume, const ms_volume_header *header
 }
 
 /* The struct cannot hold borrowed bytes as const; they are not changed. */
-static ms_bytes borrow(const uint8_t *data, size_t size)
+static ms_bytes borrow_bytes(const uint8_t *data, size_t size)
 {
     ms_bytes bytes = {NULL, size};
     memcpy(&bytes.data, &data, sizeof data);
@@ -207,7 +207,7 @@ ms_status ms_volume_fill(ms_volume *volume, const ms_volume_header *header, cons
 {
     size_t data_size = 0;
     ms_bytes unpacked = {0};
-    ms_bytes borrowed = borrow(data, size);
+    ms_bytes borrowed = borrow_bytes(data, size);
     *volume = (ms_volume){0};
     ms_status status = ms_volume_data_size(&data_size, header, path, err);
     if (!status) {

@@ -13,7 +13,7 @@
 #define INFLATE_STEP ((size_t)1 << 30)
 
 /* Room for more output, up to one byte more than expected so that too much is noticed. */
-static ms_status grow(ms_bytes *out, size_t *room, size_t expected, const char *path, ms_error *err)
+static ms_status grow_output(ms_bytes *out, size_t *room, size_t expected, const char *path, ms_error *err)
 {
     size_t wanted = *room < ((size_t)1 << 20) ? (size_t)1 << 20 : 2 * *room;
     wanted = wanted < expected + 1 ? wanted : expected + 1;
@@ -48,7 +48,7 @@ static ms_status inflate_all(ms_bytes *out, z_stream *stream, const uint8_t *dat
     size_t used = 0;
     int code = Z_OK;
     while (code != Z_STREAM_END && out->size <= expected) {
-        ms_status status = out->size == room ? grow(out, &room, expected, path, err) : MS_OK;
+        ms_status status = out->size == room ? grow_output(out, &room, expected, path, err) : MS_OK;
         if (status) {
             return status;
         }

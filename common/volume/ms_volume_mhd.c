@@ -13,7 +13,7 @@ typedef struct mhd {
     ms_word data_file;
 } mhd;
 
-typedef ms_status field_parser(mhd *image, ms_text *value, ms_error *err);
+typedef ms_status mhd_field_parser(mhd *image, ms_text *value, ms_error *err);
 
 static ms_status parse_object(mhd *image, ms_text *value, ms_error *err)
 {
@@ -33,7 +33,7 @@ static ms_status parse_dimensions(mhd *image, ms_text *value, ms_error *err)
     return status;
 }
 
-static ms_status parse_size(mhd *image, ms_text *value, ms_error *err)
+static ms_status parse_mhd_size(mhd *image, ms_text *value, ms_error *err)
 {
     image->has_size = 1;
     return ms_volume_text_integers(image->header.n, 3, value, err);
@@ -62,7 +62,7 @@ static ms_status parse_element_size(mhd *image, ms_text *value, ms_error *err)
     return status;
 }
 
-static ms_status parse_origin(mhd *image, ms_text *value, ms_error *err)
+static ms_status parse_mhd_origin(mhd *image, ms_text *value, ms_error *err)
 {
     return parse_three(image->header.origin, "the origin", value, err);
 }
@@ -80,7 +80,7 @@ static ms_status parse_matrix(mhd *image, ms_text *value, ms_error *err)
     return status;
 }
 
-static ms_status parse_type(mhd *image, ms_text *value, ms_error *err)
+static ms_status parse_mhd_type(mhd *image, ms_text *value, ms_error *err)
 {
     static const struct {
         const char *name;
@@ -114,7 +114,7 @@ static ms_status parse_bool(int *truth, ms_text *value, ms_error *err)
     return MS_OK;
 }
 
-static ms_status parse_binary(mhd *image, ms_text *value, ms_error *err)
+static ms_status parse_mhd_binary(mhd *image, ms_text *value, ms_error *err)
 {
     int binary = 1;
     (void)image;
@@ -160,37 +160,37 @@ static ms_status parse_skip(mhd *image, ms_text *value, ms_error *err)
     return status;
 }
 
-static ms_status parse_data_file(mhd *image, ms_text *value, ms_error *err)
+static ms_status parse_mhd_data_file(mhd *image, ms_text *value, ms_error *err)
 {
     return ms_volume_data_file(&image->data_file, value, err);
 }
 
-static field_parser *find_field(const ms_word *key)
+static mhd_field_parser *find_mhd_field(const ms_word *key)
 {
     static const struct {
         const char *key;
-        field_parser *parse;
+        mhd_field_parser *parse;
     } fields[] = {
         {"objecttype", parse_object},
         {"ndims", parse_dimensions},
-        {"dimsize", parse_size},
+        {"dimsize", parse_mhd_size},
         {"elementspacing", parse_spacing},
         {"elementsize", parse_element_size},
-        {"offset", parse_origin},
-        {"position", parse_origin},
-        {"origin", parse_origin},
+        {"offset", parse_mhd_origin},
+        {"position", parse_mhd_origin},
+        {"origin", parse_mhd_origin},
         {"transformmatrix", parse_matrix},
         {"orientation", parse_matrix},
         {"rotation", parse_matrix},
-        {"elementtype", parse_type},
-        {"binarydata", parse_binary},
+        {"elementtype", parse_mhd_type},
+        {"binarydata", parse_mhd_binary},
         {"binarydatabyteordermsb", parse_byte_order},
         {"elementbyteordermsb", parse_byte_order},
         {"compresseddata", parse_compressed},
         {"compresseddatasize", parse_packed_size},
         {"elementnumberofchannels", parse_channels},
         {"headersize", parse_skip},
-        {"elementdatafile", parse_data_file},
+        {"elementdatafile", parse_mhd_data_file},
     };
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
         if (ms_text_word_is(key, fields[i].key)) {
@@ -201,7 +201,7 @@ static field_parser *find_field(const ms_word *key)
 }
 
 /* One line; keys that say nothing about the labels, such as a patient's name, are passed over. */
-static ms_status parse_line(mhd *image, ms_text *text, ms_error *err)
+static ms_status parse_mhd_line(mhd *image, ms_text *text, ms_error *err)
 {
     ms_word line = ms_text_rest(text);
     const char *equals = memchr(line.start, '=', line.length);
@@ -213,17 +213,17 @@ static ms_status parse_line(mhd *image, ms_text *text, ms_error *err)
     ms_text before = ms_volume_text_of_word(&left, text);
     ms_text value = ms_volume_text_of_word(&right, text);
     ms_word key = ms_text_rest(&before);
-    field_parser *parse = find_field(&key);
+    mhd_field_parser *parse = find_mhd_field(&key);
     return parse ? parse(image, &value, err) : MS_OK;
 }
 
-static ms_status parse_header(mhd *image, ms_text *text, ms_error *err)
+static ms_status parse_mhd_header(mhd *image, ms_text *text, ms_error *err)
 {
     while (!image->data_file.length) {
         if (!ms_text_seek(text)) {
             return ms_text_fail(err, text, "the header ends without ElementDataFile");
         }
-        ms_status status = parse_line(image, text, err);
+        ms_status status = parse_mhd_line(image, text, err);
         if (status) {
             return status;
         }
@@ -235,8 +235,8 @@ static ms_status parse_header(mhd *image, ms_text *text, ms_error *err)
 }
 
 /* `data` begins with what the header may tell to skip. */
-static ms_status fill(ms_volume *volume, const mhd *image, const uint8_t *data, size_t size, const char *path,
-                      ms_error *err)
+static ms_status fill_mhd(ms_volume *volume, const mhd *image, const uint8_t *data, size_t size, const char *path,
+                          ms_error *err)
 {
     size_t voxels = 0;
     ms_status status = ms_volume_data_size(&voxels, &image->header, path, err);
@@ -264,17 +264,17 @@ ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const ch
     mhd image = {.header = ms_volume_header_start(max_voxels), .packed_size = -1};
     *volume = (ms_volume){0};
     ms_text_start(&text, bytes, path);
-    ms_status status = parse_header(&image, &text, err);
+    ms_status status = parse_mhd_header(&image, &text, err);
     if (status) {
         return status;
     }
     if (ms_text_word_is(&image.data_file, "local")) {
         text.at += text.at < text.end;
-        return fill(volume, &image, (const uint8_t *)text.at, (size_t)(text.end - text.at), path, err);
+        return fill_mhd(volume, &image, (const uint8_t *)text.at, (size_t)(text.end - text.at), path, err);
     }
     status = ms_volume_read_beside(&beside, &image.data_file, &text, err);
     if (!status) {
-        status = fill(volume, &image, beside.data, beside.size, path, err);
+        status = fill_mhd(volume, &image, beside.data, beside.size, path, err);
     }
     ms_file_free(&beside);
     return status;

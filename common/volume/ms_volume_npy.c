@@ -23,16 +23,16 @@ static ms_status fail_at(const dictionary *dict, const char *expected, ms_error 
                    dict->path, dict->at - dict->start, expected);
 }
 
-static void skip_blanks(dictionary *dict)
+static void skip_npy_blanks(dictionary *dict)
 {
     while (dict->at < dict->end && (*dict->at == ' ' || *dict->at == '\t' || *dict->at == '\n')) {
         dict->at++;
     }
 }
 
-static int take(dictionary *dict, char c)
+static int take_npy_mark(dictionary *dict, char c)
 {
-    skip_blanks(dict);
+    skip_npy_blanks(dict);
     if (dict->at == dict->end || *dict->at != c) {
         return 0;
     }
@@ -42,8 +42,8 @@ static int take(dictionary *dict, char c)
 
 static ms_status parse_string(ms_word *string, dictionary *dict, ms_error *err)
 {
-    char quote = take(dict, '\'') ? '\'' : '"';
-    if (quote == '"' && !take(dict, '"')) {
+    char quote = take_npy_mark(dict, '\'') ? '\'' : '"';
+    if (quote == '"' && !take_npy_mark(dict, '"')) {
         return fail_at(dict, "a string", err);
     }
     const char *stop = memchr(dict->at, quote, (size_t)(dict->end - dict->at));
@@ -57,7 +57,7 @@ static ms_status parse_string(ms_word *string, dictionary *dict, ms_error *err)
 
 static ms_word parse_letters(dictionary *dict)
 {
-    skip_blanks(dict);
+    skip_npy_blanks(dict);
     const char *start = dict->at;
     while (dict->at < dict->end && ((*dict->at >= 'a' && *dict->at <= 'z') || (*dict->at >= 'A' && *dict->at <= 'Z') ||
                                     (*dict->at >= '0' && *dict->at <= '9'))) {
@@ -67,7 +67,7 @@ static ms_word parse_letters(dictionary *dict)
 }
 
 /* Such as <u2: byte order, kind, bytes. */
-static ms_status parse_type(dictionary *dict, ms_error *err)
+static ms_status parse_npy_type(dictionary *dict, ms_error *err)
 {
     static const struct {
         const char *name;
@@ -116,10 +116,10 @@ static ms_status parse_order(dictionary *dict, ms_error *err)
 static ms_status parse_shape(dictionary *dict, ms_error *err)
 {
     int n_axes = 0;
-    if (!take(dict, '(')) {
+    if (!take_npy_mark(dict, '(')) {
         return fail_at(dict, "the tuple of the shape", err);
     }
-    while (!take(dict, ')')) {
+    while (!take_npy_mark(dict, ')')) {
         int64_t extent;
         ms_word word = parse_letters(dict);
         /* Python 2 wrote its long integers as 20L. */
@@ -132,7 +132,7 @@ static ms_status parse_shape(dictionary *dict, ms_error *err)
             dict->header.n[n_axes] = extent;
         }
         n_axes++;
-        if (!take(dict, ',') && (dict->at == dict->end || *dict->at != ')')) {
+        if (!take_npy_mark(dict, ',') && (dict->at == dict->end || *dict->at != ')')) {
             return fail_at(dict, "a comma or ')'", err);
         }
     }
@@ -151,11 +151,11 @@ static ms_status parse_item(dictionary *dict, ms_error *err)
     if (status) {
         return status;
     }
-    if (!take(dict, ':')) {
+    if (!take_npy_mark(dict, ':')) {
         return fail_at(dict, "a colon", err);
     }
     if (ms_text_word_is(&key, "descr")) {
-        return parse_type(dict, err);
+        return parse_npy_type(dict, err);
     }
     if (ms_text_word_is(&key, "fortran_order")) {
         return parse_order(dict, err);
@@ -167,19 +167,19 @@ static ms_status parse_item(dictionary *dict, ms_error *err)
 static ms_status parse_dictionary(dictionary *dict, ms_error *err)
 {
     dict->fortran_order = -1;
-    if (!take(dict, '{')) {
+    if (!take_npy_mark(dict, '{')) {
         return fail_at(dict, "a dictionary", err);
     }
-    while (!take(dict, '}')) {
+    while (!take_npy_mark(dict, '}')) {
         ms_status status = parse_item(dict, err);
         if (status) {
             return status;
         }
-        if (!take(dict, ',') && (dict->at == dict->end || *dict->at != '}')) {
+        if (!take_npy_mark(dict, ',') && (dict->at == dict->end || *dict->at != '}')) {
             return fail_at(dict, "a comma or '}'", err);
         }
     }
-    skip_blanks(dict);
+    skip_npy_blanks(dict);
     if (dict->at != dict->end) {
         return fail_at(dict, "the end of the header", err);
     }

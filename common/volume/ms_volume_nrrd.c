@@ -17,9 +17,9 @@ typedef struct nrrd {
     size_t data_line;   /* that names it */
 } nrrd;
 
-typedef ms_status field_parser(nrrd *image, ms_text *value, ms_error *err);
+typedef ms_status nrrd_field_parser(nrrd *image, ms_text *value, ms_error *err);
 
-static ms_status parse_type(nrrd *image, ms_text *value, ms_error *err)
+static ms_status parse_nrrd_type(nrrd *image, ms_text *value, ms_error *err)
 {
     static const struct {
         const char *names[6];
@@ -109,16 +109,16 @@ static ms_status parse_spacings(nrrd *image, ms_text *value, ms_error *err)
     return status;
 }
 
-static void skip_blanks(ms_text *text)
+static void skip_nrrd_blanks(ms_text *text)
 {
     while (text->at < text->end && (*text->at == ' ' || *text->at == '\t')) {
         text->at++;
     }
 }
 
-static int take(ms_text *text, char c)
+static int take_nrrd_mark(ms_text *text, char c)
 {
-    skip_blanks(text);
+    skip_nrrd_blanks(text);
     if (text->at == text->end || *text->at != c) {
         return 0;
     }
@@ -129,15 +129,15 @@ static int take(ms_text *text, char c)
 /* Such as (1,0,0). */
 static ms_status parse_vector(double vector[3], ms_text *value, ms_error *err)
 {
-    int ok = take(value, '(');
+    int ok = take_nrrd_mark(value, '(');
     for (int k = 0; k < 3 && ok; k++) {
-        skip_blanks(value);
+        skip_nrrd_blanks(value);
         const char *start = value->at;
         while (value->at < value->end && !strchr(",) \t", *value->at)) {
             value->at++;
         }
         ms_word word = {start, (size_t)(value->at - start)};
-        ok = ms_text_to_double(&vector[k], &word) && take(value, k < 2 ? ',' : ')');
+        ok = ms_text_to_double(&vector[k], &word) && take_nrrd_mark(value, k < 2 ? ',' : ')');
     }
     return ok ? MS_OK : ms_text_fail(err, value, "a vector (x,y,z) of three numbers belongs here");
 }
@@ -162,7 +162,7 @@ static ms_status parse_directions(nrrd *image, ms_text *value, ms_error *err)
     return ms_text_end_line(value, err);
 }
 
-static ms_status parse_origin(nrrd *image, ms_text *value, ms_error *err)
+static ms_status parse_nrrd_origin(nrrd *image, ms_text *value, ms_error *err)
 {
     ms_status status = parse_vector(image->header.origin, value, err);
     return status ? status : ms_text_end_line(value, err);
@@ -181,7 +181,7 @@ static ms_status parse_kinds(nrrd *image, ms_text *value, ms_error *err)
     return MS_OK;
 }
 
-static ms_status parse_data_file(nrrd *image, ms_text *value, ms_error *err)
+static ms_status parse_nrrd_data_file(nrrd *image, ms_text *value, ms_error *err)
 {
     image->data_line = value->line;
     return ms_volume_data_file(&image->data_file, value, err);
@@ -205,23 +205,23 @@ static ms_status refuse_axis_mins(nrrd *image, ms_text *value, ms_error *err)
     return ms_text_fail(err, value, "axis mins and maxs are not read; save 'spacings' and 'space origin' instead");
 }
 
-static field_parser *find_field(const ms_word *name)
+static nrrd_field_parser *find_nrrd_field(const ms_word *name)
 {
     static const struct {
         const char *name;
-        field_parser *parse;
+        nrrd_field_parser *parse;
     } fields[] = {
-        {"type", parse_type},
+        {"type", parse_nrrd_type},
         {"dimension", parse_dimension},
         {"sizes", parse_sizes},
         {"encoding", parse_encoding},
         {"endian", parse_endian},
         {"spacings", parse_spacings},
         {"space directions", parse_directions},
-        {"space origin", parse_origin},
+        {"space origin", parse_nrrd_origin},
         {"kinds", parse_kinds},
-        {"data file", parse_data_file},
-        {"datafile", parse_data_file},
+        {"data file", parse_nrrd_data_file},
+        {"datafile", parse_nrrd_data_file},
         {"line skip", parse_line_skip},
         {"lineskip", parse_line_skip},
         {"byte skip", parse_byte_skip},
@@ -240,7 +240,7 @@ static field_parser *find_field(const ms_word *name)
 }
 
 /* A comment, "key:=value" or "field: value"; what says nothing about the labels is passed over. */
-static ms_status parse_line(nrrd *image, const ms_word *line, ms_text *text, ms_error *err)
+static ms_status parse_nrrd_line(nrrd *image, const ms_word *line, ms_text *text, ms_error *err)
 {
     const char *colon = memchr(line->start, ':', line->length);
     if (line->start[0] == '#') {
@@ -255,7 +255,7 @@ static ms_status parse_line(nrrd *image, const ms_word *line, ms_text *text, ms_
         return MS_OK;
     }
     ms_text value = ms_volume_text_of_word(&rest, text);
-    field_parser *parse = find_field(&name);
+    nrrd_field_parser *parse = find_nrrd_field(&name);
     return parse ? parse(image, &value, err) : MS_OK;
 }
 
@@ -278,7 +278,7 @@ static ms_status check_header(const nrrd *image, const ms_text *text, ms_error *
 }
 
 /* Up to the empty line, which ends the header of an attached volume, or to the end of a detached one. */
-static ms_status parse_header(nrrd *image, ms_text *text, ms_error *err)
+static ms_status parse_nrrd_header(nrrd *image, ms_text *text, ms_error *err)
 {
     ms_word line = ms_text_rest(text);
     ms_word magic = {line.start, line.length < 7 ? line.length : 7};
@@ -289,7 +289,7 @@ static ms_status parse_header(nrrd *image, ms_text *text, ms_error *err)
         text->at++;
         text->line++;
         line = ms_text_rest(text);
-        ms_status status = line.length > 0 ? parse_line(image, &line, text, err) : MS_OK;
+        ms_status status = line.length > 0 ? parse_nrrd_line(image, &line, text, err) : MS_OK;
         if (status) {
             return status;
         }
@@ -302,8 +302,8 @@ static ms_status parse_header(nrrd *image, ms_text *text, ms_error *err)
     return check_header(image, text, err);
 }
 
-static ms_status fill(ms_volume *volume, const nrrd *image, const uint8_t *data, size_t size, const char *path,
-                      ms_error *err)
+static ms_status fill_nrrd(ms_volume *volume, const nrrd *image, const uint8_t *data, size_t size, const char *path,
+                           ms_error *err)
 {
     size_t voxels = 0;
     size_t skip = 0;
@@ -334,17 +334,17 @@ ms_status ms_volume_parse_nrrd(ms_volume *volume, const ms_bytes *bytes, const c
     nrrd image = {.header = ms_volume_header_start(max_voxels)};
     *volume = (ms_volume){0};
     ms_text_start(&text, bytes, path);
-    ms_status status = parse_header(&image, &text, err);
+    ms_status status = parse_nrrd_header(&image, &text, err);
     if (status) {
         return status;
     }
     if (image.data_file.length == 0) {
-        return fill(volume, &image, (const uint8_t *)text.at, (size_t)(text.end - text.at), path, err);
+        return fill_nrrd(volume, &image, (const uint8_t *)text.at, (size_t)(text.end - text.at), path, err);
     }
     text.line = image.data_line;
     status = ms_volume_read_beside(&beside, &image.data_file, &text, err);
     if (!status) {
-        status = fill(volume, &image, beside.data, beside.size, path, err);
+        status = fill_nrrd(volume, &image, beside.data, beside.size, path, err);
     }
     ms_file_free(&beside);
     return status;

@@ -149,7 +149,7 @@ static double half_chord(double radius, double distance_squared)
     return radius > 0 && square >= 0 ? sqrt(square) : -1;
 }
 
-static int clamp(double value, int lo, int hi)
+static int clamp_index(double value, int lo, int hi)
 {
     return value < lo ? lo : value > hi ? hi : (int)value;
 }
@@ -165,9 +165,9 @@ static void cover_row(worker *w, size_t b, int j, int k, double outer, double in
     uint16_t *first = raster->first + start;
     const uint8_t *inside = raster->grid->inside + start;
     row_sums sums = {.lo = INT_MAX, .hi = INT_MIN};
-    const int from = clamp(ceil(x - outer), 0, n), to = clamp(floor(x + outer) + 1, 0, n);
-    const int full_from = inner < 0 ? to : clamp(ceil(x - inner), from, to);
-    const int full_to = inner < 0 ? to : clamp(floor(x + inner) + 1, full_from, to);
+    const int from = clamp_index(ceil(x - outer), 0, n), to = clamp_index(floor(x + outer) + 1, 0, n);
+    const int full_from = inner < 0 ? to : clamp_index(ceil(x - inner), from, to);
+    const int full_to = inner < 0 ? to : clamp_index(floor(x + inner) + 1, full_from, to);
     for (int i = from; i < to; i++) {
         const int full = i >= full_from && i < full_to;
         if (first[i] == MS_RASTER_NONE && (full || covers_half(w, b, i, j, k))) {
@@ -190,8 +190,8 @@ static void cover_plane(worker *w, size_t b, int k)
         return;
     }
     const int n = w->raster->grid->n[1];
-    const int from = clamp(ceil(ball->centre[1] - reach), 0, n);
-    const int to = clamp(floor(ball->centre[1] + reach) + 1, 0, n);
+    const int from = clamp_index(ceil(ball->centre[1] - reach), 0, n);
+    const int to = clamp_index(floor(ball->centre[1] + reach) + 1, 0, n);
     for (int j = from; j < to; j++) {
         const double dy = j - ball->centre[1], away = dy * dy + dz * dz;
         const double chord = half_chord(outer, away);
@@ -257,7 +257,7 @@ static ms_status find_neighbours(neighbours *list, ms_raster *raster, size_t fro
     return MS_OK;
 }
 
-static ms_status append(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err)
+static ms_status append_balls(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err)
 {
     if (count > MS_RASTER_MAX_BALLS - raster->n_balls) {
         return ms_fail(err, MS_ERR_LIMIT, "more than %d spheres in a clump", MS_RASTER_MAX_BALLS);
@@ -301,12 +301,12 @@ static void plane_range(int *from, int *to, const ms_raster *raster, size_t firs
         lo = fmin(lo, raster->ball[b].centre[2] - raster->ball[b].radius - 1);
         hi = fmax(hi, raster->ball[b].centre[2] + raster->ball[b].radius + 1);
     }
-    *from = clamp(floor(lo), 0, raster->grid->n[2]);
-    *to = clamp(ceil(hi) + 1, *from, raster->grid->n[2]);
+    *from = clamp_index(floor(lo), 0, raster->grid->n[2]);
+    *to = clamp_index(ceil(hi) + 1, *from, raster->grid->n[2]);
 }
 
 /* Sums are of integers, so that their order does not matter. */
-static void merge(ms_raster *raster, const worker *w)
+static void merge_sums(ms_raster *raster, const worker *w)
 {
     for (size_t b = w->from; b < raster->n_balls; b++) {
         ms_tally_add(&raster->tally[b], &w->tally[b - w->from]);
@@ -317,7 +317,7 @@ static void merge(ms_raster *raster, const worker *w)
     }
 }
 
-static ms_status cover(ms_raster *raster, size_t first_new, const neighbours *list, ms_error *err)
+static ms_status cover_balls(ms_raster *raster, size_t first_new, const neighbours *list, ms_error *err)
 {
     int from, to, out_of_memory = 0;
     plane_range(&from, &to, raster, first_new);
@@ -344,7 +344,7 @@ static ms_status cover(ms_raster *raster, size_t first_new, const neighbours *li
         }
         if (w.tally) {
 #pragma omp critical(ms_raster_merge)
-            merge(raster, &w);
+            merge_sums(raster, &w);
         }
         free(w.tally);
     }
@@ -364,12 +364,12 @@ ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, m
     if (count == 0) {
         return MS_OK;
     }
-    ms_status status = append(raster, balls, count, err);
+    ms_status status = append_balls(raster, balls, count, err);
     if (status == MS_OK) {
         status = find_neighbours(&list, raster, first_new, err);
     }
     if (status == MS_OK) {
-        status = cover(raster, first_new, &list, err);
+        status = cover_balls(raster, first_new, &list, err);
     }
     free(list.start);
     free(list.ball);

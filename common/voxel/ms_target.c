@@ -62,7 +62,7 @@ static ms_tally tally_grid(const ms_grid *grid)
 }
 
 /* The field and the sums that follow from the grid; the body where no mesh gave it. */
-static ms_status finish(ms_target *target, ms_error *err)
+static ms_status finish_target(ms_target *target, ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(&target->grid);
     const ms_tally sum = tally_grid(&target->grid);
@@ -101,7 +101,7 @@ ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed
         status = ms_closest_build(&target->closest, mesh, err);
     }
     if (status == MS_OK) {
-        status = finish(target, err);
+        status = finish_target(target, err);
     }
     if (status != MS_OK) {
         ms_target_free(target);
@@ -175,7 +175,7 @@ ms_status ms_target_from_volume(ms_target *target, const ms_volume *volume, uint
     if (status == MS_OK) {
         target->closed = 1;
         copy_label(&target->grid, volume, label, lo, hi);
-        status = finish(target, err);
+        status = finish_target(target, err);
     }
     if (status != MS_OK) {
         ms_target_free(target);

@@ -54,7 +54,7 @@ static ms_status alloc_around(ms_grid *grid, const ms_mesh *mesh, double h, ms_e
 }
 
 /* Frees the grid where the voxelisation failed or holds nothing. */
-static ms_status finish(ms_grid *grid, ms_status status, ms_error *err)
+static ms_status finish_grid(ms_grid *grid, ms_status status, ms_error *err)
 {
     if (status == MS_OK && !memchr(grid->inside, 1, ms_grid_voxels(grid))) {
         status = ms_fail(err, MS_ERR_SHAPE, "no voxel of size %g is inside the shape; use more cells", grid->h);
@@ -71,7 +71,7 @@ ms_status ms_voxelize(ms_grid *grid, const ms_mesh *mesh, double h, ms_voxel_rul
     if (status != MS_OK) {
         return status;
     }
-    return finish(grid, ms_sweep(grid, mesh, 0, rule == MS_VOXEL_HALF ? 4 : 1, 0, err), err);
+    return finish_grid(grid, ms_sweep(grid, mesh, 0, rule == MS_VOXEL_HALF ? 4 : 1, 0, err), err);
 }
 
 ms_status ms_voxelize_open(ms_grid *grid, size_t *disagree, const ms_mesh *mesh, double h, ms_error *err)
@@ -89,5 +89,5 @@ ms_status ms_voxelize_open(ms_grid *grid, size_t *disagree, const ms_mesh *mesh,
             grid->inside[v] = votes >= 2;
         }
     }
-    return finish(grid, status, err);
+    return finish_grid(grid, status, err);
 }

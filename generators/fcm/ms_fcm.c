@@ -98,16 +98,16 @@ typedef struct attempt {
     ms_stop_reason reason;
 } attempt;
 
-static double option(const fcm *f, int which)
+static double fcm_option(const fcm *f, int which)
 {
     return f->run->settings->value[which];
 }
 
 /* Keeps the first spheres that are large enough. */
-static void drop_small(ms_ball *ball, size_t *count, fcm *f)
+static void drop_small_balls(ms_ball *ball, size_t *count, fcm *f)
 {
     const double least = f->run->stop.radius / f->run->target->grid.h;
-    const size_t wanted = option(f, FILLING) > 0 ? (size_t)option(f, FILLING) : *count;
+    const size_t wanted = fcm_option(f, FILLING) > 0 ? (size_t)fcm_option(f, FILLING) : *count;
     size_t kept = 0;
     for (size_t b = 0; b < *count && kept < wanted; b++) {
         if (ball[b].radius > 0 && !(ball[b].radius < least)) {
@@ -128,7 +128,7 @@ static ms_status make_points(fcm *f, const ms_ball *ball, size_t count, ms_error
     }
     for (size_t b = 0; b < count; b++) {
         memcpy(point[b], ball[b].centre, sizeof ball[b].centre);
-        point[b][3] = option(f, SCALE_RADIUS) * ball[b].radius;
+        point[b][3] = fcm_option(f, SCALE_RADIUS) * ball[b].radius;
     }
     f->filled = count;
     if (count > 0) {
@@ -138,13 +138,13 @@ static ms_status make_points(fcm *f, const ms_ball *ball, size_t count, ms_error
     return status;
 }
 
-static ms_status fill(fcm *f, ms_error *err)
+static ms_status fill_shape(fcm *f, ms_error *err)
 {
-    f->rule = (ms_random_spheres_rule){.nodes_covered = option(f, NODES_COVERED),
-                                       .least = (size_t)option(f, FILLING),
-                                       .norm = (ms_norm)option(f, NORM),
-                                       .offset = option(f, OFFSET),
-                                       .tries = (size_t)option(f, TRIES),
+    f->rule = (ms_random_spheres_rule){.nodes_covered = fcm_option(f, NODES_COVERED),
+                                       .least = (size_t)fcm_option(f, FILLING),
+                                       .norm = (ms_norm)fcm_option(f, NORM),
+                                       .offset = fcm_option(f, OFFSET),
+                                       .tries = (size_t)fcm_option(f, TRIES),
                                        .seed = f->run->seed,
                                        .progress = f->run->progress,
                                        .progress_context = f->run->progress_context};
@@ -155,7 +155,7 @@ static ms_status fill(fcm *f, ms_error *err)
         status = ms_random_spheres(&ball, &count, f->run->target, &f->nodes, &f->rule, err);
     }
     if (status == MS_OK) {
-        drop_small(ball, &count, f);
+        drop_small_balls(ball, &count, f);
         status = make_points(f, ball, count, err);
     }
     free(ball);
@@ -163,18 +163,18 @@ static ms_status fill(fcm *f, ms_error *err)
 }
 
 /* The best start for n clusters: the first one goes on from fewer. */
-static ms_status start(double (*centre)[4], size_t n, const ms_cluster_rule *rule, const fcm *f, ms_error *err)
+static ms_status start_centres(double (*centre)[4], size_t n, const ms_cluster_rule *rule, const fcm *f, ms_error *err)
 {
     double(*trial)[4] = malloc(n * sizeof *trial), least = HUGE_VAL;
     ms_status status = trial ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu clusters", n);
-    for (size_t r = 0; status == MS_OK && r < (size_t)option(f, RESTARTS); r++) {
+    for (size_t r = 0; status == MS_OK && r < (size_t)fcm_option(f, RESTARTS); r++) {
         ms_cluster_result result;
         const size_t given = r == 0 && f->n_few < n ? f->n_few : 0;
         if (given > 0) {
             memcpy(trial, f->few, given * sizeof *trial);
         }
-        status =
-            ms_cluster_start(trial, given, n, f->cluster, (ms_cluster_spread)option(f, START), f->run->seed + r, err);
+        status = ms_cluster_start(trial, given, n, f->cluster, (ms_cluster_spread)fcm_option(f, START),
+                                  f->run->seed + r, err);
         if (status == MS_OK) {
             status = ms_cluster_run(&result, trial, n, f->cluster, rule, err);
         }
@@ -214,9 +214,9 @@ static void make_spheres(attempt *a, const double (*centre)[4], size_t n, const 
     const double least = fmax(0, f->run->stop.radius / f->run->target->grid.h);
     a->count = 0;
     for (size_t i = 0; i < n; i++) {
-        ms_ball ball = {.radius = fmax(centre[i][3] / option(f, SCALE_RADIUS), least)};
+        ms_ball ball = {.radius = fmax(centre[i][3] / fcm_option(f, SCALE_RADIUS), least)};
         memcpy(ball.centre, centre[i], sizeof ball.centre);
-        if (option(f, RADIUS) == RADIUS_NODE) {
+        if (fcm_option(f, RADIUS) == RADIUS_NODE) {
             ball.radius = fmax(ball.radius, free_radius(f, ball.centre));
         }
         if (is_new(&ball, a)) {
@@ -226,7 +226,7 @@ static void make_spheres(attempt *a, const double (*centre)[4], size_t n, const 
 }
 
 /* Scores the spheres, and says why they are enough; MS_STOP_NOT if they are not. */
-static ms_status judge(attempt *a, const fcm *f, ms_error *err)
+static ms_status judge_attempt(attempt *a, const fcm *f, ms_error *err)
 {
     const ms_target *target = f->run->target;
     ms_tally sum;
@@ -285,28 +285,28 @@ static ms_status open_trials(trials *t, size_t n, ms_error *err)
 }
 
 /* The clusters at one value of m: from a start, or from the centres at the last one. */
-static ms_status cluster(trials *t, double m, int is_first, const fcm *f, ms_error *err)
+static ms_status cluster_points(trials *t, double m, int is_first, const fcm *f, ms_error *err)
 {
     const ms_cluster_rule rule = {.fuzzifier = m, .tolerance = TOLERANCE, .iterations = ITERATIONS};
     if (!is_first) {
         return ms_cluster_run(NULL, t->centre, t->n, f->cluster, &rule, err);
     }
-    const ms_status status = start(t->first, t->n, &rule, f, err);
+    const ms_status status = start_centres(t->first, t->n, &rule, f, err);
     memcpy(t->centre, t->first, t->n * sizeof *t->centre);
     return status;
 }
 
 /* One value of m after the other; the best spheres are kept. */
-static ms_status sweep(trials *t, const fcm *f, ms_error *err)
+static ms_status sweep_fuzzifier(trials *t, const fcm *f, ms_error *err)
 {
-    const double given = option(f, CLUSTERING) == CLUSTERING_KMEANS ? 1 : option(f, FUZZIFIER);
+    const double given = fcm_option(f, CLUSTERING) == CLUSTERING_KMEANS ? 1 : fcm_option(f, FUZZIFIER);
     const size_t values = given > 0 ? 1 : sizeof SWEEP / sizeof *SWEEP;
     ms_status status = MS_OK;
     for (size_t s = 0; status == MS_OK && s < values; s++) {
-        status = cluster(t, given > 0 ? given : SWEEP[s], s == 0, f, err);
+        status = cluster_points(t, given > 0 ? given : SWEEP[s], s == 0, f, err);
         if (status == MS_OK) {
             make_spheres(&t->next, (const double(*)[4])t->centre, t->n, f);
-            status = judge(&t->next, f, err);
+            status = judge_attempt(&t->next, f, err);
         }
         if (status == MS_OK && (s == 0 || is_better(&t->next, &t->best))) {
             const attempt swap = t->best;
@@ -348,7 +348,7 @@ static ms_status order(ms_clump *clump, const attempt *a, const ms_run *run, ms_
 }
 
 /* Where more clusters start from. */
-static void remember(fcm *f, trials *t)
+static void remember_centres(fcm *f, trials *t)
 {
     double(*swap)[4] = f->few;
     f->few = t->first;
@@ -357,7 +357,7 @@ static void remember(fcm *f, trials *t)
 }
 
 /* The clump of n spheres; ms_bisect_count_solve. */
-static ms_status solve(void *context, ms_clump *clump, ms_stop_reason *reason, size_t n, ms_error *err)
+static ms_status make_clump_of(void *context, ms_clump *clump, ms_stop_reason *reason, size_t n, ms_error *err)
 {
     fcm *f = context;
     trials t;
@@ -366,14 +366,14 @@ static ms_status solve(void *context, ms_clump *clump, ms_stop_reason *reason, s
         return status;
     }
     if (t.n > 0) {
-        status = sweep(&t, f, err);
+        status = sweep_fuzzifier(&t, f, err);
     }
     if (status == MS_OK) {
         status = order(clump, &t.best, f->run, err);
     }
     *reason = t.best.reason;
     if (*reason == MS_STOP_NOT) {
-        remember(f, &t);
+        remember_centres(f, &t);
         if (t.n < n) {
             *reason = f->dropped ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
         }
@@ -391,24 +391,24 @@ static ms_status make_clump(ms_clump *clump, ms_stop_reason *reason, fcm *f, ms_
     }
     if (ms_stop_has_measure(stop) || f->off_volume > 0) {
         const size_t most = stop->spheres > 0 ? stop->spheres : MS_CLUMP_MAX_SPHERES;
-        return ms_bisect_count(clump, reason, most, solve, f, err);
+        return ms_bisect_count(clump, reason, most, make_clump_of, f, err);
     }
-    const ms_status status = solve(f, clump, reason, stop->spheres, err);
+    const ms_status status = make_clump_of(f, clump, reason, stop->spheres, err);
     if (*reason == MS_STOP_NOT) {
         *reason = MS_STOP_EXHAUSTED; /* some clusters coincide */
     }
     return status;
 }
 
-static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
+static ms_status generate_by_fcm(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
 {
     fcm f = {.run = run, .off_volume = run->settings->value[OFF_VOLUME]};
-    const double m = option(&f, FUZZIFIER);
+    const double m = fcm_option(&f, FUZZIFIER);
     if (m != 0 && m < LEAST_FUZZIFIER) {
         return ms_fail(err, MS_ERR_ARG, "fuzzifier=%g is too small; give %g or more, or clustering=kmeans", m,
                        LEAST_FUZZIFIER);
     }
-    ms_status status = fill(&f, err);
+    ms_status status = fill_shape(&f, err);
     if (status == MS_OK) {
         status = make_clump(clump, reason, &f, err);
     }
@@ -424,5 +424,5 @@ const ms_generator ms_generator_fcm = {
     .source = "F. Westbrink, A. Schwung, COMPLAS XIV (2017)",
     .nested = 0,
     .options = OPTIONS,
-    .generate = generate,
+    .generate = generate_by_fcm,
 };

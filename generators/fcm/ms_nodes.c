@@ -10,16 +10,16 @@
 enum { LEAF = 8 };
 
 /* Points first to below end. */
-typedef struct range {
+typedef struct node_range {
     size_t first, end;
-} range;
+} node_range;
 
-static size_t middle_of(range r)
+static size_t middle_of(node_range r)
 {
     return r.first + (r.end - r.first) / 2;
 }
 
-static uint8_t widest_axis(double (*at)[3], range r)
+static uint8_t widest_axis(double (*at)[3], node_range r)
 {
     double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     for (size_t p = r.first; p < r.end; p++) {
@@ -37,7 +37,7 @@ static uint8_t widest_axis(double (*at)[3], range r)
     return widest;
 }
 
-static void swap(double a[3], double b[3])
+static void swap_nodes(double a[3], double b[3])
 {
     double keep[3];
     memcpy(keep, a, sizeof keep);
@@ -47,7 +47,7 @@ static void swap(double a[3], double b[3])
 
 /* Puts the middle point of a range in its place: none before it is larger, none behind it smaller
  * (Hoare 1961, as Wirth has it). */
-static void select_middle(double (*at)[3], range r, int axis)
+static void select_middle(double (*at)[3], node_range r, int axis)
 {
     const ptrdiff_t middle = (ptrdiff_t)middle_of(r);
     ptrdiff_t first = (ptrdiff_t)r.first, last = (ptrdiff_t)r.end - 1;
@@ -62,7 +62,7 @@ static void select_middle(double (*at)[3], range r, int axis)
                 down--;
             }
             if (up <= down) {
-                swap(at[up++], at[down--]);
+                swap_nodes(at[up++], at[down--]);
             }
         }
         first = down < middle ? up : first;
@@ -70,13 +70,13 @@ static void select_middle(double (*at)[3], range r, int axis)
     }
 }
 
-static void split(ms_nodes *nodes, range r)
+static void split_range(ms_nodes *nodes, node_range r)
 {
     while (r.end - r.first > LEAF) {
         const size_t middle = middle_of(r);
         nodes->axis[middle] = widest_axis(nodes->at, r);
         select_middle(nodes->at, r, nodes->axis[middle]);
-        split(nodes, (range){r.first, middle});
+        split_range(nodes, (node_range){r.first, middle});
         r.first = middle + 1;
     }
 }
@@ -95,7 +95,7 @@ ms_status ms_nodes_build(ms_nodes *nodes, const double (*at)[3], size_t count, m
     }
     nodes->count = count;
     memcpy(nodes->at, at, count * sizeof *at);
-    split(nodes, (range){0, count});
+    split_range(nodes, (node_range){0, count});
     return MS_OK;
 }
 
@@ -108,7 +108,7 @@ static int is_border(const ms_grid *grid, size_t voxel)
 }
 
 /* The border voxels; only counts them if there is no room. */
-static size_t list_border(double (*at)[3], const ms_grid *grid)
+static size_t list_border_nodes(double (*at)[3], const ms_grid *grid)
 {
     size_t count = 0, voxel = 0;
     for (int k = 0; k < grid->n[2]; k++) {
@@ -131,14 +131,14 @@ static size_t list_border(double (*at)[3], const ms_grid *grid)
 ms_status ms_nodes_of_target(ms_nodes *nodes, const ms_target *target, ms_error *err)
 {
     const ms_mesh *mesh = target->mesh;
-    const size_t count = mesh ? mesh->n_vertices : list_border(NULL, &target->grid);
+    const size_t count = mesh ? mesh->n_vertices : list_border_nodes(NULL, &target->grid);
     double(*at)[3] = malloc((count + 1) * sizeof *at), unused;
     memset(nodes, 0, sizeof *nodes);
     if (!at) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu nodes", count);
     }
     if (!mesh) {
-        list_border(at, &target->grid);
+        list_border_nodes(at, &target->grid);
     }
     for (size_t v = 0; mesh && v < count; v++) {
         ms_target_to_voxels(at[v], &unused, &target->grid, mesh->vertex[v], 0);
@@ -167,15 +167,15 @@ static void try_node(finding *best, const ms_nodes *nodes, size_t p)
     }
 }
 
-static void search(finding *best, const ms_nodes *nodes, range r)
+static void search_range(finding *best, const ms_nodes *nodes, node_range r)
 {
     while (r.end - r.first > LEAF) {
         const size_t middle = middle_of(r);
         const int axis = nodes->axis[middle];
         const double beyond = best->place[axis] - nodes->at[middle][axis];
-        const range lower = {r.first, middle}, upper = {middle + 1, r.end};
+        const node_range lower = {r.first, middle}, upper = {middle + 1, r.end};
         try_node(best, nodes, middle);
-        search(best, nodes, beyond < 0 ? lower : upper);
+        search_range(best, nodes, beyond < 0 ? lower : upper);
         if ((best->norm == MS_NORM_EUCLIDEAN ? beyond * beyond : fabs(beyond)) >= best->away) {
             return;
         }
@@ -189,7 +189,7 @@ static void search(finding *best, const ms_nodes *nodes, range r)
 size_t ms_nodes_nearest(double *distance, const ms_nodes *nodes, const double place[3], ms_norm norm)
 {
     finding best = {.place = place, .norm = norm, .away = HUGE_VAL};
-    search(&best, nodes, (range){0, nodes->count});
+    search_range(&best, nodes, (node_range){0, nodes->count});
     *distance = norm == MS_NORM_EUCLIDEAN ? sqrt(best.away) : best.away;
     return best.index;
 }

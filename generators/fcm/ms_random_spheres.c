@@ -19,7 +19,7 @@ typedef struct filling {
 } filling;
 
 /* The box of the nodes; of a volume that of its voxels. */
-static void find_box(filling *f)
+static void find_inside_box(filling *f)
 {
     for (int a = 0; a < 3; a++) {
         f->lo[a] = HUGE_VAL;
@@ -36,7 +36,7 @@ static void find_box(filling *f)
 static ms_status open_filling(filling *f, const ms_target *target, const ms_nodes *nodes, uint64_t seed, ms_error *err)
 {
     *f = (filling){.target = target, .nodes = nodes};
-    find_box(f);
+    find_inside_box(f);
     f->covered = calloc(f->nodes->count, sizeof *f->covered);
     f->random = gsl_rng_alloc(gsl_rng_mt19937);
     if (!f->covered || !f->random) {
@@ -55,7 +55,7 @@ static void close_filling(filling *f)
 }
 
 /* Draws a centre; 0 if it is outside. */
-static int draw(double centre[3], filling *f)
+static int draw_centre(double centre[3], filling *f)
 {
     const ms_grid *grid = &f->target->grid;
     int voxel[3];
@@ -83,7 +83,7 @@ double ms_random_spheres_radius(size_t *touched, const double centre[3], const m
     return distance + rule->offset + (target->mesh ? 0 : 0.5);
 }
 
-static ms_status make_room(filling *f, ms_error *err)
+static ms_status make_room_for_spheres(filling *f, ms_error *err)
 {
     if (f->room - f->count < BATCH) {
         const size_t room = f->room + f->room / 2 + 2 * BATCH;
@@ -103,7 +103,7 @@ static int is_full(const filling *f, const ms_random_spheres_rule *rule)
 }
 
 /* Keeps the spheres of a batch, one after the other, until the shape is full. */
-static void keep(filling *f, size_t drawn, const size_t *touched, const ms_random_spheres_rule *rule)
+static void keep_spheres(filling *f, size_t drawn, const size_t *touched, const ms_random_spheres_rule *rule)
 {
     for (size_t b = 0; b < drawn && !is_full(f, rule); b++) {
         f->n_covered += !f->covered[touched[b]];
@@ -117,13 +117,13 @@ static void draw_batch(filling *f, size_t tries, const ms_random_spheres_rule *r
     size_t drawn = 0, touched[BATCH];
     ms_ball *ball = f->ball + f->count;
     for (size_t t = 0; t < tries; t++) {
-        drawn += draw(ball[drawn].centre, f) != 0;
+        drawn += draw_centre(ball[drawn].centre, f) != 0;
     }
 #pragma omp parallel for schedule(dynamic, 64)
     for (size_t b = 0; b < drawn; b++) {
         ball[b].radius = ms_random_spheres_radius(&touched[b], ball[b].centre, f->target, f->nodes, rule);
     }
-    keep(f, drawn, touched, rule);
+    keep_spheres(f, drawn, touched, rule);
 }
 
 static ms_status out_of_tries(const filling *f, const ms_random_spheres_rule *rule, ms_error *err)
@@ -147,7 +147,7 @@ ms_status ms_random_spheres(ms_ball **ball, size_t *count, const ms_target *targ
         left -= tries;
         if (tries == 0) {
             status = out_of_tries(&f, rule, err);
-        } else if ((status = make_room(&f, err)) == MS_OK) {
+        } else if ((status = make_room_for_spheres(&f, err)) == MS_OK) {
             draw_batch(&f, tries, rule);
             if (rule->progress) {
                 rule->progress(rule->progress_context, f.count, (double)NAN);

@@ -47,18 +47,18 @@ typedef struct mss {
     ms_tally sum;   /* of the spheres so far */
 } mss;
 
-static double option(const mss *m, int which)
+static double mss_option(const mss *m, int which)
 {
     return m->run->settings->value[which];
 }
 
 /* Shrinks a ball to what faces and planes allow (section 3.5); 0 if it becomes too small. */
-static int confine(ms_ball *ball, mss *m)
+static int confine_ball(ms_ball *ball, mss *m)
 {
     const ms_target *target = m->run->target;
     double centre[3], radius, allowed = HUGE_VAL;
     ms_target_from_voxels(centre, &radius, &target->grid, ball->centre, ball->radius);
-    if (option(m, CONFINE) != 0) {
+    if (mss_option(m, CONFINE) != 0) {
         allowed = -ms_closest_signed_distance(target->closest, centre);
     }
     allowed = fmin(allowed, ms_planes_distance(m->run->settings, centre));
@@ -82,13 +82,13 @@ static int place_candidate(ms_mss_candidate *c, mss *m, size_t voxel)
     for (int a = 0; a < 3; a++) {
         c->ball.centre[a] = peak.voxel[a] + peak.shift[a];
     }
-    c->ball.radius = ms_peaks_value(&peak, m->field.e, target->grid.n) + option(m, OFFSET);
+    c->ball.radius = ms_peaks_value(&peak, m->field.e, target->grid.n) + mss_option(m, OFFSET);
     c->voxel = voxel;
-    if (!confine(&c->ball, m)) {
+    if (!confine_ball(&c->ball, m)) {
         return 0;
     }
     c->rank = c->ball.radius;
-    if (option(m, ORDER) == ORDER_GAIN) {
+    if (mss_option(m, ORDER) == ORDER_GAIN) {
         const double e = (double)m->field.e[voxel]; /* E* - E = w (E - E~) */
         c->rank = ((double)m->field.star[voxel] - e) / (double)m->field.weight * e;
     }
@@ -202,8 +202,8 @@ static int fit_mean(ms_ball *ball, void *context)
     if (!(m->field.e[ms_grid_index(grid, at.voxel[0], at.voxel[1], at.voxel[2])] > 0)) {
         return 0;
     }
-    ball->radius = fmin(ball->radius, ms_peaks_value(&at, m->field.e, grid->n) + option(m, OFFSET));
-    return confine(ball, m);
+    ball->radius = fmin(ball->radius, ms_peaks_value(&at, m->field.e, grid->n) + mss_option(m, OFFSET));
+    return confine_ball(ball, m);
 }
 
 static void report(size_t chosen, void *context)
@@ -218,12 +218,12 @@ static void report(size_t chosen, void *context)
 /* The spheres of a step. Where delta_min is ours to choose, spheres smaller across than it is
  * wait until it has shrunk: else every speck of noise in a corner, being far from all spheres,
  * would come early. */
-static size_t choose(ms_ball *chosen, size_t limit, mss *m)
+static size_t choose_spheres(ms_ball *chosen, size_t limit, mss *m)
 {
-    const int automatic = option(m, SPACING) == 0;
+    const int automatic = mss_option(m, SPACING) == 0;
     ms_mss_select_rule rule = {.spacing = m->spacing,
                                .least_radius = automatic ? m->spacing / 2 : 0,
-                               .one_set = option(m, ORDER) == ORDER_GAIN,
+                               .one_set = mss_option(m, ORDER) == ORDER_GAIN,
                                .may_wait = automatic && m->spacing > 1,
                                .fit = fit_mean,
                                .report = report,
@@ -252,21 +252,21 @@ static ms_status add_spheres(ms_clump *clump, ms_stop_reason *reason, mss *m, co
 /* delta_min to begin with. */
 static double first_spacing(const mss *m)
 {
-    if (option(m, SPACING) > 0) {
-        return option(m, SPACING);
+    if (mss_option(m, SPACING) > 0) {
+        return mss_option(m, SPACING);
     }
-    return option(m, ORDER) == ORDER_GAIN ? 2 : (double)m->field.deepest;
+    return mss_option(m, ORDER) == ORDER_GAIN ? 2 : (double)m->field.deepest;
 }
 
 /* No maximum is far enough from the spheres: delta_min is halved, if it is left to us; then
  * E - E~ gets more weight, if that is asked for; then there is nothing more to find. */
 static ms_status look_closer(ms_stop_reason *reason, mss *m, ms_error *err)
 {
-    if (option(m, SPACING) == 0 && m->spacing > 1) {
+    if (mss_option(m, SPACING) == 0 && m->spacing > 1) {
         m->spacing = fmax(1, m->spacing / 2);
         return MS_OK;
     }
-    if ((double)m->field.weight < option(m, BOOST)) {
+    if ((double)m->field.weight < mss_option(m, BOOST)) {
         m->spacing = first_spacing(m);
         ms_status status = ms_mss_field_set_weight(&m->field, m->field.weight + 1, err);
         return status == MS_OK ? update_candidates(m, m->field.raster.n_balls, err) : status;
@@ -289,13 +289,13 @@ static ms_status step(ms_clump *clump, ms_stop_reason *reason, mss *m, ms_error 
     if (!chosen) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", limit);
     }
-    const size_t taken = choose(chosen, limit, m);
+    const size_t taken = choose_spheres(chosen, limit, m);
     ms_status status = taken > 0 ? add_spheres(clump, reason, m, chosen, taken, err) : look_closer(reason, m, err);
     free(chosen);
     return status;
 }
 
-static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
+static ms_status generate_by_mss(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
 {
     mss m = {.run = run};
     if (run->settings->value[CONFINE] != 0 && (!run->target->closest || !run->target->closed)) {
@@ -321,5 +321,5 @@ const ms_generator ms_generator_mss = {
     .source = "F. Buchele, T. Poeschel, P. Mueller, Powder Technology (2026), arXiv:2603.05877",
     .nested = 1,
     .options = OPTIONS,
-    .generate = generate,
+    .generate = generate_by_mss,
 };

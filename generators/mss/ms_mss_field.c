@@ -10,18 +10,18 @@
  * bytes a voxel, then take no more memory than the flags of the whole grid would. */
 enum { LARGEST_PART = 5 };
 
-typedef struct box {
+typedef struct voxel_box {
     int lo[3], hi[3];
-} box;
+} voxel_box;
 
-static size_t box_voxels(const box *b)
+static size_t box_voxels(const voxel_box *b)
 {
     return (size_t)(b->hi[0] - b->lo[0]) * (size_t)(b->hi[1] - b->lo[1]) * (size_t)(b->hi[2] - b->lo[2]);
 }
 
-static box box_grow(const box *b, int margin, const int n[3])
+static voxel_box box_grow(const voxel_box *b, int margin, const int n[3])
 {
-    box grown;
+    voxel_box grown;
     for (int a = 0; a < 3; a++) {
         grown.lo[a] = b->lo[a] > margin ? b->lo[a] - margin : 0;
         grown.hi[a] = b->hi[a] < n[a] - margin ? b->hi[a] + margin : n[a];
@@ -29,7 +29,7 @@ static box box_grow(const box *b, int margin, const int n[3])
     return grown;
 }
 
-static void box_include(box *b, int from, int to, int j, int k)
+static void box_include(voxel_box *b, int from, int to, int j, int k)
 {
     const int lo[3] = {from, j, k}, hi[3] = {to, j + 1, k + 1};
     for (int a = 0; a < 3; a++) {
@@ -83,7 +83,7 @@ static float union_of(const ms_mss_field *field, float e, float star)
 }
 
 /* Which voxels of a part S~ covers. */
-static void copy_covered(uint8_t *covered, const ms_mss_field *field, const box *part)
+static void copy_covered(uint8_t *covered, const ms_mss_field *field, const voxel_box *part)
 {
     const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
 #pragma omp parallel for
@@ -101,7 +101,7 @@ static void copy_covered(uint8_t *covered, const ms_mss_field *field, const box 
 static ms_status update_whole(ms_mss_field *field, ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(&field->target->grid);
-    box all = {{0, 0, 0}, {0, 0, 0}};
+    voxel_box all = {{0, 0, 0}, {0, 0, 0}};
     memcpy(all.hi, field->target->grid.n, sizeof all.hi);
     memcpy(field->lo, all.lo, sizeof field->lo);
     memcpy(field->hi, all.hi, sizeof field->hi);
@@ -122,7 +122,7 @@ static ms_status update_whole(ms_mss_field *field, ms_error *err)
     return status;
 }
 
-static double gap(int at, int lo, int hi)
+static double find_gap(int at, int lo, int hi)
 {
     return at < lo ? lo - at : at >= hi ? at - hi + 1 : 0;
 }
@@ -131,21 +131,22 @@ static double gap(int at, int lo, int hi)
  * The voxels whose E~ may change: those that are covered now, and those that had their
  * nearest background voxel among these, which then was within their old E~.
  */
-static box changed_box(const ms_mss_field *field)
+static voxel_box changed_box(const ms_mss_field *field)
 {
     const ms_grid *grid = &field->target->grid;
-    box covered, changed;
+    voxel_box covered, changed;
     memcpy(covered.lo, field->raster.lo, sizeof covered.lo);
     memcpy(covered.hi, field->raster.hi, sizeof covered.hi);
-    const box reach = box_grow(&covered, (int)ceilf(field->deepest_union) + 1, grid->n);
+    const voxel_box reach = box_grow(&covered, (int)ceilf(field->deepest_union) + 1, grid->n);
     changed = covered;
 #pragma omp parallel
     {
-        box mine = covered;
+        voxel_box mine = covered;
 #pragma omp for schedule(dynamic, 4)
         for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
             for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
-                const double dz = gap(k, covered.lo[2], covered.hi[2]), dy = gap(j, covered.lo[1], covered.hi[1]);
+                const double dz = find_gap(k, covered.lo[2], covered.hi[2]),
+                             dy = find_gap(j, covered.lo[1], covered.hi[1]);
                 const float away = (float)sqrt(dz * dz + dy * dy) - 0.01f; /* E~ is known up to rounding */
                 const size_t start = ms_grid_index(grid, 0, j, k);
                 const float *e = field->e + start, *star = field->star + start;
@@ -172,7 +173,7 @@ static box changed_box(const ms_mss_field *field)
     return changed;
 }
 
-static float deepest_in(const ms_mss_field *field, const box *b)
+static float deepest_in(const ms_mss_field *field, const voxel_box *b)
 {
     float deepest = 0;
     for (int k = b->lo[2]; k < b->hi[2]; k++) {
@@ -187,7 +188,7 @@ static float deepest_in(const ms_mss_field *field, const box *b)
 }
 
 /* How far a voxel is from the outside of the part, where the part is not the grid's own end. */
-static int depth_in_part(const box *part, const int n[3], int i, int j, int k)
+static int depth_in_part(const voxel_box *part, const int n[3], int i, int j, int k)
 {
     const int at[3] = {i, j, k};
     int depth = MS_GRID_MAX_EXTENT;
@@ -203,7 +204,7 @@ static int depth_in_part(const box *part, const int n[3], int i, int j, int k)
 }
 
 /* Writes E* of the changed voxels; 0 if a distance may be to background beyond the part. */
-static int write_star(ms_mss_field *field, const float *distance, const box *part, const box *changed)
+static int write_star(ms_mss_field *field, const float *distance, const voxel_box *part, const voxel_box *changed)
 {
     const ms_grid *grid = &field->target->grid;
     const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
@@ -227,7 +228,8 @@ static int write_star(ms_mss_field *field, const float *distance, const box *par
 }
 
 /* @param[out] done 0 if the part proved too small */
-static ms_status update_part(int *done, ms_mss_field *field, const box *part, const box *changed, ms_error *err)
+static ms_status update_part(int *done, ms_mss_field *field, const voxel_box *part, const voxel_box *changed,
+                             ms_error *err)
 {
     const size_t voxels = box_voxels(part);
     const int n[3] = {part->hi[0] - part->lo[0], part->hi[1] - part->lo[1], part->hi[2] - part->lo[2]};
@@ -262,8 +264,8 @@ ms_status ms_mss_field_add(ms_mss_field *field, const ms_ball *balls, size_t cou
     }
     /* Background is at most as far as that of the target, and spheres may stand out of it by
      * a voxel or so; write_star checks. */
-    const box changed = changed_box(field);
-    const box part = box_grow(&changed, (int)ceilf(deepest_in(field, &changed)) + 2, n);
+    const voxel_box changed = changed_box(field);
+    const voxel_box part = box_grow(&changed, (int)ceilf(deepest_in(field, &changed)) + 2, n);
     int done = 0;
     if (box_voxels(&part) <= ms_grid_voxels(&field->target->grid) / LARGEST_PART) {
         status = update_part(&done, field, &part, &changed, err);

@@ -147,8 +147,8 @@ static size_t gather_central(ms_mss_candidate *c, size_t count, const double cen
 }
 
 /* Places balls behind p->step that keep their distance. */
-static void place(ms_ball *chosen, size_t *taken, size_t limit, const ms_ball *ball, const placed *p,
-                  const ms_mss_select_rule *rule)
+static void place_ball(ms_ball *chosen, size_t *taken, size_t limit, const ms_ball *ball, const placed *p,
+                       const ms_mss_select_rule *rule)
 {
     const placed now = {p->earlier, p->step, p->n_earlier, p->n_step + *taken};
     if (*taken < limit && !too_close(ball, &now, rule->spacing)) {
@@ -166,10 +166,10 @@ static size_t place_equals(ms_ball *chosen, size_t limit, ms_mss_candidate *c, s
         size = gather_cluster(c + at, count - at, rule->spacing);
         ms_ball mean = mean_ball(c + at, size);
         if (in_one_place(c + at, size) || rule->fit(&mean, rule->context)) {
-            place(chosen, &taken, limit, &mean, p, rule);
+            place_ball(chosen, &taken, limit, &mean, p, rule);
         } else if (!rule->may_wait) {
             for (size_t m = 0; m < size; m++) {
-                place(chosen, &taken, limit, &c[at + m].ball, p, rule);
+                place_ball(chosen, &taken, limit, &c[at + m].ball, p, rule);
             }
         }
     }

@@ -25,12 +25,12 @@ static int is_peak(const float *field, size_t v, size_t sy, size_t sz)
     return 1;
 }
 
-typedef struct list {
+typedef struct peak_list {
     size_t *voxel;
     size_t count, capacity;
-} list;
+} peak_list;
 
-static int list_add(list *l, size_t voxel)
+static int list_add(peak_list *l, size_t voxel)
 {
     if (l->count == l->capacity) {
         size_t capacity = l->capacity ? 2 * l->capacity : 64;
@@ -45,7 +45,7 @@ static int list_add(list *l, size_t voxel)
     return 1;
 }
 
-static int find_in_plane(list *found, const float *field, const int n[3], const int lo[3], const int hi[3], int k)
+static int find_in_plane(peak_list *found, const float *field, const int n[3], const int lo[3], const int hi[3], int k)
 {
     const size_t sy = (size_t)n[0], sz = sy * (size_t)n[1];
     for (int j = lo[1]; j < hi[1]; j++) {
@@ -60,7 +60,7 @@ static int find_in_plane(list *found, const float *field, const int n[3], const 
 }
 
 /* Joins the planes' lists in order. */
-static ms_status join(size_t **voxel, size_t *count, list *plane, int planes, int complete, ms_error *err)
+static ms_status join_planes(size_t **voxel, size_t *count, peak_list *plane, int planes, int complete, ms_error *err)
 {
     size_t total = 0;
     for (int k = 0; k < planes; k++) {
@@ -88,7 +88,7 @@ ms_status ms_peaks_find(size_t **voxel, size_t *count, const float *field, const
         to[a] = hi[a] > n[a] - 1 ? n[a] - 1 : hi[a];
     }
     const int planes = to[2] > from[2] ? to[2] - from[2] : 0;
-    list *plane = calloc((size_t)planes + 1, sizeof *plane);
+    peak_list *plane = calloc((size_t)planes + 1, sizeof *plane);
     *voxel = NULL;
     *count = 0;
     if (!plane) {
@@ -98,7 +98,7 @@ ms_status ms_peaks_find(size_t **voxel, size_t *count, const float *field, const
     for (int k = 0; k < planes; k++) {
         complete &= find_in_plane(&plane[k], field, n, from, to, from[2] + k);
     }
-    return join(voxel, count, plane, planes, complete, err);
+    return join_planes(voxel, count, plane, planes, complete, err);
 }
 
 /* The field on the five voxels i*-2 .. i*+2 (eq. 11); e points to the middle. */

@@ -8,12 +8,12 @@ static const uint32_t LOW[3] = {0111111111, 0007007007, 0000000777};
 static const uint32_t HIGH[3] = {0444444444, 0700700700, 0777000000};
 static const int STRIDE[3] = {1, 3, 9};
 
-static uint32_t up(uint32_t set, int axis)
+static uint32_t shift_up(uint32_t set, int axis)
 {
     return (set & ~HIGH[axis]) << STRIDE[axis];
 }
 
-static uint32_t down(uint32_t set, int axis)
+static uint32_t shift_down(uint32_t set, int axis)
 {
     return (set & ~LOW[axis]) >> STRIDE[axis];
 }
@@ -22,7 +22,7 @@ static uint32_t down(uint32_t set, int axis)
 static uint32_t grow_26(uint32_t set)
 {
     for (int a = 0; a < 3; a++) {
-        set |= up(set, a) | down(set, a);
+        set |= shift_up(set, a) | shift_down(set, a);
     }
     return set;
 }
@@ -30,10 +30,11 @@ static uint32_t grow_26(uint32_t set)
 /* The set and what shares a face with it. */
 static uint32_t grow_6(uint32_t set)
 {
-    return set | up(set, 0) | down(set, 0) | up(set, 1) | down(set, 1) | up(set, 2) | down(set, 2);
+    return set | shift_up(set, 0) | shift_down(set, 0) | shift_up(set, 1) | shift_down(set, 1) | shift_up(set, 2) |
+           shift_down(set, 2);
 }
 
-static uint32_t lowest(uint32_t set)
+static uint32_t find_lowest(uint32_t set)
 {
     return set & -set;
 }
@@ -45,7 +46,7 @@ int ms_clique_is_simple(uint32_t object)
     if (!exposed || !others) {
         return 0;
     }
-    piece = lowest(exposed); /* theorem 1 (ii) */
+    piece = find_lowest(exposed); /* theorem 1 (ii) */
     do {
         before = piece;
         piece = grow_6(piece) & ground;
@@ -53,7 +54,7 @@ int ms_clique_is_simple(uint32_t object)
     if (exposed & ~piece) {
         return 0;
     }
-    piece = lowest(others); /* theorem 1 (i) */
+    piece = find_lowest(others); /* theorem 1 (i) */
     do {
         before = piece;
         piece = grow_26(piece) & others;
@@ -67,14 +68,14 @@ int ms_clique_is_simple(uint32_t object)
 static int pair_is_critical(uint32_t object, int axis)
 {
     const uint32_t layer = ALL & ~LOW[axis] & ~HIGH[axis];
-    return !ms_clique_is_simple((object | down(object, axis)) & layer);
+    return !ms_clique_is_simple((object | shift_down(object, axis)) & layer);
 }
 
 /* Around an edge: the voxels above it are all neighbours of one another, and so are those
  * below; none above touches one below. */
 static int edge_is_critical(uint32_t object, uint32_t around, int axis)
 {
-    return !(object & up(around, axis)) == !(object & down(around, axis));
+    return !(object & shift_up(around, axis)) == !(object & shift_down(around, axis));
 }
 
 /* A face (square, edge, corner) of the centre, by its direction from there. */
@@ -99,12 +100,12 @@ static int keeps_face(uint32_t object, uint32_t free, const direction d)
         if (d[a] == 0) {
             along = a;
         } else {
-            around |= d[a] > 0 ? up(around, a) : down(around, a);
+            around |= d[a] > 0 ? shift_up(around, a) : shift_down(around, a);
             across = a;
         }
     }
     const uint32_t clique = object & around;
-    if (lowest(clique) != CENTRE || (clique & ~free)) {
+    if (find_lowest(clique) != CENTRE || (clique & ~free)) {
         return 0;
     }
     for (int a = 0; a < 3; a++) { /* else a face of higher dimension is common to all */

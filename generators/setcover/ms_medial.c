@@ -11,18 +11,18 @@ static const double RISING = 0.9;
 enum { MAX_STEPS = 16, MAX_STRIDES = 100 };
 
 /* A place on the way: start + s u. */
-typedef struct place {
+typedef struct touching_place {
     double s;
     double centre[3], nearest[3];
     double radius; /* distance to the nearest point of the mesh */
     double slope;  /* of the radius along u */
-} place;
+} touching_place;
 
 /* Looks at start + s u, u pointing away from start.nearest, which is no farther from there than
  * start.radius + s: that bound spares most of the search. */
-static place look(const ms_closest *closest, const place *start, const double u[3], double s)
+static touching_place look_along(const ms_closest *closest, const touching_place *start, const double u[3], double s)
 {
-    place at = *start;
+    touching_place at = *start;
     at.s = s;
     for (int a = 0; a < 3; a++) {
         at.centre[a] = start->centre[a] + s * u[a];
@@ -37,8 +37,8 @@ static place look(const ms_closest *closest, const place *start, const double u[
 
 /* Where the radius ceases to rise, between a place where it does and one where it does not:
  * the lines through both meet there, if no third face is nearer. */
-static place find_ridge(place rising, place falling, const ms_closest *closest, const place *start, const double u[3],
-                        double tolerance)
+static touching_place find_ridge(touching_place rising, touching_place falling, const ms_closest *closest,
+                                 const touching_place *start, const double u[3], double tolerance)
 {
     for (int step = 0; step < MAX_STEPS && falling.s - rising.s > tolerance; step++) {
         const double s = (falling.radius - falling.slope * falling.s - rising.radius + rising.slope * rising.s) /
@@ -46,7 +46,7 @@ static place find_ridge(place rising, place falling, const ms_closest *closest, 
         if (!(s > rising.s && s < falling.s)) {
             break;
         }
-        const place at = look(closest, start, u, s);
+        const touching_place at = look_along(closest, start, u, s);
         if (rising.radius + rising.slope * (s - rising.s) - at.radius < tolerance) {
             return at;
         }
@@ -57,7 +57,7 @@ static place find_ridge(place rising, place falling, const ms_closest *closest, 
 
 double ms_medial_sphere(double centre[3], const ms_closest *closest, double stride, double tolerance)
 {
-    place here = {.slope = 1};
+    touching_place here = {.slope = 1};
     memcpy(here.centre, centre, sizeof here.centre);
     here.radius = ms_closest_distance(here.nearest, closest, centre, HUGE_VAL);
     for (int step = 0; step < MAX_STRIDES && here.radius > 0; step++, stride *= 2) {
@@ -68,7 +68,7 @@ double ms_medial_sphere(double centre[3], const ms_closest *closest, double stri
         here.s = 0;
         here.slope = 1;
         /* No stride leaves the sphere, so that none leaves the mesh. */
-        const place end = look(closest, &here, u, fmin(stride, here.radius));
+        const touching_place end = look_along(closest, &here, u, fmin(stride, here.radius));
         if (!(end.slope > RISING)) {
             here = find_ridge(here, end, closest, &here, u, tolerance);
             break;

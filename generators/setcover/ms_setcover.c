@@ -28,7 +28,7 @@ static const ms_option OPTIONS[] = {
     {0},
 };
 
-static double option(const ms_run *run, int which)
+static double setcover_option(const ms_run *run, int which)
 {
     return run->settings->value[which];
 }
@@ -87,12 +87,12 @@ static ms_status cover_greedily(ms_clump *clump, ms_stop_reason *reason, ms_cove
     return status;
 }
 
-static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
+static ms_status generate_by_setcover(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
 {
-    const ms_setcover_lattice lattice = {.deq = option(run, SKELETON_DEQ),
-                                         .centres = (ms_setcover_centres)option(run, CANDIDATES),
-                                         .kind = (ms_skeleton)option(run, SKELETON),
-                                         .align = option(run, ALIGN) != 0};
+    const ms_setcover_lattice lattice = {.deq = setcover_option(run, SKELETON_DEQ),
+                                         .centres = (ms_setcover_centres)setcover_option(run, CANDIDATES),
+                                         .kind = (ms_skeleton)setcover_option(run, SKELETON),
+                                         .align = setcover_option(run, ALIGN) != 0};
     ms_ball *candidate;
     ms_cover *cover = NULL;
     size_t count;
@@ -100,7 +100,8 @@ static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run 
     const size_t found = count;
     if (status == MS_OK) {
         drop_small(candidate, &count, run);
-        status = ms_cover_build(&cover, &run->target->grid, candidate, count, option(run, CONNECTED) != 0, err);
+        status =
+            ms_cover_build(&cover, &run->target->grid, candidate, count, setcover_option(run, CONNECTED) != 0, err);
     }
     if (status == MS_OK) {
         status = cover_greedily(clump, reason, cover, candidate, run, err);
@@ -119,5 +120,5 @@ const ms_generator ms_generator_setcover = {
     .source = "F.-L. Yuan, Granular Matter 21 (2019) 19",
     .nested = 1,
     .options = OPTIONS,
-    .generate = generate,
+    .generate = generate_by_setcover,
 };

@@ -66,8 +66,8 @@ static void to_target(double out[3], const ms_grid *skeleton, const frame *f, si
     ms_target_to_voxels(out, &unused, grid, p, 0);
 }
 
-static ms_status check_size(const double n[3], const ms_target *target, const ms_setcover_lattice *lattice,
-                            ms_error *err)
+static ms_status check_candidates(const double n[3], const ms_target *target, const ms_setcover_lattice *lattice,
+                                  ms_error *err)
 {
     const double voxels = n[0] * n[1] * n[2];
     if (voxels > ALWAYS_FINE && voxels > (double)ms_grid_voxels(&target->grid)) {
@@ -93,7 +93,7 @@ static ms_status grid_of_mesh(ms_grid *out, const ms_target *target, const frame
         to_frame(turned.vertex[v], f, target->mesh->vertex[v]);
     }
     ms_voxelize_extents(n, &turned, h);
-    ms_status status = check_size(n, target, lattice, err);
+    ms_status status = check_candidates(n, target, lattice, err);
     if (status == MS_OK) {
         status = ms_voxelize(out, &turned, h, MS_VOXEL_CENTRE, err);
     }
@@ -151,7 +151,7 @@ static ms_status grid_of_voxels(ms_grid *out, const ms_target *target, const fra
         extent[a] = floor((hi[a] - lo[a]) / h + 1e-9) + 1 + 2 * MS_GRID_HULL;
         origin[a] = lo[a] - MS_GRID_HULL * h;
     }
-    ms_status status = check_size(extent, target, lattice, err);
+    ms_status status = check_candidates(extent, target, lattice, err);
     for (int a = 0; a < 3; a++) {
         n[a] = (int)fmin(extent[a], MS_GRID_MAX_EXTENT + 1); /* ms_grid_alloc refuses it */
     }
@@ -182,7 +182,7 @@ static double fit_to_mesh(double centre[3], const ms_closest *closest, double st
 }
 
 /* The inscribed sphere of a candidate; a centre among voxels moves onto the nearest one. */
-static void fit(ms_ball *ball, const ms_target *target, double step, int move)
+static void fit_candidate(ms_ball *ball, const ms_target *target, double step, int move)
 {
     const ms_grid *grid = &target->grid;
     if (is_by_mesh(target)) {
@@ -221,7 +221,7 @@ static void fit_all(ms_ball *ball, size_t *count, const ms_target *target, doubl
     size_t kept = 0;
 #pragma omp parallel for schedule(dynamic, 64)
     for (ptrdiff_t b = 0; b < all; b++) {
-        fit(&ball[b], target, step, move);
+        fit_candidate(&ball[b], target, step, move);
     }
     for (size_t b = 0; b < *count; b++) {
         if (ball[b].radius > 0) {
@@ -232,7 +232,7 @@ static void fit_all(ms_ball *ball, size_t *count, const ms_target *target, doubl
 }
 
 /* Thins the voxels; keeps those on the border, too, if asked for. */
-static ms_status thin(ms_grid *skeleton, ms_skeleton kind, int and_border, ms_error *err)
+static ms_status thin_shape(ms_grid *skeleton, ms_skeleton kind, int and_border, ms_error *err)
 {
     const ptrdiff_t row = skeleton->n[0], plane = row * skeleton->n[1];
     const size_t voxels = ms_grid_voxels(skeleton);
@@ -253,7 +253,7 @@ static ms_status thin(ms_grid *skeleton, ms_skeleton kind, int and_border, ms_er
 }
 
 /* The step of the skeleton's lattice, in the shape's unit. */
-static double choose_step(const ms_target *target, const ms_setcover_lattice *lattice)
+static double choose_spacing(const ms_target *target, const ms_setcover_lattice *lattice)
 {
     const double h = target->grid.h, wanted = 2 * ms_target_equivalent_radius(target) / lattice->deq;
     if (is_by_mesh(target)) {
@@ -265,7 +265,7 @@ static double choose_step(const ms_target *target, const ms_setcover_lattice *la
 ms_status ms_setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target,
                                  const ms_setcover_lattice *lattice, ms_error *err)
 {
-    const double step = choose_step(target, lattice);
+    const double step = choose_spacing(target, lattice);
     const int medial =
         is_by_mesh(target) && lattice->kind == MS_SKELETON_SURFACE && lattice->centres == SETCOVER_MEDIAL;
     ms_grid skeleton = {0};
@@ -278,7 +278,7 @@ ms_status ms_setcover_candidates(ms_ball **ball, size_t *count, const ms_target 
                                     : grid_of_voxels(&skeleton, target, &f, step, lattice, err);
     }
     if (status == MS_OK && lattice->centres != SETCOVER_ALL) {
-        status = thin(&skeleton, lattice->kind, medial, err);
+        status = thin_shape(&skeleton, lattice->kind, medial, err);
     }
     if (status == MS_OK) {
         status = list_centres(ball, count, &skeleton, &f, &target->grid, err);

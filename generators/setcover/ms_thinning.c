@@ -18,10 +18,10 @@ enum {
     QUEUED = 4 /* in the next layer */
 };
 
-typedef struct list {
+typedef struct voxel_list {
     size_t *voxel;
     size_t count, room;
-} list;
+} voxel_list;
 
 typedef struct thinning {
     uint8_t *inside; /* X */
@@ -30,14 +30,14 @@ typedef struct thinning {
     ptrdiff_t row[9];  /* where the rows of a neighbourhood begin, seen from its centre */
     ptrdiff_t face[6]; /* the neighbours at the faces */
     ms_skeleton kind;
-    list layer; /* voxels whose fate may have changed; none of them an END */
-    list next;
+    voxel_list layer; /* voxels whose fate may have changed; none of them an END */
+    voxel_list next;
     size_t room;      /* of what follows */
     uint32_t *object; /* neighbourhood of each voxel of the layer */
     uint8_t *keep;    /* chosen to stay, by a critical clique of the rank at hand */
 } thinning;
 
-static ms_status push(list *l, size_t voxel, ms_error *err)
+static ms_status push_voxel(voxel_list *l, size_t voxel, ms_error *err)
 {
     if (l->count == l->room) {
         const size_t room = 2 * l->room + 4096;
@@ -53,7 +53,7 @@ static ms_status push(list *l, size_t voxel, ms_error *err)
 }
 
 /* The neighbourhood of a voxel as a word (ms_clique.h): where `flag` is set. */
-static uint32_t neighbourhood(const thinning *t, const uint8_t *field, size_t voxel, unsigned flag)
+static uint32_t read_neighbourhood(const thinning *t, const uint8_t *field, size_t voxel, unsigned flag)
 {
     uint32_t word = 0;
     for (int r = 8; r >= 0; r--) {
@@ -79,7 +79,7 @@ static int is_interior(const thinning *t, size_t voxel)
 static int is_end(const thinning *t, size_t voxel)
 {
     if (t->kind == MS_SKELETON_CURVE) {
-        const uint32_t others = neighbourhood(t, t->inside, voxel, 1) & ~(1u << MS_CLIQUE_CENTRE);
+        const uint32_t others = read_neighbourhood(t, t->inside, voxel, 1) & ~(1u << MS_CLIQUE_CENTRE);
         return others && !(others & (others - 1));
     }
     for (int f = 0; f < 6; f++) {
@@ -91,7 +91,7 @@ static int is_end(const thinning *t, size_t voxel)
     return 1;
 }
 
-static ms_status make_room(thinning *t, ms_error *err)
+static ms_status make_room_for_voxel(thinning *t, ms_error *err)
 {
     if (t->layer.count > t->room) {
         free(t->object);
@@ -114,7 +114,7 @@ static size_t find_simple(thinning *t)
 #pragma omp parallel for schedule(static)
     for (ptrdiff_t i = 0; i < count; i++) {
         const size_t voxel = t->layer.voxel[i];
-        t->object[i] = neighbourhood(t, t->inside, voxel, 1);
+        t->object[i] = read_neighbourhood(t, t->inside, voxel, 1);
         if (ms_clique_is_simple(t->object[i])) {
             t->state[voxel] |= FREE;
         }
@@ -136,8 +136,8 @@ static void keep_cliques(thinning *t, ptrdiff_t simple, int rank)
 #pragma omp parallel for schedule(static)
     for (ptrdiff_t i = 0; i < simple; i++) {
         const size_t voxel = t->layer.voxel[i];
-        t->keep[i] =
-            (t->state[voxel] & FREE) && ms_clique_keeps(t->object[i], neighbourhood(t, t->state, voxel, FREE), rank);
+        t->keep[i] = (t->state[voxel] & FREE) &&
+                     ms_clique_keeps(t->object[i], read_neighbourhood(t, t->state, voxel, FREE), rank);
     }
     for (ptrdiff_t i = 0; i < simple; i++) {
         if (t->keep[i]) {
@@ -147,13 +147,13 @@ static void keep_cliques(thinning *t, ptrdiff_t simple, int rank)
 }
 
 /* Puts a voxel into the next layer if it may ever be removed. */
-static ms_status queue(thinning *t, size_t voxel, ms_error *err)
+static ms_status queue_voxel(thinning *t, size_t voxel, ms_error *err)
 {
     if (!t->inside[voxel] || (t->state[voxel] & (END | QUEUED)) || is_interior(t, voxel)) {
         return MS_OK;
     }
     t->state[voxel] |= QUEUED;
-    return push(&t->next, voxel, err);
+    return push_voxel(&t->next, voxel, err);
 }
 
 /* Queues the neighbours of a removed voxel, which may have become simple. */
@@ -162,7 +162,7 @@ static ms_status queue_around(thinning *t, size_t removed, ms_error *err)
     ms_status status = MS_OK;
     for (int r = 0; r < 9; r++) {
         for (int x = 0; x < 3 && status == MS_OK; x++) {
-            status = queue(t, removed + t->row[r] + x, err);
+            status = queue_voxel(t, removed + t->row[r] + x, err);
         }
     }
     return status;
@@ -185,7 +185,7 @@ static ms_status remove_free(size_t *removed, thinning *t, size_t simple, ms_err
     t->next.count = 0;
     for (size_t i = 0; i < simple && status == MS_OK; i++) {
         const size_t voxel = t->layer.voxel[i];
-        status = t->inside[voxel] ? queue(t, voxel, err) : queue_around(t, voxel, err);
+        status = t->inside[voxel] ? queue_voxel(t, voxel, err) : queue_around(t, voxel, err);
     }
     return status;
 }
@@ -209,7 +209,7 @@ static void keep_ends(thinning *t)
         }
     }
     t->next.count = left;
-    const list swap = t->layer;
+    const voxel_list swap = t->layer;
     t->layer = t->next;
     t->next = swap;
 }
@@ -217,7 +217,7 @@ static void keep_ends(thinning *t)
 /* One pass of algorithm 1, lines 4 to 13. */
 static ms_status thin_layer(size_t *removed, thinning *t, ms_error *err)
 {
-    ms_status status = make_room(t, err);
+    ms_status status = make_room_for_voxel(t, err);
     if (status != MS_OK) {
         return status;
     }
@@ -232,13 +232,13 @@ static ms_status thin_layer(size_t *removed, thinning *t, ms_error *err)
     return status;
 }
 
-static int outermost(const int n[3], int i, int j, int k)
+static int is_outermost(const int n[3], int i, int j, int k)
 {
     return i == 0 || j == 0 || k == 0 || i == n[0] - 1 || j == n[1] - 1 || k == n[2] - 1;
 }
 
 /* All voxels on the border of the set. */
-static ms_status list_border(thinning *t, ms_error *err)
+static ms_status list_thinning_border(thinning *t, ms_error *err)
 {
     size_t voxel = 0;
     ms_status status = MS_OK;
@@ -248,13 +248,13 @@ static ms_status list_border(thinning *t, ms_error *err)
                 if (!t->inside[voxel]) {
                     continue;
                 }
-                if (outermost(t->n, i, j, k)) {
+                if (is_outermost(t->n, i, j, k)) {
                     return ms_fail(err, MS_ERR_ARG,
                                    "voxel %d,%d,%d on the rim of the grid is inside; thinning needs "
                                    "a layer of background around the shape",
                                    i, j, k);
                 }
-                status = is_interior(t, voxel) ? MS_OK : push(&t->layer, voxel, err);
+                status = is_interior(t, voxel) ? MS_OK : push_voxel(&t->layer, voxel, err);
             }
         }
     }
@@ -270,7 +270,7 @@ ms_status ms_thinning(uint8_t *inside, const int n[3], ms_skeleton kind, ms_erro
     }
     t.state = calloc((size_t)plane * (size_t)n[2], 1);
     ms_status status =
-        t.state ? list_border(&t, err)
+        t.state ? list_thinning_border(&t, err)
                 : ms_fail(err, MS_ERR_NOMEM, "no memory to thin %dx%dx%d voxels; use fewer cells", n[0], n[1], n[2]);
     size_t removed = 1;
     while (status == MS_OK && removed > 0 && t.layer.count > 0) {

@@ -20,11 +20,11 @@ enum { WORD = 64 };
 static const size_t MAX_RUNS = (size_t)1 << 24;
 
 /* A candidate and what it would cover. */
-typedef struct entry {
+typedef struct heap_entry {
     uint64_t gain;    /* exact when it was counted, an upper bound before and since */
     uint32_t index;   /* of the candidate */
     uint32_t counted; /* how many balls had been taken by then; NEVER */
-} entry;
+} heap_entry;
 
 /* What was left of a row of a ball, within one word. */
 typedef struct run {
@@ -50,7 +50,7 @@ struct ms_cover {
     run *found;       /* room for most_runs, and one */
     size_t most_runs; /* that are kept for a candidate */
     /* A heap, the best first, and behind it those that touch no ball taken so far (connected). */
-    entry *entry;
+    heap_entry *entry;
     size_t n_heap, n_entries;
 };
 
@@ -72,7 +72,7 @@ static int round_up(double value, int n)
 }
 
 /* One more than the largest whole number not above the value, from 0 to n. */
-static int beyond(double value, int n)
+static int round_above(double value, int n)
 {
     if (!(value >= 0)) {
         return 0;
@@ -101,7 +101,7 @@ static inline void keep_run(ms_cover *cover, size_t *n_found, run found)
 static inline size_t walk_slab(ms_cover *cover, size_t *n_found, const ms_ball *ball, int base, int take)
 {
     const double x = ball->centre[0], y = ball->centre[1], z = ball->centre[2], r = ball->radius;
-    const int planes = beyond(z + r, cover->n[2]), shift = base % WORD;
+    const int planes = round_above(z + r, cover->n[2]), shift = base % WORD;
     size_t sum = 0;
     for (int k = round_up(z - r, cover->n[2]); k < planes; k++) {
         const double dz = k - z, disc = r * r - dz * dz;
@@ -109,7 +109,7 @@ static inline size_t walk_slab(ms_cover *cover, size_t *n_found, const ms_ball *
             continue;
         }
         const double reach = sqrt(disc);
-        const int rows = beyond(y + reach, cover->n[1]);
+        const int rows = round_above(y + reach, cover->n[1]);
         int j = round_up(y - reach, cover->n[1]);
         size_t word = cover->words * ((size_t)j + (size_t)cover->n[1] * (size_t)k) + (size_t)(base / WORD);
         for (; j < rows; j++, word += cover->words) {
@@ -121,7 +121,7 @@ static inline size_t walk_slab(ms_cover *cover, size_t *n_found, const ms_ball *
             }
             const double chord = sqrt(rest);
             const uint64_t bits =
-                window & run_mask(round_up(x - chord, cover->n[0]) - base, beyond(x + chord, cover->n[0]) - base);
+                window & run_mask(round_up(x - chord, cover->n[0]) - base, round_above(x + chord, cover->n[0]) - base);
             const run low = {word, bits << shift}, high = {word + 1, bits >> 1 >> (WORD - 1 - shift)};
             if (take) {
                 left[0] &= ~low.bits;
@@ -136,10 +136,10 @@ static inline size_t walk_slab(ms_cover *cover, size_t *n_found, const ms_ball *
     return sum;
 }
 
-static inline size_t walk(ms_cover *cover, size_t *n_found, const ms_ball *ball, int take)
+static inline size_t walk_ball(ms_cover *cover, size_t *n_found, const ms_ball *ball, int take)
 {
     const double x = ball->centre[0], r = ball->radius;
-    const int end = beyond(x + r, cover->n[0]);
+    const int end = round_above(x + r, cover->n[0]);
     size_t sum = 0;
     for (int base = round_up(x - r, cover->n[0]); base < end; base += WORD) {
         sum += walk_slab(cover, n_found, ball, base, take);
@@ -169,7 +169,7 @@ static size_t count_left(ms_cover *cover, uint32_t index)
         return walk_runs(cover, part);
     }
     size_t n = 0;
-    const size_t sum = walk(cover, &n, &cover->candidate[index], 0);
+    const size_t sum = walk_ball(cover, &n, &cover->candidate[index], 0);
     if (n <= cover->most_runs && (part->run = malloc((n + 1) * sizeof *part->run))) {
         memcpy(part->run, cover->found, n * sizeof *part->run);
         part->n = n;
@@ -183,7 +183,7 @@ static void cover_ball(ms_cover *cover, uint32_t index)
     remains *part = &cover->remains[index];
     size_t none = 0;
     if (!part->run) {
-        walk(cover, &none, &cover->candidate[index], 1);
+        walk_ball(cover, &none, &cover->candidate[index], 1);
     }
     for (size_t m = 0; m < part->n; m++) {
         cover->left[part->run[m].word] &= ~part->run[m].bits;
@@ -191,7 +191,7 @@ static void cover_ball(ms_cover *cover, uint32_t index)
 }
 
 /* Is a the better one? No two candidates are equal. */
-static int before(const ms_cover *cover, const entry *a, const entry *b)
+static int is_before(const ms_cover *cover, const heap_entry *a, const heap_entry *b)
 {
     if (a->gain != b->gain) {
         return a->gain > b->gain;
@@ -202,13 +202,13 @@ static int before(const ms_cover *cover, const entry *a, const entry *b)
 
 static void sift_down(ms_cover *cover, size_t at)
 {
-    const entry moved = cover->entry[at];
+    const heap_entry moved = cover->entry[at];
     size_t child;
     while ((child = 2 * at + 1) < cover->n_heap) {
-        if (child + 1 < cover->n_heap && before(cover, &cover->entry[child + 1], &cover->entry[child])) {
+        if (child + 1 < cover->n_heap && is_before(cover, &cover->entry[child + 1], &cover->entry[child])) {
             child++;
         }
-        if (!before(cover, &cover->entry[child], &moved)) {
+        if (!is_before(cover, &cover->entry[child], &moved)) {
             break;
         }
         cover->entry[at] = cover->entry[child];
@@ -219,8 +219,8 @@ static void sift_down(ms_cover *cover, size_t at)
 
 static void sift_up(ms_cover *cover, size_t at)
 {
-    const entry moved = cover->entry[at];
-    while (at > 0 && before(cover, &moved, &cover->entry[(at - 1) / 2])) {
+    const heap_entry moved = cover->entry[at];
+    while (at > 0 && is_before(cover, &moved, &cover->entry[(at - 1) / 2])) {
         cover->entry[at] = cover->entry[(at - 1) / 2];
         at = (at - 1) / 2;
     }
@@ -240,18 +240,18 @@ static void drop_first(ms_cover *cover)
     }
 }
 
-static int overlap(const ms_ball *a, const ms_ball *b)
+static int do_overlap(const ms_ball *a, const ms_ball *b)
 {
     const double reach = a->radius + b->radius;
     return ms_squared_distance(a->centre, b->centre) < reach * reach;
 }
 
 /* Those that wait and overlap the ball enter the heap. */
-static void admit(ms_cover *cover, const ms_ball *ball)
+static void admit_overlapping(ms_cover *cover, const ms_ball *ball)
 {
     for (size_t e = cover->n_heap; e < cover->n_entries; e++) {
-        if (overlap(&cover->candidate[cover->entry[e].index], ball)) {
-            const entry swap = cover->entry[e];
+        if (do_overlap(&cover->candidate[cover->entry[e].index], ball)) {
+            const heap_entry swap = cover->entry[e];
             cover->entry[e] = cover->entry[cover->n_heap];
             cover->entry[cover->n_heap] = swap;
             sift_up(cover, cover->n_heap++);
@@ -270,14 +270,14 @@ static void take_first(ms_cover *cover)
         if (cover->n_taken == 1) {
             cover->n_heap = 0;
         }
-        admit(cover, ball);
+        admit_overlapping(cover, ball);
     }
 }
 
 size_t ms_cover_next(size_t *which, ms_cover *cover)
 {
     while (cover->n_heap > 0) {
-        entry *first = &cover->entry[0];
+        heap_entry *first = &cover->entry[0];
         if (first->counted == cover->n_taken) {
             const size_t gain = first->gain;
             *which = first->index;
@@ -295,7 +295,7 @@ size_t ms_cover_next(size_t *which, ms_cover *cover)
     return 0;
 }
 
-static void fill(ms_cover *cover, const ms_grid *grid)
+static void fill_left(ms_cover *cover, const ms_grid *grid)
 {
     const ptrdiff_t rows = (ptrdiff_t)grid->n[1] * grid->n[2];
 #pragma omp parallel for schedule(static)
@@ -317,7 +317,7 @@ static void rank_all(ms_cover *cover, size_t count)
         if (r > 0) {
             const double most = 4.2 * pow(r + 0.87, 3);
             cover->entry[cover->n_entries++] =
-                (entry){.gain = (uint64_t)fmin(most, 1e18) + 1, .index = (uint32_t)c, .counted = NEVER};
+                (heap_entry){.gain = (uint64_t)fmin(most, 1e18) + 1, .index = (uint32_t)c, .counted = NEVER};
         }
     }
     cover->n_heap = cover->n_entries;
@@ -357,7 +357,7 @@ ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *can
         return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres on %zu voxels; use fewer cells", count,
                        ms_grid_voxels(grid));
     }
-    fill(cover, grid);
+    fill_left(cover, grid);
     rank_all(cover, count);
     *out = cover;
     return MS_OK;

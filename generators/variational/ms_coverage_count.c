@@ -71,7 +71,7 @@ void ms_coverage_count_close(ms_coverage_count *o)
 }
 
 /* Of the sphere's voxels that so many spheres cover: those inside less those outside. */
-static inline int64_t balance(const ms_coverage_count *o, const ms_ball *ball, uint16_t covered)
+static inline int64_t count_balance(const ms_coverage_count *o, const ms_ball *ball, uint16_t covered)
 {
     const ms_grid *grid = o->grid;
     int planes[2], rows[2], run[2];
@@ -98,15 +98,15 @@ static inline int64_t balance(const ms_coverage_count *o, const ms_ball *ball, u
 
 int64_t ms_coverage_count_loss(const ms_coverage_count *o, const ms_ball *ball)
 {
-    return balance(o, ball, 1);
+    return count_balance(o, ball, 1);
 }
 
 int64_t ms_coverage_count_gain(const ms_coverage_count *o, const ms_ball *ball)
 {
-    return balance(o, ball, 0);
+    return count_balance(o, ball, 0);
 }
 
-static void change(ms_coverage_count *o, const ms_ball *ball, int by)
+static void change_counts(ms_coverage_count *o, const ms_ball *ball, int by)
 {
     int planes[2], rows[2], run[2];
     span_of(planes, ball, o->grid, 2);
@@ -126,13 +126,13 @@ static void change(ms_coverage_count *o, const ms_ball *ball, int by)
 void ms_coverage_count_add(ms_coverage_count *o, const ms_ball *ball)
 {
     o->mismatch -= ms_coverage_count_gain(o, ball);
-    change(o, ball, 1);
+    change_counts(o, ball, 1);
 }
 
 void ms_coverage_count_remove(ms_coverage_count *o, const ms_ball *ball)
 {
     o->mismatch += ms_coverage_count_loss(o, ball);
-    change(o, ball, -1);
+    change_counts(o, ball, -1);
 }
 
 void ms_coverage_count_clear(ms_grid *grid, const ms_ball *ball, size_t count)

@@ -36,8 +36,8 @@ static int try_move(ms_ball *out, const ms_ball *ball, int which, double step, c
 }
 
 /* Adds a sphere and its images, or takes them away; returns by how much the mismatch shrinks. */
-static int64_t change(ms_coverage_count *o, const ms_ball *ball, const ms_mirror *m,
-                      void (*by)(ms_coverage_count *, const ms_ball *))
+static int64_t change_images(ms_coverage_count *o, const ms_ball *ball, const ms_mirror *m,
+                             void (*by)(ms_coverage_count *, const ms_ball *))
 {
     ms_ball image[8];
     const int64_t before = o->mismatch;
@@ -54,8 +54,8 @@ static int64_t gain_of(ms_coverage_count *o, const ms_ball *ball, const ms_mirro
     if (ms_mirror_images(m, ball) == 1) {
         return ms_coverage_count_gain(o, ball);
     }
-    const int64_t gain = change(o, ball, m, ms_coverage_count_add);
-    change(o, ball, m, ms_coverage_count_remove);
+    const int64_t gain = change_images(o, ball, m, ms_coverage_count_add);
+    change_images(o, ball, m, ms_coverage_count_remove);
     return gain;
 }
 
@@ -63,7 +63,7 @@ static int64_t gain_of(ms_coverage_count *o, const ms_ball *ball, const ms_mirro
 static int move_one(ms_ball *ball, ms_coverage_count *o, double step, const ms_surface_fit *fit)
 {
     ms_ball best = *ball, tried;
-    const int64_t before = -change(o, ball, &fit->mirror, ms_coverage_count_remove);
+    const int64_t before = -change_images(o, ball, &fit->mirror, ms_coverage_count_remove);
     int64_t most = before;
     for (int which = 0; which < 8; which++) {
         const int64_t gain = try_move(&tried, ball, which, step, fit) ? gain_of(o, &tried, &fit->mirror) : before;
@@ -73,7 +73,7 @@ static int move_one(ms_ball *ball, ms_coverage_count *o, double step, const ms_s
         }
     }
     *ball = best;
-    change(o, ball, &fit->mirror, ms_coverage_count_add);
+    change_images(o, ball, &fit->mirror, ms_coverage_count_add);
     return most > before;
 }
 

@@ -86,7 +86,7 @@ static void move_nearest_onto_plane(ms_ball *ball, size_t count, const ms_mirror
     }
 }
 
-static int do_overlap(const ms_ball *a, const ms_ball *b)
+static int do_dropped_overlap(const ms_ball *a, const ms_ball *b)
 {
     const double reach = a->radius + b->radius;
     return ms_squared_distance(a->centre, b->centre) < reach * reach;
@@ -100,7 +100,7 @@ static size_t find_cheapest(const ms_ball *ball, size_t count, const int64_t *lo
     for (size_t b = 0; b < count; b++) {
         int passed = (best != SIZE_MAX && loss[b] >= loss[best]) || ms_mirror_images(m, &ball[b]) > images;
         for (size_t d = 0; d < n_dropped && !passed; d++) {
-            passed = do_overlap(&ball[b], &dropped[d]);
+            passed = do_dropped_overlap(&ball[b], &dropped[d]);
         }
         if (!passed) {
             best = b;

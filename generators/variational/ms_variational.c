@@ -58,7 +58,8 @@ static ms_status to_clump(ms_clump *clump, const ms_ball *ball, size_t count, co
 }
 
 /* Why the spheres are enough; MS_STOP_NOT if more are needed. */
-static ms_status judge(ms_stop_reason *reason, const ms_clump *clump, size_t asked, const ms_run *run, ms_error *err)
+static ms_status judge_clump(ms_stop_reason *reason, const ms_clump *clump, size_t asked, const ms_run *run,
+                             ms_error *err)
 {
     const ms_target *target = run->target;
     const size_t n = clump->n_spheres;
@@ -112,13 +113,13 @@ static ms_status generate_for(void *context, ms_clump *clump, ms_stop_reason *re
         status = to_clump(clump, ball, count, run, err);
     }
     if (status == MS_OK) {
-        status = judge(reason, clump, n, run, err);
+        status = judge_clump(reason, clump, n, run, err);
     }
     free(ball);
     return status;
 }
 
-static ms_status generate(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
+static ms_status generate_by_variational(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
 {
     if (run->settings->n_planes > 0 && run->settings->value[SYMMETRY] != 0) {
         return ms_fail(err, MS_ERR_ARG, "give either planes or a symmetry: a mirror image might cross a plane");
@@ -135,5 +136,5 @@ const ms_generator ms_generator_variational = {
     .source = "mskit (2026); objective: Buchele et al., MSS eq. 2",
     .nested = 0,
     .options = OPTIONS,
-    .generate = generate,
+    .generate = generate_by_variational,
 };

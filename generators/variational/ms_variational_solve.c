@@ -234,7 +234,7 @@ static ms_status append_cover(solver *s, ms_coarse_view *left, size_t most, ms_e
 }
 
 /* Adds up to `most` spheres where the union leaves most. */
-static ms_status add_spheres(solver *s, size_t most, ms_error *err)
+static ms_status add_to_cover(solver *s, size_t most, ms_error *err)
 {
     ms_coarse_view left = {0};
     ms_status status = make_view(&left, s, s->coarse.step, err);
@@ -289,7 +289,7 @@ static ms_status start_from_given(solver *s, const ms_clump *given, ms_error *er
         }
     }
     const size_t all = count_with_images(s);
-    return status == MS_OK && all < s->wanted ? add_spheres(s, s->wanted - all, err) : status;
+    return status == MS_OK && all < s->wanted ? add_to_cover(s, s->wanted - all, err) : status;
 }
 
 static ms_status begin_solver(solver *s, const ms_run *run, const ms_variational_settings *settings, size_t n,
@@ -338,7 +338,7 @@ static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
         kept ? count_mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     if (status == MS_OK) {
         memcpy(kept, s->ball, count * sizeof *kept);
-        status = add_spheres(s, more, err);
+        status = add_to_cover(s, more, err);
     }
     if (status == MS_OK) {
         status = fit_spheres(s, DROP_STEPS, 0.8, 0.3, err);

@@ -8,7 +8,7 @@
 #include "ms_version.h"
 
 /* Reads n numbers; returns 0 if the value is no list that begins with as many. */
-static int take_numbers(double *out, size_t n, const json_t *list)
+static int take_number_list(double *out, size_t n, const json_t *list)
 {
     if (json_array_size(list) < n) {
         return 0;
@@ -34,9 +34,9 @@ static ms_status take_particle(ms_particle *particle, const json_t *json, const 
     ms_particle p = {0};
     const json_t *rows = json_object_get(json, "inertia");
     int whole = take_number(&p.scale, json, "scale") && take_number(&p.density, json, "density") &&
-                take_number(&p.mass, json, "mass") && take_numbers(p.centre, 3, json_object_get(json, "centre"));
+                take_number(&p.mass, json, "mass") && take_number_list(p.centre, 3, json_object_get(json, "centre"));
     for (size_t k = 0; k < 3; k++) {
-        whole = whole && take_numbers(p.inertia[k], 3, json_array_get(rows, k)) && p.inertia[k][k] > 0;
+        whole = whole && take_number_list(p.inertia[k], 3, json_array_get(rows, k)) && p.inertia[k][k] > 0;
     }
     if (!whole || !(p.scale > 0) || !(p.mass > 0) || !(p.density >= 0)) {
         memset(particle, 0, sizeof *particle);
@@ -71,14 +71,14 @@ static ms_status take_spheres(ms_clump *clump, const json_t *root, const char *n
     double v[5];
     ms_status status = n ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "%s: holds no list 'spheres'", name);
     for (size_t s = 0; s < n && status == MS_OK; s++) {
-        status = take_numbers(v, columns, json_array_get(list, s))
+        status = take_number_list(v, columns, json_array_get(list, s))
                      ? ms_fields_add_sphere(clump, v, name, err)
                      : ms_fail(err, MS_ERR_FORMAT, "%s: sphere %zu is no list of %zu numbers", name, s + 1, columns);
     }
     if (status == MS_OK && columns == 5) {
         status = ms_clump_alloc_masses(clump, err);
         for (size_t s = 0; s < n && status == MS_OK; s++) {
-            take_numbers(v, 5, json_array_get(list, s));
+            take_number_list(v, 5, json_array_get(list, s));
             clump->mass[s] = v[4];
         }
     }

@@ -4,7 +4,7 @@
 #include "ms_fields.h"
 #include "ms_formats.h"
 
-static double equivalent_diameter(const ms_particle *particle)
+static double find_equivalent_diameter(const ms_particle *particle)
 {
     return cbrt(6 * particle->mass / (particle->density * acos(-1.0)));
 }
@@ -17,7 +17,8 @@ ms_status ms_kratos_write(FILE *stream, const ms_content *content, ms_error *err
     fprintf(stream, "Name\n%s\n\nBegin centers_and_radii\n", content->name);
     ms_fields_spheres(stream, content->clump, " ", "\n");
     fprintf(stream, "End centers_and_radii\n\nParticle_center_and_diameter\n0 0 0 %s\n\nSize\n%s\n\nVolume\n%s\n\n",
-            ms_text_of_number(equivalent_diameter(p)).text, size.text, ms_text_of_number(p->mass / p->density).text);
+            ms_text_of_number(find_equivalent_diameter(p)).text, size.text,
+            ms_text_of_number(p->mass / p->density).text);
     fputs("Inertia per unit mass\n", stream);
     ms_fields_moments(stream, p, p->mass, "\n");
     fputc('\n', stream);

@@ -22,7 +22,7 @@ static int is_between(char c)
  * Returns what is wrong with its first four columns, NULL if nothing is: an empty one, or the
  * decimal commas of many a spreadsheet, would shift the numbers without notice.
  */
-static const char *separate(char *at, const char *end)
+static const char *separate_columns(char *at, const char *end)
 {
     const char *flaw = NULL;
     char kind = ' '; /* the mark between the first two columns; blank where there is none */
@@ -56,7 +56,7 @@ static const char *separate_line(ms_bytes *bytes, const ms_text *text)
     const size_t left = (size_t)(text->end - text->at);
     const char *newline = memchr(start, '\n', left), *end = newline ? newline : start + left;
     const char *comment = memchr(start, '#', (size_t)(end - start));
-    return separate(start, comment ? comment : end);
+    return separate_columns(start, comment ? comment : end);
 }
 
 /* Old files end their lines by a carriage return alone. */
@@ -157,7 +157,7 @@ static ms_status read_sphere(ms_clump *clump, masses *m, ms_text *text, ms_error
     return status == MS_OK && m->wanted ? add_mass(m, clump, v[4], err) : status;
 }
 
-static ms_status parse(ms_clump *clump, masses *m, ms_bytes *bytes, const char *name, ms_error *err)
+static ms_status parse_spheres(ms_clump *clump, masses *m, ms_bytes *bytes, const char *name, ms_error *err)
 {
     ms_text text;
     int header_allowed = 1;
@@ -199,7 +199,7 @@ ms_status ms_xyzr_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, 
 {
     masses m = {0};
     (void)particle;
-    const ms_status status = parse(clump, &m, bytes, name, err);
+    const ms_status status = parse_spheres(clump, &m, bytes, name, err);
     clump->mass = m.value;
     return status;
 }

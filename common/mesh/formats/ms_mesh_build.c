@@ -8,7 +8,8 @@
 #define MAX_TRIANGLES (UINT64_C(1) << 31)
 #define MAX_VERTICES ((uint64_t)UINT32_MAX)
 
-static ms_status grow(void **array, size_t *room, size_t wanted, size_t item_size, const char *name, ms_error *err)
+static ms_status grow_array(void **array, size_t *room, size_t wanted, size_t item_size, const char *name,
+                            ms_error *err)
 {
     if (wanted <= *room) {
         return MS_OK;
@@ -29,7 +30,8 @@ static ms_status grow_vertices(ms_mesh_builder *builder, size_t wanted, ms_error
         return ms_fail(err, MS_ERR_LIMIT, "%s: has more than %llu vertices; make the mesh coarser", builder->name,
                        (unsigned long long)MAX_VERTICES);
     }
-    ms_status status = grow(&array, &builder->vertex_room, wanted, sizeof *builder->mesh.vertex, builder->name, err);
+    ms_status status =
+        grow_array(&array, &builder->vertex_room, wanted, sizeof *builder->mesh.vertex, builder->name, err);
     builder->mesh.vertex = array;
     return status;
 }
@@ -42,7 +44,7 @@ static ms_status grow_triangles(ms_mesh_builder *builder, size_t wanted, ms_erro
                        (unsigned long long)MAX_TRIANGLES);
     }
     ms_status status =
-        grow(&array, &builder->triangle_room, wanted, sizeof *builder->mesh.triangle, builder->name, err);
+        grow_array(&array, &builder->triangle_room, wanted, sizeof *builder->mesh.triangle, builder->name, err);
     builder->mesh.triangle = array;
     return status;
 }
@@ -218,7 +220,7 @@ static void weld_vertices(ms_mesh *mesh, uint32_t *new_index, uint32_t *table, s
     }
 }
 
-static ms_status weld(ms_mesh *mesh, const char *name, ms_error *err)
+static ms_status weld_mesh(ms_mesh *mesh, const char *name, ms_error *err)
 {
     ms_status status = MS_OK;
     size_t slots = 64;
@@ -244,7 +246,7 @@ cleanup:
 }
 
 /* Gives back what the arrays have too much; a failure to do so loses nothing. */
-static void trim(ms_mesh *mesh)
+static void trim_arrays(ms_mesh *mesh)
 {
     void *vertex = realloc(mesh->vertex, mesh->n_vertices * sizeof *mesh->vertex);
     void *triangle = realloc(mesh->triangle, mesh->n_triangles * sizeof *mesh->triangle);
@@ -259,12 +261,12 @@ ms_status ms_mesh_build_finish(ms_mesh *mesh, ms_mesh_builder *builder, ms_statu
         status = check_mesh(builder, err);
     }
     if (!status) {
-        status = weld(&builder->mesh, builder->name, err);
+        status = weld_mesh(&builder->mesh, builder->name, err);
     }
     if (status) {
         ms_mesh_free(&builder->mesh);
     } else {
-        trim(&builder->mesh);
+        trim_arrays(&builder->mesh);
         *mesh = builder->mesh;
     }
     *builder = (ms_mesh_builder){0};

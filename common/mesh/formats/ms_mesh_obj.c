@@ -5,7 +5,7 @@
 #include "ms_mesh_formats.h"
 
 /* x y z, then nothing, a weight, a colour, or a colour with opacity. */
-static ms_status parse_vertex(ms_mesh_builder *builder, ms_text *text, ms_error *err)
+static ms_status parse_obj_vertex(ms_mesh_builder *builder, ms_text *text, ms_error *err)
 {
     double numbers[3];
     size_t place = text->line;
@@ -49,7 +49,7 @@ static int split_corner(int64_t *vertex, const ms_word *word)
     return 0;
 }
 
-static ms_status parse_face(ms_mesh_builder *builder, ms_text *text, ms_error *err)
+static ms_status parse_obj_face(ms_mesh_builder *builder, ms_text *text, ms_error *err)
 {
     ms_status status = MS_OK;
     ms_word word;
@@ -97,9 +97,9 @@ ms_status ms_mesh_parse_obj(ms_mesh *mesh, const ms_bytes *bytes, const char *na
     while (!status && ms_text_seek(&text)) {
         ms_text_word(&keyword, &text);
         if (ms_text_word_is(&keyword, "v")) {
-            status = parse_vertex(&builder, &text, err);
+            status = parse_obj_vertex(&builder, &text, err);
         } else if (ms_text_word_is(&keyword, "f") || ms_text_word_is(&keyword, "fo")) {
-            status = parse_face(&builder, &text, err);
+            status = parse_obj_face(&builder, &text, err);
         } else {
             status = pass_over(&keyword, &text, err);
         }

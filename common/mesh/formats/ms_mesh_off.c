@@ -83,7 +83,7 @@ static ms_status pass_over_numbers(ms_text *text, ms_error *err)
     return MS_OK;
 }
 
-static ms_status parse_vertex(ms_mesh_builder *builder, int extras, ms_text *text, ms_error *err)
+static ms_status parse_off_vertex(ms_mesh_builder *builder, int extras, ms_text *text, ms_error *err)
 {
     double position[3];
     size_t place = text->line;
@@ -94,7 +94,7 @@ static ms_status parse_vertex(ms_mesh_builder *builder, int extras, ms_text *tex
     return status ? status : ms_mesh_build_vertex(builder, position, place, err);
 }
 
-static ms_status parse_face(ms_mesh_builder *builder, ms_text *text, ms_error *err)
+static ms_status parse_off_face(ms_mesh_builder *builder, ms_text *text, ms_error *err)
 {
     int64_t n_corners = 0;
     ms_status status = parse_count(&n_corners, "the number of corners", text, err);
@@ -122,7 +122,7 @@ static ms_status parse_body(ms_mesh_builder *builder, int extras, ms_text *text,
             return ms_text_fail(err, text, "the file ends after %zu of %zu %s", i < n_vertices ? i : i - n_vertices,
                                 i < n_vertices ? n_vertices : n_faces, i < n_vertices ? "vertices" : "faces");
         }
-        status = i < n_vertices ? parse_vertex(builder, extras, text, err) : parse_face(builder, text, err);
+        status = i < n_vertices ? parse_off_vertex(builder, extras, text, err) : parse_off_face(builder, text, err);
     }
     if (!status && ms_text_seek(text)) {
         return ms_text_fail(err, text, "more follows after the last of %zu faces", n_faces);

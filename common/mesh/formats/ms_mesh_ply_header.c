@@ -75,7 +75,7 @@ static ms_status parse_format(ms_ply_header *header, ms_text *text, ms_error *er
     return status ? status : ms_text_end_line(text, err);
 }
 
-static ms_status parse_element(ms_ply_header *header, ms_text *text, ms_error *err)
+static ms_status parse_element_line(ms_ply_header *header, ms_text *text, ms_error *err)
 {
     ms_word name;
     ms_word number;
@@ -178,7 +178,7 @@ static ms_status parse_lines(ms_ply_header *header, ms_text *text, ms_error *err
             has_format = 1;
             status = parse_format(header, text, err);
         } else if (ms_text_word_is(&word, "element")) {
-            status = parse_element(header, text, err);
+            status = parse_element_line(header, text, err);
         } else if (ms_text_word_is(&word, "property")) {
             status = parse_property(header, text, err);
         } else if (ms_text_word_is(&word, "comment") || ms_text_word_is(&word, "obj_info")) {

@@ -4,14 +4,14 @@
 
 #include "ms_mesh_formats.h"
 
-typedef struct format {
+typedef struct mesh_reader {
     const char *ending;
     ms_status (*parse)(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
-} format;
+} mesh_reader;
 
-static const format *find_format(const char *path)
+static const mesh_reader *find_mesh_reader(const char *path)
 {
-    static const format formats[] = {
+    static const mesh_reader formats[] = {
         {"stl", ms_mesh_parse_stl},
         {"obj", ms_mesh_parse_obj},
         {"ply", ms_mesh_parse_ply},
@@ -29,12 +29,12 @@ static const format *find_format(const char *path)
 
 int ms_mesh_read_is_mesh_path(const char *path)
 {
-    return find_format(path) != NULL;
+    return find_mesh_reader(path) != NULL;
 }
 
 ms_status ms_mesh_parse(ms_mesh *mesh, const ms_bytes *bytes, const char *path, ms_error *err)
 {
-    const format *found = find_format(path);
+    const mesh_reader *found = find_mesh_reader(path);
     *mesh = (ms_mesh){0};
     if (!found) {
         return ms_fail(err, MS_ERR_FORMAT,
@@ -50,7 +50,8 @@ ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err)
 {
     ms_bytes bytes = {0};
     *mesh = (ms_mesh){0};
-    ms_status status = find_format(path) ? ms_file_read(&bytes, path, err) : MS_OK; /* without one, parse says so */
+    ms_status status =
+        find_mesh_reader(path) ? ms_file_read(&bytes, path, err) : MS_OK; /* without one, parse says so */
     if (status == MS_OK) {
         status = ms_mesh_parse(mesh, &bytes, path, err);
     }

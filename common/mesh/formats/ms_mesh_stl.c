@@ -32,7 +32,7 @@ static ms_status add_facet(ms_mesh_builder *builder, size_t place, ms_error *err
     return status ? status : ms_mesh_build_face_end(builder, err);
 }
 
-static ms_status check_size(uint64_t size, uint32_t count, const char *name, ms_error *err)
+static ms_status check_stl_size(uint64_t size, uint32_t count, const char *name, ms_error *err)
 {
     uint64_t wanted = HEADER_SIZE + (uint64_t)count * RECORD_SIZE;
     if (size < wanted) {
@@ -54,11 +54,11 @@ static ms_status check_size(uint64_t size, uint32_t count, const char *name, ms_
     return MS_OK;
 }
 
-static ms_status parse_binary(ms_mesh_builder *builder, const ms_bytes *bytes, ms_error *err)
+static ms_status parse_binary_stl(ms_mesh_builder *builder, const ms_bytes *bytes, ms_error *err)
 {
     builder->place_word = "byte";
     uint32_t count = load_u32(bytes->data + HEADER_SIZE - 4);
-    ms_status status = check_size(bytes->size, count, builder->name, err);
+    ms_status status = check_stl_size(bytes->size, count, builder->name, err);
     if (!status) {
         status = ms_mesh_build_reserve(builder, 3 * (size_t)count, count, err);
     }
@@ -77,7 +77,7 @@ static ms_status parse_binary(ms_mesh_builder *builder, const ms_bytes *bytes, m
 }
 
 /* Over line ends to the next word, which must be the expected one. */
-static ms_status expect(ms_text *text, const char *expected, ms_error *err)
+static ms_status expect_word(ms_text *text, const char *expected, ms_error *err)
 {
     ms_word word;
     if (!ms_text_seek(text)) {
@@ -92,8 +92,8 @@ static ms_status expect(ms_text *text, const char *expected, ms_error *err)
 
 static ms_status expect_two(ms_text *text, const char *first, const char *second, ms_error *err)
 {
-    ms_status status = expect(text, first, err);
-    return status ? status : expect(text, second, err);
+    ms_status status = expect_word(text, first, err);
+    return status ? status : expect_word(text, second, err);
 }
 
 /* What stands between "facet" and "endfacet". */
@@ -101,7 +101,7 @@ static ms_status parse_facet(ms_mesh_builder *builder, ms_text *text, ms_error *
 {
     double numbers[3];
     size_t place = text->line;
-    ms_status status = expect(text, "normal", err);
+    ms_status status = expect_word(text, "normal", err);
     if (!status) {
         status = ms_text_doubles(numbers, 3, text, "a normal", err);
     }
@@ -109,7 +109,7 @@ static ms_status parse_facet(ms_mesh_builder *builder, ms_text *text, ms_error *
         status = expect_two(text, "outer", "loop", err);
     }
     for (int k = 0; k < 3 && !status; k++) {
-        status = expect(text, "vertex", err);
+        status = expect_word(text, "vertex", err);
         if (!status) {
             status = ms_text_doubles(numbers, 3, text, "a vertex", err);
         }
@@ -153,7 +153,7 @@ static ms_status parse_ascii(ms_mesh_builder *builder, ms_text *text, ms_error *
 {
     ms_status status = MS_OK;
     while (!status && ms_text_seek(text)) {
-        status = expect(text, "solid", err);
+        status = expect_word(text, "solid", err);
         if (!status) {
             status = parse_solid(builder, text, err);
         }
@@ -185,7 +185,7 @@ ms_status ms_mesh_parse_stl(ms_mesh *mesh, const ms_bytes *bytes, const char *na
     if (is_text) {
         status = parse_ascii(&builder, &text, err);
     } else if (has_header) {
-        status = parse_binary(&builder, bytes, err);
+        status = parse_binary_stl(&builder, bytes, err);
     } else {
         status = ms_fail(
             err, MS_ERR_FORMAT,

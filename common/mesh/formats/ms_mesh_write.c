@@ -140,14 +140,14 @@ static ms_status write_off(const ms_mesh *mesh, FILE *stream, ms_error *err)
     return good ? write_text(mesh, stream, "", "3 ", 0) : MS_ERR_IO;
 }
 
-typedef struct format {
+typedef struct mesh_writer {
     const char *ending;
     ms_status (*write)(const ms_mesh *mesh, FILE *stream, ms_error *err); /* MS_ERR_IO without a message */
-} format;
+} mesh_writer;
 
-static const format formats[] = {{"stl", write_stl}, {"obj", write_obj}, {"ply", write_ply}, {"off", write_off}};
+static const mesh_writer formats[] = {{"stl", write_stl}, {"obj", write_obj}, {"ply", write_ply}, {"off", write_off}};
 
-static const format *find_format(const char *path)
+static const mesh_writer *find_mesh_writer(const char *path)
 {
     char ending[16];
     ms_file_ending(ending, strcmp(path, "-") == 0 ? "-.off" : path);
@@ -161,7 +161,7 @@ static const format *find_format(const char *path)
 
 ms_status ms_mesh_write(const ms_mesh *mesh, const char *path, ms_error *err)
 {
-    const format *found = find_format(path);
+    const mesh_writer *found = find_mesh_writer(path);
     if (!found) {
         return ms_fail(err, MS_ERR_ARG, "%s: a mesh is written as .stl, .obj, .ply or .off; give one of these endings",
                        path);
