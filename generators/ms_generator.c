@@ -1,21 +1,6 @@
 #include "ms_generator.h"
 
-#include <stdio.h>
 #include <string.h>
-
-const ms_generator *ms_generator_find(const char *name, ms_error *err)
-{
-    char names[256] = "";
-    for (const ms_generator *const *g = ms_generators; *g; g++) {
-        if (strcmp((*g)->name, name) == 0) {
-            return *g;
-        }
-        const size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", (*g)->name);
-    }
-    ms_fail(err, MS_ERR_ARG, "there is no generator '%s'; choose from %s", name, names);
-    return NULL;
-}
 
 ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator, const ms_run *run,
                            ms_error *err)

@@ -56,6 +56,9 @@ ms_status ms_grid_enlarge(ms_grid *out, const ms_grid *grid, const double lo[3],
 /** Number of voxels inside the shape. Cost: one pass. */
 size_t ms_grid_count(const ms_grid *grid);
 
+/** Writes a grid as VTK structured points (binary), 1 inside, for ParaView. @return MS_OK; MS_ERR_IO */
+ms_status ms_grid_write(const ms_grid *grid, const char *path, ms_error *err);
+
 void ms_grid_free(ms_grid *grid);
 
 MS_C_END

@@ -214,7 +214,7 @@ static ms_status write_outputs(const arguments *a, const ms_input *input, const 
     const ms_content content = {.clump = &r->clump, .particle = particle, .record = record};
     ms_status status = ms_outputs_write(&a->outputs, &content, words, err);
     if (status == MS_OK && a->target_grid) {
-        status = ms_write_grid(&input->target.grid, a->target_grid, err);
+        status = ms_grid_write(&input->target.grid, a->target_grid, err);
         if (status == MS_OK) {
             say_written(words, a->target_grid);
         }

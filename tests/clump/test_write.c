@@ -240,7 +240,7 @@ static void expect_unwritable(const ms_clump *clump, const char *path)
     assert_int_equal(write_to(clump, path, ms_formats, NULL, &err), MS_ERR_IO);
     expect_message(&err, path);
     err.text[0] = '\0';
-    assert_int_equal(ms_write_grid(&grid, path, &err), MS_ERR_IO);
+    assert_int_equal(ms_grid_write(&grid, path, &err), MS_ERR_IO);
     expect_message(&err, path);
 }
 
@@ -280,7 +280,7 @@ static void a_grid_is_written_as_it_is(void **state)
     }
     make_folder(folder);
     snprintf(path, sizeof path, "%s/grid.vtk", folder);
-    assert_int_equal(ms_write_grid(&grid, path, NULL), MS_OK);
+    assert_int_equal(ms_grid_write(&grid, path, NULL), MS_OK);
     assert_int_equal(ms_file_read(&bytes, path, NULL), MS_OK);
     assert_non_null(strstr((char *)bytes.data, head));
     assert_memory_equal(bytes.data + bytes.size - 24, grid.inside, 24);

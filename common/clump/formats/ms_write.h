@@ -5,7 +5,6 @@
 #include <stdio.h>
 
 #include "clump/ms_template.h"
-#include "voxel/ms_grid.h"
 
 MS_C_BEGIN
 
@@ -69,9 +68,6 @@ int ms_write_format_is_folder(const ms_format *format);
  *         MS_ERR_NOMEM
  */
 ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err);
-
-/** Writes a grid as VTK structured points (binary), 1 inside, for ParaView. */
-ms_status ms_write_grid(const ms_grid *grid, const char *path, ms_error *err);
 
 MS_C_END
 

@@ -1,0 +1,200 @@
+"""The house holds: which room may know which, one way, and no circle among rooms or among files.
+
+A room is a folder of sources. One knows another if a file includes a header of it, or uses a function or table that is
+defined there. ROOMS is the whole list: a new pair is a decision and fails until it stands here, and so does a pair that
+is no longer needed.
+"""
+import os
+import re
+import sys
+import unittest
+
+SOURCE = sys.argv.pop(1)
+FLOORS = ["common", "generators", "eval"]  # a floor knows those before it alone
+TABLE = "generators/ms_generator_table.c"  # knows the methods, which know the interface: a room of its own
+
+ROOMS = {
+    "common/base": [],
+    "common/clump": ["common/base", "common/mesh", "common/voxel"],
+    "common/clump/formats": ["common/base", "common/clump", "common/mesh"],
+    "common/measure": ["common/base", "common/clump", "common/mesh", "common/voxel"],
+    "common/mesh": ["common/base"],
+    "common/mesh/formats": ["common/base", "common/mesh"],
+    "common/shape": ["common/base", "common/mesh"],
+    "common/volume": ["common/base"],
+    "common/voxel": ["common/base", "common/mesh", "common/volume"],
+    "generators": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/voxel"],
+    "generators/fcm": ["common/base", "common/clump", "common/measure", "common/voxel", "generators",
+                       "generators/shared"],
+    "generators/mss": ["common/base", "common/clump", "common/measure", "common/mesh", "common/voxel", "generators",
+                       "generators/shared"],
+    "generators/setcover": ["common/base", "common/clump", "common/measure", "common/mesh", "common/voxel",
+                            "generators", "generators/shared"],
+    "generators/shared": ["common/base", "common/clump", "common/voxel", "generators"],
+    "generators/table": ["common/base", "generators", "generators/fcm", "generators/mss", "generators/setcover",
+                         "generators/variational"],
+    "generators/variational": ["common/base", "common/clump", "common/measure", "common/mesh", "common/voxel",
+                               "generators", "generators/shared"],
+    "eval": ["eval/command"],
+    "eval/chart": ["common/base", "common/clump", "common/mesh", "common/voxel"],
+    "eval/cli": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
+                 "common/mesh/formats", "common/volume", "common/voxel", "generators", "generators/table"],
+    "eval/command": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
+                     "common/mesh/formats", "common/shape", "common/voxel", "generators", "generators/table",
+                     "eval/chart", "eval/cli", "eval/compare", "eval/scene", "eval/stability"],
+    "eval/compare": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
+                     "common/voxel", "generators", "generators/table", "eval/chart", "eval/cli"],
+    "eval/scene": ["common/base", "common/clump", "common/measure", "generators", "eval/cli"],
+    "eval/stability": ["common/base", "common/clump", "common/measure", "common/mesh", "common/shape", "common/voxel",
+                       "generators", "eval/chart", "eval/cli", "eval/compare"],
+}
+
+# The same names in more than one file. A command's file is a program of its own, with words that all of them use.
+SAME_TYPES = {"arguments"}
+SAME_FUNCTIONS = {"accept"}
+
+
+def room_of(path):
+    return "generators/table" if path == TABLE else os.path.dirname(path)
+
+
+def floor_of(room):
+    return room.split("/")[0]
+
+
+def is_method(room):
+    return room.startswith("generators/") and room not in ("generators/shared", "generators/table")
+
+
+def read_sources():
+    sources = {}
+    for floor in FLOORS:
+        for folder, _, names in os.walk(os.path.join(SOURCE, floor)):
+            for name in names:
+                if name.endswith((".c", ".h")):
+                    path = os.path.join(folder, name)
+                    with open(path, encoding="utf-8") as stream:
+                        sources[os.path.relpath(path, SOURCE)] = stream.read()
+    return sources
+
+
+def strip(text):
+    """Without comments and texts."""
+    return re.sub(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"', " ", text, flags=re.S)
+
+
+def find_definitions(codes):
+    """The file that defines each name that leaves a file. Definitions begin a line, as .clang-format has it."""
+    functions = re.compile(r"^(?!static|typedef)[a-z][\w *]*?\b(ms_\w+)\([^;{}]*\)\s*\{", re.M)
+    tables = re.compile(r"^const [\w *]*?\b(ms_\w+)(?:\[\w*\])? = ", re.M)
+    return {name: path for path, code in codes.items() if path.endswith(".c")
+            for pattern in (functions, tables) for name in pattern.findall(code)}
+
+
+def find_circle(graph):
+    """Some circle of a graph {node: nodes} as a list, or None."""
+    done, way = set(), []
+
+    def visit(node):
+        if node in way:
+            return way[way.index(node):] + [node]
+        if node in done:
+            return None
+        way.append(node)
+        for following in sorted(graph.get(node, ())):
+            circle = visit(following)
+            if circle:
+                return circle
+        done.add(way.pop())
+        return None
+
+    for start in sorted(graph):
+        circle = visit(start)
+        if circle:
+            return circle
+    return None
+
+
+class Rooms(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.sources = read_sources()
+        cls.codes = {path: strip(text) for path, text in cls.sources.items()}
+        cls.headers = {os.path.basename(path): path for path in cls.sources if path.endswith(".h")}
+        cls.includes = [(path, name, cls.headers[os.path.basename(name)]) for path, text in cls.sources.items()
+                        for name in re.findall(r'^#include "([^"]+)"', text, re.M) if name != "ms_version.h"]
+        where = find_definitions(cls.codes)
+        cls.uses = {path: {where[name] for name in re.findall(r"\bms_\w+\b", code) if name in where} - {path}
+                    for path, code in cls.codes.items() if path.endswith(".c")}
+        cls.known = {}
+        for path, other in [(path, header) for path, _, header in cls.includes] + \
+                           [(path, other) for path in cls.uses for other in cls.uses[path]]:
+            if room_of(path) != room_of(other):
+                cls.known.setdefault((room_of(path), room_of(other)), f"{path} needs {other}")
+
+    def test_sources_are_found(self):
+        self.assertGreater(len(self.sources), 150)
+        self.assertGreater(len(find_definitions(self.codes)), 300)
+        self.assertEqual(set(ROOMS), {room_of(path) for path in self.sources})
+
+    def test_pairs_are_on_the_list(self):
+        listed = {(room, other) for room, others in ROOMS.items() for other in others}
+        new = [why for pair, why in sorted(self.known.items()) if pair not in listed]
+        self.assertEqual(new, [], "these rooms do not know each other; a new pair is a decision (ROOMS)")
+        self.assertEqual(sorted(listed - set(self.known)), [], "these pairs are no longer needed; strike them (ROOMS)")
+
+    def test_nothing_knows_a_higher_floor(self):
+        for (room, other), why in self.known.items():
+            self.assertGreaterEqual(FLOORS.index(floor_of(room)), FLOORS.index(floor_of(other)), why)
+
+    def test_methods_are_known_to_the_table_alone(self):
+        for (room, other), why in self.known.items():
+            if is_method(other) and room != "generators/table":
+                self.fail(why)
+
+    def test_rooms_form_no_circle(self):
+        graph = {}
+        for room, other in self.known:
+            graph.setdefault(room, set()).add(other)
+        self.assertIsNone(find_circle(graph))
+
+    def test_files_form_no_circle(self):
+        self.assertIsNone(find_circle(self.uses))
+        headers = {}
+        for path, _, header in self.includes:
+            if path.endswith(".h"):
+                headers.setdefault(path, set()).add(header)
+        self.assertIsNone(find_circle(headers))
+
+    def test_own_room_by_bare_name_others_by_room(self):
+        for path, name, header in self.includes:
+            full = header.split("/", 1)[1]
+            own = os.path.dirname(path) == os.path.dirname(header)
+            self.assertEqual(name, os.path.basename(header) if own else full, path)
+
+    def test_names_of_headers_are_unique(self):
+        self.assertEqual(len(self.headers), sum(path.endswith(".h") for path in self.sources))
+
+    def test_functions_are_defined_in_the_room_of_their_header(self):
+        where = find_definitions(self.codes)
+        for path, code in self.codes.items():
+            if path.endswith(".h"):
+                for name in re.findall(r"^[a-z][\w *]*?\b(ms_\w+)\([^{}]*?\)[^;{}()]*;", code, re.M):
+                    if name in where and where[name] != TABLE:  # its header is the interface's
+                        self.assertEqual(room_of(path), room_of(where[name]), name)
+
+    def test_names_stand_for_one_thing(self):
+        types, functions = {}, {}
+        for path, code in self.codes.items():
+            for name in re.findall(r"^typedef (?:struct|enum|union) \w*\s*\{[^}]*\} (\w+);", code, re.M):
+                types.setdefault(name, []).append(path)
+            if floor_of(path) != "eval":
+                for name in re.findall(r"^static (?!const)[\w *]*?\b(\w+)\([^;{}]*\)\s*\{", code, re.M):
+                    functions.setdefault(name, []).append(path)
+        for names, allowed in ((types, SAME_TYPES), (functions, SAME_FUNCTIONS)):
+            self.assertGreater(len(names), 50)
+            self.assertEqual({name: paths for name, paths in names.items() if len(paths) > 1 and name not in allowed}, {})
+
+
+if __name__ == "__main__":
+    unittest.main()
