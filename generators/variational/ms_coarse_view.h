@@ -2,6 +2,7 @@
 #ifndef MS_COARSE_VIEW_H
 #define MS_COARSE_VIEW_H
 
+#include "ms_mirror.h"
 #include "voxel/ms_raster.h"
 #include "voxel/ms_target.h"
 
@@ -19,6 +20,9 @@ typedef struct ms_coarse_view {
  */
 ms_status ms_coarse_view_make(ms_coarse_view *view, const ms_target *target, const float *distance, int step,
                               ms_error *err);
+
+/** Leaves in its grid only what is above each plane of symmetry. */
+void ms_coarse_view_keep_upper(ms_coarse_view *view, const ms_mirror *m);
 
 /** A sphere in voxels of the view, from one in the target's; and back. */
 ms_ball ms_coarse_view_ball(const ms_coarse_view *view, const ms_ball *ball);

@@ -25,11 +25,8 @@ enum { ADDS = sizeof ADD / sizeof *ADD };
 /* Radii that become smaller, in voxels, say nothing about the shape. */
 static const double LEAST_RADIUS = 0.5;
 
-/* Coarse voxels per edge of the cube that is a sphere's share of the volume, about. */
-static const double RESOLUTION = 8;
-
-/* Of the coarse grid and of the field at most, in voxels. */
-enum { MAX_STEP = 4, FIELD_STEP = 2 };
+/* Of the field at most, in voxels. */
+enum { FIELD_STEP = 2 };
 
 /* Mean distance between the surfaces of spheres and shape, in voxels, below which the field's own error matters. */
 static const double SHARP = 0.03;
@@ -56,19 +53,6 @@ typedef struct solver {
     ms_ball *all;         /* with mirror images: room for `room` times the planes' images */
     size_t room;
 } solver;
-
-/* How much coarser the start may be: its voxels follow the size of spheres and of the shape. */
-static int choose_step(const ms_target *target, size_t n)
-{
-    const size_t voxels = ms_grid_voxels(&target->grid);
-    double deepest = 0;
-    for (size_t v = 0; v < voxels; v++) {
-        deepest = fmax(deepest, (double)target->distance[v]);
-    }
-    const double step = fmin(cbrt((double)target->voxels / (double)n) / RESOLUTION, deepest / 4);
-    /* A cover by all voxels takes up to ten times as long as by every second one, and gains 3 % at most. */
-    return step < 1.5 ? 1 : (int)fmin(fmax(step, 2), MAX_STEP);
-}
 
 static void free_solver(solver *s)
 {
@@ -194,19 +178,6 @@ static ms_status prune_surplus(solver *s, ms_error *err)
     return status;
 }
 
-/* Leaves only what is above each plane of symmetry to be covered. */
-static void keep_upper_side(ms_coarse_view *view, const ms_mirror *m)
-{
-    ms_grid *coarse = &view->grid;
-    const size_t nx = (size_t)coarse->n[0], stride[3] = {1, nx, nx * (size_t)coarse->n[1]};
-    for (int a = 0; a < 3; a++) {
-        for (size_t v = 0; m->across[a] && v < ms_grid_voxels(coarse); v++) {
-            const double at = view->step * (double)(v / stride[a] % (size_t)coarse->n[a]);
-            coarse->inside[v] = coarse->inside[v] && at >= m->at[a];
-        }
-    }
-}
-
 /* The target at every step-th voxel, as this run sees it. */
 static ms_status make_view(ms_coarse_view *view, const solver *s, int step, ms_error *err)
 {
@@ -219,7 +190,7 @@ static ms_status append_cover(solver *s, ms_coarse_view *left, size_t most, ms_e
 {
     const size_t before = s->count, limit = count_with_images(s) + most;
     size_t added = 0;
-    keep_upper_side(left, &s->settings->mirror);
+    ms_coarse_view_keep_upper(left, &s->settings->mirror);
     const ms_status status =
         ms_variational_start_cover(s->ball + before, &added, left, most < s->room - before ? most : s->room - before,
                                    find_least_radius(s->run), err);
@@ -250,7 +221,7 @@ static ms_status add_to_cover(solver *s, size_t most, ms_error *err)
 /* The cover to start from; on a finer grid where it gives too few spheres. */
 static ms_status start_from_cover(solver *s, ms_error *err)
 {
-    for (int step = choose_step(s->run->target, s->wanted);; step--) {
+    for (int step = ms_variational_start_step(s->run->target, s->wanted);; step--) {
         ms_coarse_view half = {0};
         ms_status status = make_view(&s->coarse, s, step, err);
         s->count = 0;
@@ -273,7 +244,7 @@ static ms_status start_from_given(solver *s, const ms_clump *given, ms_error *er
 {
     const ms_target *target = s->run->target;
     const ms_mirror *m = &s->settings->mirror;
-    const ms_status status = make_view(&s->coarse, s, choose_step(target, s->wanted), err);
+    const ms_status status = make_view(&s->coarse, s, ms_variational_start_step(target, s->wanted), err);
     for (size_t g = 0; g < given->n_spheres; g++) {
         ms_ball *ball = &s->ball[s->count];
         ms_target_to_voxels(ball->centre, &ball->radius, &target->grid, given->sphere[g].centre,

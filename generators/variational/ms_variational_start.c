@@ -9,6 +9,24 @@
  * direction is more than 27 degrees from one. */
 static const double RISING = 0.85;
 
+/* Coarse voxels per edge of the cube that is a sphere's share of the volume, about. */
+static const double RESOLUTION = 8;
+
+/* Of the coarse grid at most, in voxels. */
+enum { MAX_STEP = 4 };
+
+int ms_variational_start_step(const ms_target *target, size_t n)
+{
+    const size_t voxels = ms_grid_voxels(&target->grid);
+    double deepest = 0;
+    for (size_t v = 0; v < voxels; v++) {
+        deepest = fmax(deepest, (double)target->distance[v]);
+    }
+    const double step = fmin(cbrt((double)target->voxels / (double)n) / RESOLUTION, deepest / 4);
+    /* A cover by all voxels takes up to ten times as long as by every second one, and gains 3 % at most. */
+    return step < 1.5 ? 1 : (int)fmin(fmax(step, 2), MAX_STEP);
+}
+
 /* Does no neighbour's inscribed sphere contain that of this voxel, but for some slack? */
 static int is_ridge(const ms_coarse_view *view, int i, int j, int k)
 {

@@ -4,6 +4,9 @@
 
 #include "ms_coarse_view.h"
 
+/** How much coarser the start may be for n spheres: its voxels follow the size of spheres and of the shape. */
+int ms_variational_start_step(const ms_target *target, size_t n);
+
 /**
  * Covers voxels of a coarse view greedily (ms_cover) by the inscribed spheres about the shape's ridge: the
  * coarse voxels whose sphere no neighbour's sphere contains.
