@@ -45,7 +45,7 @@ static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump
     ms_metrics metrics;
     ms_stop_reason reason;
     one.settings = &settings;
-    one.stop = ms_stop_none();
+    one.stop = (ms_stop){0};
     one.stop.radius = run->stop.radius;
     ms_status status = ms_metrics_compute(&metrics, NULL, run->target, clump, max_voxels, err);
     for (size_t n = clump->n_spheres; n >= 1 && status == MS_OK; n--) {

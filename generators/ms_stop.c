@@ -1,84 +1,119 @@
 #include "ms_stop.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-ms_stop ms_stop_none(void)
+/* A measure that can be asked for. */
+typedef struct stop_goal {
+    ms_measure_code measure;
+    ms_stop_reason reason;
+    size_t offset; /* in ms_stop */
+} stop_goal;
+
+#define GOAL_GOAL(CODE, name) {MS_MEASURE_##CODE, MS_STOP_##CODE, offsetof(ms_stop, name)},
+#define GOAL_UNION(CODE, name)
+#define GOAL_SURFACE(CODE, name)
+#define GOAL_SPHERES(CODE, name)
+#define GOAL_COUNT(CODE, name)
+#define GOAL(kind, CODE, name, ...) GOAL_##kind(CODE, name)
+static const stop_goal GOALS[] = {MS_MEASURE_LIST(GOAL)};
+enum { N_GOALS = sizeof GOALS / sizeof *GOALS };
+
+static double get_asked(const ms_stop *stop, const stop_goal *goal)
 {
-    return (ms_stop){.eta = -1, .dice = -1, .coverage = -1, .inertia = -1, .radius = -1};
+    double value;
+    memcpy(&value, (const char *)stop + goal->offset, sizeof value);
+    return value;
 }
 
 int ms_stop_is_none(const ms_stop *stop)
 {
-    return stop->spheres == 0 && stop->radius < 0 && !ms_stop_has_measure(stop);
+    return stop->spheres == 0 && !(stop->radius > 0) && !ms_stop_has_measure(stop);
 }
 
 int ms_stop_has_measure(const ms_stop *stop)
 {
-    return stop->eta >= 0 || stop->dice >= 0 || stop->coverage >= 0 || stop->inertia >= 0;
+    int any = 0;
+    for (size_t g = 0; g < N_GOALS; g++) {
+        any |= get_asked(stop, &GOALS[g]) > 0;
+    }
+    return any;
+}
+
+double ms_stop_asked(const ms_stop *stop, const ms_measure *measure)
+{
+    for (size_t g = 0; g < N_GOALS; g++) {
+        if (&ms_measures[GOALS[g].measure] == measure) {
+            return get_asked(stop, &GOALS[g]);
+        }
+    }
+    return 0;
 }
 
 const char *ms_stop_name(ms_stop_reason reason)
 {
-    switch (reason) {
-#define MS_STOP_CASE(code, name) \
-    case code:                   \
-        return name;
-        MS_STOP_LIST(MS_STOP_CASE)
-#undef MS_STOP_CASE
+    static const char *const NAMES[] = {[MS_STOP_NOT] = "not",
+                                        [MS_STOP_SPHERES] = "spheres",
+                                        [MS_STOP_RADIUS] = "radius",
+                                        [MS_STOP_OFF_VOLUME] = "off-volume",
+                                        [MS_STOP_EXHAUSTED] = "exhausted"};
+    for (size_t g = 0; g < N_GOALS; g++) {
+        if (GOALS[g].reason == reason) {
+            return ms_measures[GOALS[g].measure].name;
+        }
     }
-    return "unknown";
+    return (size_t)reason < sizeof NAMES / sizeof *NAMES ? NAMES[reason] : "unknown";
+}
+
+static ms_status check_range(const char *name, double value, double most, ms_error *err)
+{
+    if (value > 0 && value <= most && isfinite(value)) {
+        return MS_OK;
+    }
+    return ms_fail(err, MS_ERR_ARG, "%s=%g is out of range; give a number above 0%s", name, value,
+                   isfinite(most) ? ", up to 1; a tiny one, as 1e-9, asks for an exact match" : "");
 }
 
 ms_status ms_stop_set(ms_stop *stop, const char *measure, double value, ms_error *err)
 {
-    const struct {
-        const char *name;
-        double *value, max;
-    } measures[] = {
-        {"eta", &stop->eta, 1},
-        {"dice", &stop->dice, 1},
-        {"coverage", &stop->coverage, 1},
-        {"inertia", &stop->inertia, 1},
-        {"radius", &stop->radius, HUGE_VAL},
-    };
-    for (size_t m = 0; m < sizeof measures / sizeof *measures; m++) {
-        if (strcmp(measure, measures[m].name) != 0) {
-            continue;
-        }
-        if (!(value >= 0 && value <= measures[m].max) || !isfinite(value)) {
-            return ms_fail(err, MS_ERR_ARG, "%s=%g is out of range; give a number from 0%s", measure, value,
-                           measures[m].max > 1 ? " up" : " to 1");
-        }
-        *measures[m].value = value;
-        return MS_OK;
+    char names[256] = "";
+    if (strcmp(measure, "radius") == 0) {
+        const ms_status status = check_range(measure, value, HUGE_VAL, err);
+        stop->radius = status == MS_OK ? value : stop->radius;
+        return status;
     }
-    return ms_fail(err, MS_ERR_ARG, "no measure is called '%s'; choose from eta, dice, coverage, inertia, radius",
-                   measure);
+    for (size_t g = 0; g < N_GOALS; g++) {
+        const char *name = ms_measures[GOALS[g].measure].name;
+        if (strcmp(measure, name) == 0) {
+            const ms_status status = check_range(measure, value, 1, err);
+            if (status == MS_OK) {
+                memcpy((char *)stop + GOALS[g].offset, &value, sizeof value);
+            }
+            return status;
+        }
+        const size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s, ", name);
+    }
+    return ms_fail(err, MS_ERR_ARG, "no measure is called '%s'; choose from %sradius", measure, names);
 }
 
 ms_stop_reason ms_stop_reached(const ms_stop *stop, const ms_target *target, const ms_tally *sum, size_t n)
 {
-    const ms_score score = ms_metrics_score(sum, target->voxels);
     if (stop->spheres && n >= stop->spheres) {
         return MS_STOP_SPHERES;
     }
-    if (stop->eta >= 0 && score.eta <= stop->eta) {
-        return MS_STOP_ETA;
+    if (!ms_stop_has_measure(stop)) {
+        return MS_STOP_NOT;
     }
-    if (stop->dice >= 0 && score.dice <= stop->dice) {
-        return MS_STOP_DICE;
-    }
-    if (stop->coverage >= 0 && score.coverage >= stop->coverage) {
-        return MS_STOP_COVERAGE;
-    }
-    if (stop->inertia >= 0) {
-        ms_body body;
-        ms_inertia_error error;
-        ms_tally_body(&body, sum, &target->grid);
-        if (ms_metrics_compare_inertia(&error, &body, &target->body, NULL) == MS_OK &&
-            error.weighted <= stop->inertia) {
-            return MS_STOP_INERTIA;
+    /* the inertia takes the axes of the union, and few ask for it */
+    const ms_score score =
+        stop->inertia > 0 ? ms_metrics_full_score(sum, &target->grid, target) : ms_metrics_score(sum, target->voxels);
+    for (size_t g = 0; g < N_GOALS; g++) {
+        const ms_measure *measure = &ms_measures[GOALS[g].measure];
+        const double asked = get_asked(stop, &GOALS[g]);
+        if (asked > 0 && ms_measure_is_reached(measure, measure->of_score(&score), asked)) {
+            return GOALS[g].reason;
         }
     }
     return MS_STOP_NOT;

@@ -9,34 +9,39 @@
 
 MS_C_BEGIN
 
-/* Why a run ended; the names are those that --until takes, but for those that only a method can say. */
-#define MS_STOP_LIST(X)                 \
-    X(MS_STOP_NOT, "not")               \
-    X(MS_STOP_SPHERES, "spheres")       \
-    X(MS_STOP_ETA, "eta")               \
-    X(MS_STOP_DICE, "dice")             \
-    X(MS_STOP_COVERAGE, "coverage")     \
-    X(MS_STOP_INERTIA, "inertia")       \
-    X(MS_STOP_RADIUS, "radius")         \
-    X(MS_STOP_OFF_VOLUME, "off-volume") \
-    X(MS_STOP_EXHAUSTED, "exhausted")
+/* Of the measures (MS_MEASURE_LIST) those that can be asked for: a reason to stop, and a field of ms_stop, for each. */
+#define MS_STOP_REASON_GOAL(CODE, name) MS_STOP_##CODE,
+#define MS_STOP_REASON_UNION(CODE, name)
+#define MS_STOP_REASON_SURFACE(CODE, name)
+#define MS_STOP_REASON_SPHERES(CODE, name)
+#define MS_STOP_REASON_COUNT(CODE, name)
+#define MS_STOP_REASON(kind, CODE, name, ...) MS_STOP_REASON_##kind(CODE, name)
+#define MS_STOP_FIELD_GOAL(name) double name;
+#define MS_STOP_FIELD_UNION(name)
+#define MS_STOP_FIELD_SURFACE(name)
+#define MS_STOP_FIELD_SPHERES(name)
+#define MS_STOP_FIELD_COUNT(name)
+#define MS_STOP_FIELD(kind, CODE, name, ...) MS_STOP_FIELD_##kind(name)
 
-#define MS_STOP_ENUM(code, name) code,
-typedef enum ms_stop_reason { MS_STOP_LIST(MS_STOP_ENUM) } ms_stop_reason;
-#undef MS_STOP_ENUM
+/** Why a run ended: MS_STOP_ETA, ... for a measure that was reached; the last two only a method can say. */
+typedef enum ms_stop_reason {
+    MS_STOP_NOT,
+    MS_STOP_SPHERES,
+    MS_MEASURE_LIST(MS_STOP_REASON) /* in the order of the table */
+    MS_STOP_RADIUS,
+    MS_STOP_OFF_VOLUME,
+    MS_STOP_EXHAUSTED
+} ms_stop_reason;
 
-/** What a run has to reach. A measure below 0 is not asked for. */
+/**
+ * What a run has to reach. What is 0 is not asked for, so that a zeroed struct asks for nothing and {.spheres = 10} for
+ * ten spheres and nothing else. A mismatch of exactly 0 is asked for by a value below that of one voxel, as 1e-9.
+ */
 typedef struct ms_stop {
-    size_t spheres;  /* at most this many; 0: no bound */
-    double eta;      /* eta at most */
-    double dice;     /* D at most */
-    double coverage; /* coverage at least */
-    double inertia;  /* weighted mean error of the principal moments (Yuan 4) at most */
-    double radius;   /* no sphere smaller than this, in the mesh's unit */
+    size_t spheres;                /* at most this many */
+    double radius;                 /* no sphere smaller than this, in the mesh's unit */
+    MS_MEASURE_LIST(MS_STOP_FIELD) /* eta, dice, coverage, ...: as good as this */
 } ms_stop;
-
-/** Nothing asked for. */
-ms_stop ms_stop_none(void);
 
 /** Nonzero if nothing is asked for, so that nothing would end a run. */
 int ms_stop_is_none(const ms_stop *stop);
@@ -44,11 +49,16 @@ int ms_stop_is_none(const ms_stop *stop);
 /** Nonzero if a measure has to be reached, and not only a number or a radius. */
 int ms_stop_has_measure(const ms_stop *stop);
 
-/** "eta", "exhausted", ... */
+/** What is asked of a measure; 0 if nothing is. */
+double ms_stop_asked(const ms_stop *stop, const ms_measure *measure);
+
+/** "eta", "exhausted", ...: the names that --until takes, but for those that only a method can say. */
 const char *ms_stop_name(ms_stop_reason reason);
 
 /**
- * Sets one measure by its name.
+ * Sets one measure, or the radius, by its name.
+ *
+ * @param value above 0; of a measure up to 1
  * @return MS_OK; MS_ERR_ARG for an unknown name or a value out of range, with the names
  */
 ms_status ms_stop_set(ms_stop *stop, const char *measure, double value, ms_error *err);

@@ -78,8 +78,7 @@ static int within_grid(const ms_grid *grid, const double lo[3], const double hi[
     return 1;
 }
 
-/* With the inertia, where the union covers a voxel. */
-static ms_score full_score(const ms_tally *sum, const ms_grid *grid, const ms_target *target)
+ms_score ms_metrics_full_score(const ms_tally *sum, const ms_grid *grid, const ms_target *target)
 {
     ms_body body;
     ms_inertia_error error;
@@ -110,10 +109,10 @@ static ms_status count_union(ms_metrics *metrics, ms_score *curve, const ms_grid
     for (size_t s = 0; status == MS_OK && s < clump->n_spheres; s++) {
         ms_tally_add(&sum, &raster.tally[s]);
         if (curve) {
-            curve[s] = full_score(&sum, grid, target);
+            curve[s] = ms_metrics_full_score(&sum, grid, target);
         }
     }
-    metrics->score = full_score(&sum, grid, target);
+    metrics->score = ms_metrics_full_score(&sum, grid, target);
     ms_tally_body(&metrics->body, &sum, grid);
     ms_raster_free(&raster);
     free(balls);

@@ -3,22 +3,35 @@
 #define MS_METRICS_H
 
 #include "clump/ms_clump.h"
+#include "ms_measure.h"
 #include "voxel/ms_target.h"
 
 MS_C_BEGIN
 
-/** Measures of S (target) and U (union) on the grid. */
+/* A field for each measure of MS_MEASURE_LIST, in the struct that its kind says. */
+#define MS_SCORE_FIELD_GOAL(name) double name;
+#define MS_SCORE_FIELD_UNION(name) double name;
+#define MS_SCORE_FIELD_SURFACE(name)
+#define MS_SCORE_FIELD_SPHERES(name)
+#define MS_SCORE_FIELD_COUNT(name)
+#define MS_SCORE_FIELD(kind, CODE, name, ...) MS_SCORE_FIELD_##kind(name)
+#define MS_METRICS_FIELD_GOAL(name)
+#define MS_METRICS_FIELD_UNION(name)
+#define MS_METRICS_FIELD_SURFACE(name) double name;
+#define MS_METRICS_FIELD_SPHERES(name) double name;
+#define MS_METRICS_FIELD_COUNT(name) size_t name;
+#define MS_METRICS_FIELD(kind, CODE, name, ...) MS_METRICS_FIELD_##kind(name)
+
+/** Measures of S (target) and U (union) on the grid: eta, dice, ... The inertia is NAN unless ms_metrics_compute set it. */
 typedef struct ms_score {
-    double eta;        /* sum |S-U| / sum S          MSS eq. 7 */
-    double dice;       /* 1 - 2 sum SU / (sum S + sum U), the mismatch D   MSS eq. 27 */
-    double coverage;   /* sum SU / sum S             Yuan's V_cl/V_p */
-    double overshoot;  /* sum U(1-S) / sum S */
-    double off_volume; /* sum U / sum S              Westbrink eq. 2 */
-    double inertia;    /* weighted mean error of the principal moments, Yuan 4; NAN unless ms_metrics_compute set it */
+    MS_MEASURE_LIST(MS_SCORE_FIELD)
 } ms_score;
 
 /** From the sums over the union and the number of voxels of the target; all but the inertia. */
 ms_score ms_metrics_score(const ms_tally *sum, size_t target_voxels);
+
+/** The same with the inertia; that is NAN where the union covers no voxel. @param grid that of the sums */
+ms_score ms_metrics_full_score(const ms_tally *sum, const ms_grid *grid, const ms_target *target);
 
 /** How the inertia of one body differs from that of another, both of unit density. */
 typedef struct ms_inertia_error {
@@ -33,17 +46,13 @@ typedef struct ms_inertia_error {
 ms_status ms_metrics_compare_inertia(ms_inertia_error *error, const ms_body *body, const ms_body *target,
                                      ms_error *err);
 
-/** All measures of a clump. */
+/** All measures of a clump. Lengths are in the unit of the mesh. */
 typedef struct ms_metrics {
     size_t spheres;
     ms_score score;
-    double protrusion_max,
-        protrusion_rms;           /* of exposed sphere surface outside the mesh; rms over all exposed surface */
-    double gap_max, gap_rms;      /* of mesh surface outside all spheres; rms over all mesh surface */
-    double smallest_radius_ratio; /* smallest radius / radius of the ball of the target's volume */
-    size_t pieces;                /* 1: connected */
-    ms_body body;                 /* the union, on the grid */
-    ms_inertia_error inertia;     /* of the union against the target */
+    MS_MEASURE_LIST(MS_METRICS_FIELD) /* protrusion_max, ..., pieces */
+    ms_body body;                     /* the union, on the grid */
+    ms_inertia_error inertia;         /* of the union against the target */
 } ms_metrics;
 
 /**

@@ -28,21 +28,16 @@ json_t *ms_record_settings_json(const ms_settings *settings)
 static json_t *stop_json(const ms_stop *stop)
 {
     json_t *json = json_object();
-    const struct {
-        const char *name;
-        double value;
-    } asked[] = {{"eta", stop->eta},
-                 {"dice", stop->dice},
-                 {"coverage", stop->coverage},
-                 {"inertia", stop->inertia},
-                 {"radius", stop->radius}};
     if (stop->spheres) {
         json_object_set_new(json, "spheres", json_integer((json_int_t)stop->spheres));
     }
-    for (size_t m = 0; m < sizeof asked / sizeof *asked; m++) {
-        if (asked[m].value >= 0) {
-            json_object_set_new(json, asked[m].name, json_real(asked[m].value));
+    for (const ms_measure *m = ms_measures; m->name; m++) {
+        if (ms_stop_asked(stop, m) > 0) {
+            json_object_set_new(json, m->name, json_real(ms_stop_asked(stop, m)));
         }
+    }
+    if (stop->radius > 0) {
+        json_object_set_new(json, "radius", json_real(stop->radius));
     }
     return json;
 }

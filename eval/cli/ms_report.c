@@ -5,44 +5,63 @@
 #include <stdlib.h>
 #include <string.h>
 
-void ms_report_metrics(FILE *stream, const ms_metrics *m, const ms_target *target)
+/* A largest distance, with its root mean square, which is the row behind it; nothing where it does not apply. */
+static void print_distance(FILE *stream, const ms_measure *measure, const ms_metrics *m, double h)
 {
-    const double h = target->grid.h;
-    fprintf(stream, "  %-34s %zu\n", "spheres", m->spheres);
-    fprintf(stream, "  %-34s %.5f\n", "eta, |S xor U| / |S|", m->score.eta);
-    fprintf(stream, "  %-34s %.5f\n", "D, Dice mismatch", m->score.dice);
-    fprintf(stream, "  %-34s %.5f\n", "coverage", m->score.coverage);
-    fprintf(stream, "  %-34s %.5f\n", "overshoot", m->score.overshoot);
-    fprintf(stream, "  %-34s %.5f\n", "volume of union / of shape", m->score.off_volume);
-    if (isfinite(m->protrusion_max)) {
-        fprintf(stream, "  %-34s %.4g (rms %.3g), %.2f voxels\n", "largest protrusion", m->protrusion_max,
-                m->protrusion_rms, m->protrusion_max / h);
+    const double most = measure->of_metrics(m), rms = measure[1].of_metrics(m);
+    if (isfinite(most)) {
+        fprintf(stream, "  %-34s %.4g (rms %.3g), %.2f voxels\n", measure->label, most, rms, most / h);
     }
-    if (isfinite(m->gap_max)) {
-        fprintf(stream, "  %-34s %.4g (rms %.3g), %.2f voxels\n", "largest gap", m->gap_max, m->gap_rms,
-                m->gap_max / h);
-    }
-    fprintf(stream, "  %-34s %.4f\n", "smallest / equivalent radius", m->smallest_radius_ratio);
-    fprintf(stream, "  %-34s %s", "connected", m->pieces == 1 ? "yes\n" : "");
+}
+
+static void print_pieces(FILE *stream, const ms_measure *measure, const ms_metrics *m)
+{
+    fprintf(stream, "  %-34s %s", measure->label, m->pieces == 1 ? "yes\n" : "");
     if (m->pieces != 1) {
         fprintf(stream, "no, %zu pieces\n", m->pieces);
     }
+}
+
+static void print_inertia(FILE *stream, const ms_measure *measure, const ms_metrics *m)
+{
     if (!(m->body.volume > 0)) {
         fprintf(stream, "  %-34s none: the spheres cover no voxel\n", "inertia of the union");
         return;
     }
     fprintf(stream, "  %-34s %+.2f %% %+.2f %% %+.2f %%\n", "error of principal moments", 100 * m->inertia.moment[0],
             100 * m->inertia.moment[1], 100 * m->inertia.moment[2]);
-    fprintf(stream, "  %-34s %.2f %%, axes turned %.2f degrees\n", "their weighted mean (Yuan)",
-            100 * m->inertia.weighted, m->inertia.angle);
+    fprintf(stream, "  %-34s %.2f %%, axes turned %.2f degrees\n", measure->label, 100 * m->inertia.weighted,
+            m->inertia.angle);
+}
+
+void ms_report_metrics(FILE *stream, const ms_metrics *m, const ms_target *target)
+{
+    fprintf(stream, "  %-34s %zu\n", "spheres", m->spheres);
+    for (int code = 0; code < MS_MEASURES; code++) {
+        const ms_measure *measure = &ms_measures[code];
+        if (code == MS_MEASURE_PROTRUSION || code == MS_MEASURE_GAP) {
+            print_distance(stream, measure, m, target->grid.h);
+        } else if (code == MS_MEASURE_PIECES) {
+            print_pieces(stream, measure, m);
+        } else if (code == MS_MEASURE_INERTIA) {
+            print_inertia(stream, measure, m);
+        } else if (code != MS_MEASURE_PROTRUSION_RMS && code != MS_MEASURE_GAP_RMS) {
+            fprintf(stream, "  %-34s %.*f\n", measure->label, measure->digits, measure->of_metrics(m));
+        }
+    }
 }
 
 void ms_report_curve(FILE *stream, const ms_score *curve, size_t count)
 {
-    fputs("n,eta,dice,coverage,overshoot\n", stream);
+    fputs("n" MS_MEASURE_CURVE_NAMES "\n", stream);
     for (size_t n = 0; n < count; n++) {
-        fprintf(stream, "%zu,%.8g,%.8g,%.8g,%.8g\n", n + 1, curve[n].eta, curve[n].dice, curve[n].coverage,
-                curve[n].overshoot);
+        fprintf(stream, "%zu", n + 1);
+        for (const ms_measure *m = ms_measures; m->name; m++) {
+            if (m->curve) {
+                fprintf(stream, ",%.8g", m->of_score(&curve[n]));
+            }
+        }
+        fputc('\n', stream);
     }
 }
 
@@ -79,15 +98,42 @@ static json_t *inertia_json(const ms_metrics *m)
                      "centroid", ms_report_number(m->inertia.centre));
 }
 
+json_t *ms_report_whole(json_t *object, int failed)
+{
+    if (failed) {
+        json_decref(object);
+        return NULL;
+    }
+    return object;
+}
+
 json_t *ms_report_metrics_json(const ms_metrics *m)
 {
-    return json_pack("{s:I,s:f,s:f,s:f,s:f,s:f,s:o,s:o,s:o,s:o,s:f,s:I,s:f,s:o}", "spheres", (json_int_t)m->spheres,
-                     "eta", m->score.eta, "dice", m->score.dice, "coverage", m->score.coverage, "overshoot",
-                     m->score.overshoot, "off_volume", m->score.off_volume, "protrusion_max",
-                     ms_report_number(m->protrusion_max), "protrusion_rms", ms_report_number(m->protrusion_rms),
-                     "gap_max", ms_report_number(m->gap_max), "gap_rms", ms_report_number(m->gap_rms),
-                     "smallest_radius_ratio", m->smallest_radius_ratio, "pieces", (json_int_t)m->pieces, "volume",
-                     m->body.volume, "inertia_error", inertia_json(m));
+    json_t *json = json_object();
+    int failed = json_object_set_new(json, "spheres", json_integer((json_int_t)m->spheres));
+    for (const ms_measure *measure = ms_measures; measure->name; measure++) {
+        const double value = measure->of_metrics(m);
+        if (measure->kind == MS_MEASURE_KIND_COUNT) {
+            failed |= json_object_set_new(json, measure->name, json_integer((json_int_t)value));
+        } else if (measure != &ms_measures[MS_MEASURE_INERTIA]) { /* an object of its own */
+            failed |= json_object_set_new(json, measure->name, ms_report_number(value));
+        }
+    }
+    failed |= json_object_set_new(json, "volume", json_real(m->body.volume));
+    failed |= json_object_set_new(json, "inertia_error", inertia_json(m));
+    return ms_report_whole(json, failed);
+}
+
+json_t *ms_report_score_json(const ms_score *score, size_t spheres)
+{
+    json_t *json = json_object();
+    int failed = json_object_set_new(json, "spheres", json_integer((json_int_t)spheres));
+    for (const ms_measure *measure = ms_measures; measure->name; measure++) {
+        if (ms_measure_is_of_score(measure)) {
+            failed |= json_object_set_new(json, measure->name, ms_report_number(measure->of_score(score)));
+        }
+    }
+    return ms_report_whole(json, failed);
 }
 
 json_t *ms_report_input_json(const ms_input *input)

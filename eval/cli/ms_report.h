@@ -14,7 +14,13 @@ void ms_report_metrics(FILE *stream, const ms_metrics *metrics, const ms_target 
 /** The same as a JSON object; the caller owns it. Measures that do not apply are null. */
 json_t *ms_report_metrics_json(const ms_metrics *metrics);
 
-/** Scores of clumps of 1 to count spheres as CSV. */
+/** The measures of ms_score alone, and the number of spheres; the caller owns it. */
+json_t *ms_report_score_json(const ms_score *score, size_t spheres);
+
+/** An object to which values were added: NULL, and the object freed, if one of them failed for lack of memory. */
+json_t *ms_report_whole(json_t *object, int failed);
+
+/** Scores of clumps of 1 to count spheres as CSV: n and the measures with `curve`. */
 void ms_report_curve(FILE *stream, const ms_score *curve, size_t count);
 
 /** Path, checksum, grid and rule of the input; the caller owns it. */

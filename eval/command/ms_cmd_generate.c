@@ -21,7 +21,8 @@ static const ms_flag FLAGS[] = {
     MS_RECIPE_FLAGS("mss"),
     {"spheres", 'n', "N", "at most N spheres (50, if no --until is given)"},
     {"until", 0, "MEASURE=VALUE",
-     "end when eta, dice, coverage or inertia is as good, or spheres would be smaller than radius; may be repeated"},
+     "end when " MS_MEASURE_GOAL_NAMES
+     "whichever is named, is as good, or spheres would be smaller than radius; may be repeated"},
     MS_OUTPUT_FLAGS,
     {"correct", 0, NULL, "give the spheres masses that sum to the true mass and inertia; takes --density"},
     MS_MASS_FLAGS,
@@ -55,8 +56,8 @@ static ms_status take_until(arguments *a, const char *text, ms_error *err)
         return status;
     }
     const ms_word word = {value, value ? strlen(value) : 0};
-    ms_stop known = ms_stop_none();
-    status = ms_stop_set(&known, name, 0, err); /* is there such a measure? */
+    ms_stop known = {0};
+    status = ms_stop_set(&known, name, 1, err); /* is there such a measure? */
     if (status == MS_OK && (word.length == 0 || !ms_text_to_double(&number, &word))) {
         return ms_fail(err, MS_ERR_ARG, "--until '%s' is not of the form MEASURE=VALUE, as %s=0.05", text, name);
     }
@@ -296,7 +297,7 @@ static ms_status settle(arguments *a, ms_error *err)
 
 static int run(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {.recipe = {.name = "mss", .seed = 1}, .stop = ms_stop_none()};
+    arguments a = {.recipe = {.name = "mss", .seed = 1}};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);

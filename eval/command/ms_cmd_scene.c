@@ -19,7 +19,7 @@ static const double MAX_BUDGET = 1e15;
 static const ms_flag FLAGS[] = {
     {"budget", 0, "SPHERES", "spheres in the whole scene: the least mean D that they pay for"},
     {"tolerance", 0, "MEASURE=VALUE",
-     "dice, eta, coverage or inertia of each shape; the column tolerance of the manifest goes before it"},
+     MS_MEASURE_GOAL_NAMES "one of them, of each shape; the column tolerance of the manifest goes before it"},
     {"mean-tolerance", 0, "dice=VALUE", "mean D over all particles: the fewest spheres in the whole scene"},
     {"knee", 0, "PART", "each shape's number of spheres from which a further one takes away less than this part of D"},
     {"max-spheres", 0, "N", "spheres of the largest template (100)"},
@@ -61,11 +61,11 @@ static ms_status take_tolerance(ms_goal *goal, const char *flag, const char *tex
     double number;
     const int mean = strcmp(flag, "mean-tolerance") == 0;
     ms_status status = ms_recipe_assignment(name, &value, text, err);
-    const ms_scene_measure *measure = status == MS_OK ? ms_scene_measure_find(name, err) : NULL;
+    const ms_measure *measure = status == MS_OK ? ms_measure_find_goal(name, err) : NULL;
     if (!measure) {
         return MS_ERR_ARG;
     }
-    if (mean && strcmp(name, "dice") != 0) {
+    if (mean && measure != &ms_measures[MS_MEASURE_DICE]) {
         return ms_fail(err, MS_ERR_ARG, "--mean-tolerance takes dice=VALUE alone, not %s", name);
     }
     status = ms_flags_number(&number, flag, value ? value : "", 0, 1, err);
@@ -147,7 +147,7 @@ static ms_status resolve_goal(ms_goal *goal, const ms_manifest *manifest, const 
         particles += (double)manifest->row[r].particles;
     }
     if (goal->kind == MS_GOAL_NONE && tolerances == manifest->count) {
-        *goal = (ms_goal){MS_GOAL_TOLERANCE, (double)NAN, ms_scene_measure_find("dice", err)};
+        *goal = (ms_goal){MS_GOAL_TOLERANCE, (double)NAN, &ms_measures[MS_MEASURE_DICE]};
     }
     if (goal->kind == MS_GOAL_NONE) {
         return ms_fail(err, MS_ERR_ARG,
@@ -310,7 +310,7 @@ static int read_and_work(const ms_command *command, arguments *a)
 
 static int run(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {.max_spheres = DEFAULT_MAX_SPHERES, .min_radius = -1, .recipe = {.name = "variational", .seed = 1}};
+    arguments a = {.max_spheres = DEFAULT_MAX_SPHERES, .recipe = {.name = "variational", .seed = 1}};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);

@@ -11,7 +11,7 @@
 
 static const ms_flag FLAGS[] = {
     {"target", 't', "SHAPE", "the mesh or volume that the clump stands for"},
-    {"curve", 0, NULL, "scores of every prefix as CSV: n,eta,dice,coverage,overshoot"},
+    {"curve", 0, NULL, "scores of every prefix as CSV: n" MS_MEASURE_CURVE_NAMES},
     {"json", 0, NULL, "as JSON"},
     MS_INPUT_FLAGS,
     {0},

@@ -35,7 +35,7 @@ static const ms_flag FLAGS[] = {
 typedef struct arguments {
     ms_input_flags input;
     ms_methods methods;
-    int wanted[MS_CHANGES];
+    int wanted[MS_CHANGE_MOST]; /* of ms_changes */
     double spheres, runs, seed, until_dice;
     const char *output, *charts;
     int json;
@@ -52,10 +52,12 @@ typedef struct progress {
 
 static ms_status take_change(arguments *a, const char *name, ms_error *err)
 {
-    ms_change change = MS_CHANGE_NONE;
-    ms_status status = ms_stability_change_find(&change, name, err);
-    a->wanted[change] = 1;
-    return status;
+    const ms_change *change = ms_change_find(name, err);
+    if (!change) {
+        return MS_ERR_ARG;
+    }
+    a->wanted[change - ms_changes] = 1;
+    return MS_OK;
 }
 
 static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
@@ -73,7 +75,7 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
         return ms_flags_whole(&a->spheres, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
     }
     if (strcmp(name, "until-dice") == 0) {
-        return ms_flags_number(&a->until_dice, name, value, 0, 1, err);
+        return ms_flags_number(&a->until_dice, name, value, 1e-9, 1, err);
     }
     if (strcmp(name, "perturb") == 0) {
         return take_change(a, value, err);
@@ -96,11 +98,11 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
 static ms_status settle(arguments *a, ms_error *err)
 {
     int any = 0;
-    for (int c = 0; c < MS_CHANGES; c++) {
+    for (int c = 0; ms_changes[c].name; c++) {
         any |= a->wanted[c];
     }
-    for (int c = 0; c < MS_CHANGES; c++) {
-        a->wanted[c] |= !any || c == MS_CHANGE_NONE;
+    for (int c = 0; ms_changes[c].name; c++) {
+        a->wanted[c] |= !any || c == 0;
     }
     ms_status status = ms_compare_methods_check(&a->methods, err);
     for (size_t m = 0; m < a->methods.count && status == MS_OK; m++) {
@@ -178,15 +180,15 @@ static ms_status try_outputs(const arguments *a, ms_error *err)
     return status == MS_OK && a->charts ? ms_outputs_make_folder(a->charts, err) : status;
 }
 
-static void show(const progress *p, const ms_stability *s, ms_change change)
+static void show(const progress *p, const ms_stability *s, const ms_change *change)
 {
     if (isatty(STDERR_FILENO)) {
         fprintf(stderr, "\r\033[K%zu of %zu: %s, %s, %s ", p->n_runs + 1, p->planned, s->input->path,
-                ms_stability_label(s->method).text, ms_stability_change_name(change));
+                ms_stability_label(s->method).text, change->name);
     }
 }
 
-static ms_status add_run(progress *p, const ms_stability *s, ms_change change, int number, ms_error *err)
+static ms_status add_run(progress *p, const ms_stability *s, const ms_change *change, int number, ms_error *err)
 {
     ms_stability_run *run = &p->run[p->n_runs];
     show(p, s, change);
@@ -213,10 +215,10 @@ static ms_status try_shape(progress *p, const arguments *a, const char *name, ms
                                 .runs = (int)a->runs,
                                 .threads = omp_get_max_threads(),
                                 .flags = &a->input};
-        for (int c = 0; c < MS_CHANGES && status == MS_OK; c++) {
-            const int runs = a->wanted[c] ? ms_stability_change_runs((ms_change)c, s.runs) : 0;
+        for (int c = 0; ms_changes[c].name && status == MS_OK; c++) {
+            const int runs = a->wanted[c] ? ms_change_runs(&ms_changes[c], s.runs) : 0;
             for (int number = 1; number <= runs && status == MS_OK; number++) {
-                status = add_run(p, &s, (ms_change)c, number, err);
+                status = add_run(p, &s, &ms_changes[c], number, err);
             }
         }
     }
@@ -249,7 +251,7 @@ static ms_status report(const arguments *a, const progress *p, ms_error *err)
         status = ms_report_print(stdout, ms_statistics_json(groups, count), err);
     } else if (status == MS_OK) {
         FILE *words = p->rows == stdout ? stderr : stdout;
-        ms_statistics_print(words, groups, count, a->until_dice >= 0);
+        ms_statistics_print(words, groups, count, a->until_dice > 0);
     }
     free(groups);
     return status == MS_OK && a->charts ? ms_stability_charts(a->charts, p->run, p->n_runs, err) : status;
@@ -258,8 +260,8 @@ static ms_status report(const arguments *a, const progress *p, ms_error *err)
 static size_t count_runs(const arguments *a)
 {
     size_t each = 0, shapes = (size_t)a->n_shapes;
-    for (int c = 0; c < MS_CHANGES; c++) {
-        each += a->wanted[c] ? (size_t)ms_stability_change_runs((ms_change)c, (int)a->runs) : 0;
+    for (int c = 0; ms_changes[c].name; c++) {
+        each += a->wanted[c] ? (size_t)ms_change_runs(&ms_changes[c], (int)a->runs) : 0;
     }
     for (const ms_hard_shape *shape = ms_hard_shapes; !a->n_shapes && shape->name; shape++) {
         shapes++;
@@ -306,8 +308,7 @@ static int work(const ms_command *command, const arguments *a)
 
 static int run(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {
-        .spheres = DEFAULT_SPHERES, .runs = DEFAULT_RUNS, .seed = 1, .until_dice = -1, .output = "stability.csv"};
+    arguments a = {.spheres = DEFAULT_SPHERES, .runs = DEFAULT_RUNS, .seed = 1, .output = "stability.csv"};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);

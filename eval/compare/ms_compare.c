@@ -5,9 +5,14 @@
 
 #include "base/ms_text.h"
 
-#define COLUMN_NAME(code, name) name,
-static const char *const NAMES[] = {MS_COLUMN_LIST(COLUMN_NAME)};
+#define COLUMN_NAME(code, name) [MS_COLUMN_##code] = name,
+static const char *const NAMES[] = {MS_COLUMN_LIST_BEFORE(COLUMN_NAME) MS_COLUMN_LIST_BEHIND(COLUMN_NAME)};
 #undef COLUMN_NAME
+
+static const char *name_column(int column)
+{
+    return NAMES[column] ? NAMES[column] : ms_measures[column - MS_COLUMN_MEASURES].in_compare;
+}
 
 ms_compare_row ms_compare_empty(void)
 {
@@ -45,7 +50,7 @@ char *ms_compare_header(void)
 {
     ms_compare_row names;
     for (int c = 0; c < MS_COLUMNS; c++) {
-        names.text[c] = NAMES[c];
+        names.text[c] = name_column(c);
     }
     return make_text(&names, MS_COLUMNS);
 }

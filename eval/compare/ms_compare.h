@@ -3,26 +3,49 @@
 #define MS_COMPARE_H
 
 #include "chart/ms_csv.h"
+#include "measure/ms_measure.h"
 
-/* The one list of columns. Those before MS_COLUMN_SPHERES say what was asked for, the others what it gave. */
-#define MS_COLUMN_LIST(X)                                                                                         \
-    X(SHAPE, "shape")                                                                                             \
-    X(CHECKSUM, "checksum")                                                                                       \
-    X(LABEL, "label")                                                                                             \
-    X(GENERATOR, "generator") X(OPTIONS, "options") X(SEED, "seed") X(CELLS, "cells") X(ASKED, "n_asked")         \
-        X(SPHERES, "n") X(STOPPED, "stopped_by") X(ETA, "eta") X(DICE, "dice") X(COVERAGE, "coverage")            \
-            X(OVERSHOOT, "overshoot") X(OFF_VOLUME, "off_volume") X(PROTRUSION, "protrusion_max")                 \
-                X(PROTRUSION_RMS, "protrusion_rms") X(GAP, "gap_max") X(GAP_RMS, "gap_rms")                       \
-                    X(RADIUS, "smallest_radius_ratio") X(PIECES, "pieces") X(INERTIA, "inertia_union")            \
-                        X(CORRECTED, "inertia_corrected") X(EPSILON, "epsilon") X(PRODUCTS, "products_epsilon")   \
-                            X(VOXEL, "voxel_size") X(READ, "seconds_read") X(VOXELIZE, "seconds_voxelize")        \
-                                X(DISTANCE, "seconds_distance") X(GENERATE, "seconds_generate")                   \
-                                    X(SCORE, "seconds_score") X(CORRECT, "seconds_correct") X(REPEATS, "repeats") \
-                                        X(MEMORY, "peak_memory_kb") X(THREADS, "threads") X(VERSION, "version")   \
-                                            X(CAUSE, "cause")
+/* The columns. Those before MS_COLUMN_SPHERES say what was asked for, the others what it gave: the measures, as their
+ * table has them (ms_measure.h), between these two lists. */
+/* clang-format off */
+#define MS_COLUMN_LIST_BEFORE(X) \
+    X(SHAPE, "shape") \
+    X(CHECKSUM, "checksum") \
+    X(LABEL, "label") \
+    X(GENERATOR, "generator") \
+    X(OPTIONS, "options") \
+    X(SEED, "seed") \
+    X(CELLS, "cells") \
+    X(ASKED, "n_asked") \
+    X(SPHERES, "n") \
+    X(STOPPED, "stopped_by")
+#define MS_COLUMN_LIST_BEHIND(X) \
+    X(CORRECTED, "inertia_corrected") \
+    X(EPSILON, "epsilon") \
+    X(PRODUCTS, "products_epsilon") \
+    X(VOXEL, "voxel_size") \
+    X(READ, "seconds_read") \
+    X(VOXELIZE, "seconds_voxelize") \
+    X(DISTANCE, "seconds_distance") \
+    X(GENERATE, "seconds_generate") \
+    X(SCORE, "seconds_score") \
+    X(CORRECT, "seconds_correct") \
+    X(REPEATS, "repeats") \
+    X(MEMORY, "peak_memory_kb") \
+    X(THREADS, "threads") \
+    X(VERSION, "version") \
+    X(CAUSE, "cause")
+/* clang-format on */
 
 #define MS_COLUMN_ENUM(code, name) MS_COLUMN_##code,
-typedef enum ms_column { MS_COLUMN_LIST(MS_COLUMN_ENUM) MS_COLUMNS } ms_column;
+typedef enum ms_column {
+    MS_COLUMN_LIST_BEFORE(MS_COLUMN_ENUM) /* MS_COLUMN_SHAPE, ... */
+    MS_COLUMN_MEASURES,                   /* that of the first measure */
+    MS_COLUMN_DICE = MS_COLUMN_MEASURES + MS_MEASURE_DICE,
+    MS_COLUMN_LAST_MEASURE = MS_COLUMN_MEASURES + MS_MEASURES - 1,
+    MS_COLUMN_LIST_BEHIND(MS_COLUMN_ENUM) /* MS_COLUMN_CORRECTED, ... */
+    MS_COLUMNS
+} ms_column;
 #undef MS_COLUMN_ENUM
 
 /** One row. A field is its text; without one, its number; empty if that is not finite. */

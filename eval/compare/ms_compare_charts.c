@@ -68,25 +68,36 @@ static ms_status cut_rows(records *all, const ms_csv *csv, ms_error *err)
 }
 
 /* One kind of chart. */
-typedef struct kind {
-    const char *name, *what, *x_label, *y_label;
+typedef struct chart_kind {
+    const char *name;
+    const char *what; /* NULL: the label of y by that of x */
+    const char *x_label, *y_label;
     ms_column x, y;
     ms_column fixed; /* rows with the largest value in this column alone */
     int front;       /* with the Pareto front, and labels */
-} kind;
+} chart_kind;
 
-static const kind KINDS[] = {
-    {"dice", "mismatch by number of spheres", "number of spheres", "mismatch D", MS_COLUMN_SPHERES, MS_COLUMN_DICE,
-     MS_COLUMN_CELLS, 0},
+/* What is drawn beside the measures by number of spheres. */
+static const chart_kind KINDS[] = {
     {"time", "speed and accuracy, labelled by number of spheres", "time, s", "mismatch D", MS_COLUMN_GENERATE,
      MS_COLUMN_DICE, MS_COLUMN_CELLS, 1},
-    {"inertia", "inertia of the union", "number of spheres", "error of the moments", MS_COLUMN_SPHERES,
-     MS_COLUMN_INERTIA, MS_COLUMN_CELLS, 0},
     {"corrected", "inertia with corrected masses", "number of spheres", "error of the moments", MS_COLUMN_SPHERES,
      MS_COLUMN_CORRECTED, MS_COLUMN_CELLS, 0},
     {"resolution", "mismatch by resolution", "cells along the shortest side", "mismatch D", MS_COLUMN_CELLS,
      MS_COLUMN_DICE, MS_COLUMN_ASKED, 0},
 };
+
+/* A measure by number of spheres. */
+static chart_kind describe_measure(ms_measure_code code)
+{
+    const ms_measure *measure = &ms_measures[code];
+    return (chart_kind){.name = measure->name,
+                        .x_label = "number of spheres",
+                        .y_label = measure->axis,
+                        .x = MS_COLUMN_SPHERES,
+                        .y = (ms_column)(MS_COLUMN_MEASURES + code),
+                        .fixed = MS_COLUMN_CELLS};
+}
 
 /* Greatest value of a column among the rows of a shape; NAN without any. */
 static double greatest(const records *all, const record *shape, ms_column column)
@@ -122,7 +133,7 @@ static int is_first(const records *all, size_t at, int method)
 }
 
 /* The points of a method; a clump of another tool has no number that it was asked for. */
-static size_t collect(ms_chart_point *point, const records *all, const record *first, const kind *k)
+static size_t collect(ms_chart_point *point, const records *all, const record *first, const chart_kind *k)
 {
     const double fixed = greatest(all, first, k->fixed);
     size_t count = 0;
@@ -172,7 +183,7 @@ static char *name_method(const record *r)
 }
 
 /* The front comes first, so that it is drawn behind the others. */
-static ms_status fill_draft(draft *d, const records *all, const record *shape, const kind *k, ms_error *err)
+static ms_status fill_draft(draft *d, const records *all, const record *shape, const chart_kind *k, ms_error *err)
 {
     d->series = calloc(all->count + 1, sizeof *d->series);
     d->name = calloc(all->count + 1, sizeof *d->name);
@@ -209,7 +220,7 @@ static void name_shape(char *out, size_t size, const record *shape)
     ms_compare_name(out, size, shape->field[MS_COLUMN_SHAPE], shape->field[MS_COLUMN_LABEL]);
 }
 
-static ms_status draw(const records *all, const record *shape, const kind *k, ms_error *err)
+static ms_status draw(const records *all, const record *shape, const chart_kind *k, ms_error *err)
 {
     char name[256], title[512], at[64];
     draft d = {0};
@@ -218,7 +229,8 @@ static ms_status draw(const records *all, const record *shape, const kind *k, ms
     char *stem = malloc(room);
     name_shape(name, sizeof name, shape);
     snprintf(at, sizeof at, k->fixed == MS_COLUMN_CELLS ? " (%g cells)" : " (up to %g spheres)", fixed);
-    snprintf(title, sizeof title, "%s: %s%s", name, k->what, isnan(fixed) ? "" : at);
+    snprintf(title, sizeof title, "%s: %s%s%s%s", name, k->what ? k->what : k->y_label, k->what ? "" : " by ",
+             k->what ? "" : k->x_label, isnan(fixed) ? "" : at);
     ms_status status = stem ? fill_draft(&d, all, shape, k, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for a chart");
     if (status == MS_OK) {
         const ms_chart chart = {.title = title,
@@ -259,6 +271,20 @@ static ms_status check_names(const records *all, ms_error *err)
     return MS_OK;
 }
 
+/* One chart of a shape; a failure is kept if it is the first. */
+static void draw_kind(ms_status *status, const records *all, const record *shape, const chart_kind *k, ms_error *err)
+{
+    ms_error why;
+    if (k->x == MS_COLUMN_CELLS && !several(all, shape, MS_COLUMN_CELLS)) {
+        return;
+    }
+    const ms_status drawn = draw(all, shape, k, &why);
+    if (*status == MS_OK && drawn != MS_OK) {
+        *status = drawn;
+        *err = why;
+    }
+}
+
 /* Without gnuplot all scripts are written nevertheless; the first failure is reported. */
 static ms_status draw_all(const records *all, ms_error *err)
 {
@@ -267,16 +293,15 @@ static ms_status draw_all(const records *all, ms_error *err)
         return status;
     }
     for (size_t r = 0; r < all->count; r++) {
+        const record *shape = &all->record[r];
+        for (int m = 0; is_first(all, r, 0) && m < MS_MEASURES; m++) {
+            const chart_kind kind = describe_measure((ms_measure_code)m);
+            if (kind.y_label) {
+                draw_kind(&status, all, shape, &kind, err);
+            }
+        }
         for (size_t k = 0; is_first(all, r, 0) && k < sizeof KINDS / sizeof *KINDS; k++) {
-            ms_error why;
-            if (KINDS[k].x == MS_COLUMN_CELLS && !several(all, &all->record[r], MS_COLUMN_CELLS)) {
-                continue;
-            }
-            const ms_status drawn = draw(all, &all->record[r], &KINDS[k], &why);
-            if (status == MS_OK && drawn != MS_OK) {
-                status = drawn;
-                *err = why;
-            }
+            draw_kind(&status, all, shape, &KINDS[k], err);
         }
     }
     return status;

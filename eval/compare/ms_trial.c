@@ -77,12 +77,8 @@ static ms_status run_once(ms_trial *trial, double *seconds, const ms_trial_run *
                           ms_error *err)
 {
     watch w = {.run = run, .start = omp_get_wtime(), .seconds = seconds, .terminal = isatty(STDERR_FILENO)};
-    ms_run one = {.target = target,
-                  .stop = ms_stop_none(),
-                  .settings = run->settings,
-                  .seed = run->seed,
-                  .progress = look,
-                  .progress_context = &w};
+    ms_run one = {
+        .target = target, .settings = run->settings, .seed = run->seed, .progress = look, .progress_context = &w};
     one.stop.spheres = run->asked[run->n_asked - 1];
     ms_clump_free(&trial->clump);
     const ms_status status = ms_generator_run(&trial->clump, &trial->reason, run->generator, &one, err);
@@ -146,21 +142,12 @@ void ms_trial_free(ms_trial *trial)
     trial->seconds = NULL;
 }
 
-static void put_metrics(ms_compare_row *row, const ms_metrics *m)
+static void put_metrics(ms_compare_row *row, const ms_metrics *metrics)
 {
-    row->number[MS_COLUMN_SPHERES] = (double)m->spheres;
-    row->number[MS_COLUMN_ETA] = m->score.eta;
-    row->number[MS_COLUMN_DICE] = m->score.dice;
-    row->number[MS_COLUMN_COVERAGE] = m->score.coverage;
-    row->number[MS_COLUMN_OVERSHOOT] = m->score.overshoot;
-    row->number[MS_COLUMN_OFF_VOLUME] = m->score.off_volume;
-    row->number[MS_COLUMN_PROTRUSION] = m->protrusion_max;
-    row->number[MS_COLUMN_PROTRUSION_RMS] = m->protrusion_rms;
-    row->number[MS_COLUMN_GAP] = m->gap_max;
-    row->number[MS_COLUMN_GAP_RMS] = m->gap_rms;
-    row->number[MS_COLUMN_RADIUS] = m->smallest_radius_ratio;
-    row->number[MS_COLUMN_PIECES] = (double)m->pieces;
-    row->number[MS_COLUMN_INERTIA] = m->inertia.weighted;
+    row->number[MS_COLUMN_SPHERES] = (double)metrics->spheres;
+    for (int m = 0; m < MS_MEASURES; m++) {
+        row->number[MS_COLUMN_MEASURES + m] = ms_measures[m].of_metrics(metrics);
+    }
 }
 
 /* The masses do not depend on density and unit, so 1 will do. */

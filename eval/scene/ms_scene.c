@@ -9,25 +9,6 @@
 #include "cli/ms_report.h"
 #include "ms_curve.h"
 
-static const ms_scene_measure MEASURES[] = {
-    {"dice", offsetof(ms_score, dice), 0},
-    {"eta", offsetof(ms_score, eta), 0},
-    {"coverage", offsetof(ms_score, coverage), 1},
-    {"inertia", offsetof(ms_score, inertia), 0},
-    {0},
-};
-
-const ms_scene_measure *ms_scene_measure_find(const char *name, ms_error *err)
-{
-    for (const ms_scene_measure *m = MEASURES; m->name; m++) {
-        if (strcmp(m->name, name) == 0) {
-            return m;
-        }
-    }
-    ms_fail(err, MS_ERR_ARG, "there is no measure '%s'; choose from dice, eta, coverage, inertia", name);
-    return NULL;
-}
-
 const ms_clump *ms_scene_clump(const ms_scene_shape *shape)
 {
     return &shape->clump[shape->chosen - 1];
@@ -55,25 +36,18 @@ const ms_scene_shape *ms_scene_smallest(const ms_scene *scene)
     return smallest;
 }
 
-static double measured(const ms_score *score, const ms_scene_measure *measure)
-{
-    double value;
-    memcpy(&value, (const char *)score + measure->offset, sizeof value);
-    return value;
-}
-
 /* The least number of spheres that reaches a tolerance. */
 static ms_status choose_by_tolerance(ms_scene_shape *shape, const ms_goal *goal, ms_error *err)
 {
     const double value = isnan(shape->row->tolerance) ? goal->value : shape->row->tolerance;
     double best = (double)NAN;
     for (size_t n = 1; n <= shape->most; n++) {
-        const double have = measured(&shape->score[n - 1], goal->measure);
-        if (goal->measure->rises ? have >= value : have <= value) {
+        const double have = goal->measure->of_score(&shape->score[n - 1]);
+        if (ms_measure_is_reached(goal->measure, have, value)) {
             shape->chosen = n;
             return MS_OK;
         }
-        best = goal->measure->rises ? fmax(best, have) : fmin(best, have);
+        best = goal->measure->better == MS_BETTER_MORE ? fmax(best, have) : fmin(best, have);
     }
     return ms_fail(err, MS_ERR_LIMIT,
                    "%s: no template of up to %zu spheres has %s %.6g, the best has %.6g; raise --max-spheres, use more "
@@ -152,10 +126,7 @@ static ms_status make_templates(ms_scene_shape *shape, const char *title, const 
     ms_stop_reason reason;
     ms_clump clump;
     ms_error cause;
-    ms_run run = {.target = &input->target,
-                  .stop = ms_stop_none(),
-                  .settings = &recipe->settings,
-                  .seed = (uint64_t)recipe->seed};
+    ms_run run = {.target = &input->target, .settings = &recipe->settings, .seed = (uint64_t)recipe->seed};
     run.stop.spheres = how->max_spheres;
     run.stop.radius = how->min_radius;
     ms_progress_show(&run, &line);

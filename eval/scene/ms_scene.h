@@ -13,16 +13,6 @@
 
 enum { MS_SCENE_MAX_SPHERES = 1000 };
 
-/** A measure that a template can be asked for. A table of them ends with a NULL name. */
-typedef struct ms_scene_measure {
-    const char *name;
-    size_t offset; /* in ms_score */
-    int rises;     /* with better templates */
-} ms_scene_measure;
-
-/** The measure of that name, or NULL with a message that lists them. */
-const ms_scene_measure *ms_scene_measure_find(const char *name, ms_error *err);
-
 typedef enum ms_goal_kind {
     MS_GOAL_NONE,
     MS_GOAL_TOLERANCE, /* a measure for each shape */
@@ -34,8 +24,8 @@ typedef enum ms_goal_kind {
 /** What the templates have to reach, or may cost. */
 typedef struct ms_goal {
     ms_goal_kind kind;
-    double value;                    /* NAN: the tolerance of each row */
-    const ms_scene_measure *measure; /* of MS_GOAL_TOLERANCE */
+    double value;              /* NAN: the tolerance of each row */
+    const ms_measure *measure; /* of MS_GOAL_TOLERANCE */
 } ms_goal;
 
 /** The templates of a shape. */
@@ -64,7 +54,7 @@ typedef struct ms_scene_run {
     const ms_recipe *recipe;
     const ms_input_flags *input;
     size_t max_spheres;
-    double min_radius; /* below 0: none */
+    double min_radius; /* 0: none */
 } ms_scene_run;
 
 /**

@@ -80,15 +80,12 @@ json_t *ms_scene_record_json(const ms_recipe *recipe, size_t max_spheres, double
 {
     return json_pack("{s:s,s:o,s:I,s:I,s:o}", "generator", recipe->generator->name, "options",
                      ms_record_settings_json(&recipe->settings), "seed", (json_int_t)recipe->seed, "max_spheres",
-                     (json_int_t)max_spheres, "min_radius", min_radius >= 0 ? json_real(min_radius) : json_null());
+                     (json_int_t)max_spheres, "min_radius", min_radius > 0 ? json_real(min_radius) : json_null());
 }
 
 json_t *ms_scene_scores_json(const ms_scene_shape *shape)
 {
-    const ms_score *score = ms_scene_score(shape);
-    return json_pack("{s:I,s:f,s:f,s:f,s:f,s:f,s:o}", "spheres", (json_int_t)ms_scene_clump(shape)->n_spheres, "eta",
-                     score->eta, "dice", score->dice, "coverage", score->coverage, "overshoot", score->overshoot,
-                     "off_volume", score->off_volume, "inertia", ms_report_number(score->inertia));
+    return ms_report_score_json(ms_scene_score(shape), ms_scene_clump(shape)->n_spheres);
 }
 
 static json_t *goal_json(const ms_goal *goal)

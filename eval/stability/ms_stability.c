@@ -8,176 +8,42 @@
 #include "base/ms_file.h"
 #include "base/ms_text.h"
 #include "chart/ms_csv.h"
-#include "ms_perturb.h"
 
-#define CHANGE_NAME(code, name, level) name,
-static const char *const CHANGES[] = {MS_CHANGE_LIST(CHANGE_NAME)};
 #define OUTCOME_NAME(code, name) name,
 static const char *const OUTCOMES[] = {MS_OUTCOME_LIST(OUTCOME_NAME)};
 
 /* What --until-dice allows, over the number of spheres asked for. */
-enum { UNTIL_FACTOR = 10, MOST_REFINED = 2 };
+enum { UNTIL_FACTOR = 10 };
 
-const char *ms_stability_change_name(ms_change change)
+/* The shape and the run as they were changed. */
+static ms_status apply_change(ms_changed *c, const ms_stability_run *run, const ms_stability *s, ms_error *err)
 {
-    return CHANGES[change];
-}
-
-ms_status ms_stability_change_find(ms_change *change, const char *name, ms_error *err)
-{
-    char names[256] = "";
-    for (int c = MS_CHANGE_NONE + 1; c < MS_CHANGES; c++) {
-        if (strcmp(CHANGES[c], name) == 0) {
-            *change = (ms_change)c;
-            return MS_OK;
-        }
-        strcat(strcat(names, c == MS_CHANGE_NONE + 1 ? "" : ", "), CHANGES[c]);
-    }
-    return ms_fail(err, MS_ERR_ARG, "there is no perturbation '%.40s'; choose from %s", name, names);
-}
-
-int ms_stability_change_runs(ms_change change, int runs)
-{
-    const int most = change == MS_CHANGE_NONE     ? 1
-                     : change == MS_CHANGE_AXES   ? MS_MOTION_AXIS_TURNS - 1
-                     : change == MS_CHANGE_REFINE ? MOST_REFINED
-                                                  : runs;
-    return runs < most ? runs : most;
-}
-
-/* Step `number` of `runs` from lo to hi, in equal ratios; of a single one the middle. */
-static double ladder(double lo, double hi, int number, int runs)
-{
-    return runs < 2 ? sqrt(lo * hi) : lo * pow(hi / lo, (double)(number - 1) / (runs - 1));
-}
-
-static double level_of(const ms_stability *s, ms_change change, int number)
-{
-    switch (change) {
-    case MS_CHANGE_NONE:
-        return 0;
-    case MS_CHANGE_AXES:
-        return 1 + (number - 1) * (MS_MOTION_AXIS_TURNS - 1) / ms_stability_change_runs(change, s->runs);
-    case MS_CHANGE_RESOLUTION:
-        return ladder(0.5, 2, number, s->runs);
-    case MS_CHANGE_NOISE:
-        return ladder(0.001, 0.03, number, s->runs);
-    case MS_CHANGE_DECIMATE:
-        return ladder(0.02, 0.2, number, s->runs);
-    case MS_CHANGE_SHIFT:
-    case MS_CHANGE_REFINE:
-    case MS_CHANGE_THREADS:
-        return number;
-    default: /* seeds */
-        return (double)s->seed + number;
-    }
-}
-
-/* A shape as it was changed. */
-typedef struct changed {
-    ms_mesh mesh;
-    ms_motion motion;
-    ms_target target;
-} changed;
-
-/* Places that fill the cube evenly: multiples of the powers of 1 / 1.2207, the root of x^4 = x + 1. */
-static void choose_shift(double shift[3], double voxel, double level)
-{
-    static const double step[3] = {0.81917251339616444, 0.67104360670378921, 0.54970047790197029};
-    for (int a = 0; a < 3; a++) {
-        shift[a] = voxel * fmod(level * step[a], 1);
-    }
-}
-
-static ms_status refine(ms_mesh *mesh, int times, ms_error *err)
-{
-    ms_status status = MS_OK;
-    for (int k = 0; k < times && status == MS_OK; k++) {
-        ms_mesh finer;
-        status = ms_perturb_refine(&finer, mesh, err);
-        if (status == MS_OK) {
-            ms_mesh_free(mesh);
-            *mesh = finer;
-        }
-    }
-    return status;
-}
-
-static ms_status decimate(ms_mesh *mesh, double cell, int closed, ms_error *err)
-{
-    ms_mesh coarser;
-    ms_mesh_report report;
-    ms_status status = ms_perturb_decimate(&coarser, &report, mesh, cell, err);
-    if (status == MS_OK && closed && !report.closed) {
-        ms_mesh_free(&coarser);
-        return ms_fail(err, MS_ERR_SHAPE, "with its vertices joined in cells of %g the mesh is open: %zu odd edges",
-                       cell, report.odd_edges);
-    }
+    const ms_change_order order = {.level = run->level,
+                                   .number = run->number,
+                                   .seed = s->seed,
+                                   .diameter = 2 * ms_target_equivalent_radius(&s->input->target),
+                                   .closed = s->input->report.closed};
+    *c = (ms_changed){.motion = ms_perturb_motion_none(),
+                      .seed = s->seed,
+                      .voxel_size = s->input->target.grid.h,
+                      .threads = s->threads};
+    ms_status status = ms_perturb_copy(&c->mesh, &s->input->mesh, err);
     if (status == MS_OK) {
-        ms_mesh_free(mesh);
-        *mesh = coarser;
+        status = run->change->apply(c, &order, err);
+        ms_perturb_motion_apply(&c->mesh, &c->motion);
     }
     return status;
 }
 
-static ms_status change_mesh(changed *c, const ms_stability_run *run, const ms_input *input, ms_error *err)
-{
-    const double diameter = 2 * ms_target_equivalent_radius(&input->target);
-    const uint64_t seed = (uint64_t)run->level;
-    c->motion = ms_perturb_motion_none();
-    ms_status status = ms_perturb_copy(&c->mesh, &input->mesh, err);
-    if (status != MS_OK) {
-        return status;
-    }
-    switch (run->change) {
-    case MS_CHANGE_AXES:
-        c->motion = ms_perturb_motion_axis_turn((int)run->level);
-        break;
-    case MS_CHANGE_ROTATION:
-        status = ms_perturb_motion_random_turn(&c->motion, seed, err);
-        break;
-    case MS_CHANGE_SHIFT:
-        choose_shift(c->motion.shift, run->voxel_size, run->level);
-        break;
-    case MS_CHANGE_NOISE:
-        status = ms_perturb_noise(&c->mesh, run->level * diameter, run->seed + (uint64_t)run->number, err);
-        break;
-    case MS_CHANGE_REFINE:
-        status = refine(&c->mesh, (int)run->level, err);
-        break;
-    case MS_CHANGE_DECIMATE:
-        status = decimate(&c->mesh, run->level * diameter, input->report.closed, err);
-        break;
-    case MS_CHANGE_ORDER:
-        status = ms_perturb_order(&c->mesh, seed, err);
-        break;
-    default: /* the mesh stays */
-        break;
-    }
-    ms_perturb_motion_apply(&c->mesh, &c->motion);
-    return status;
-}
-
-static ms_status make_changed(changed *c, const ms_stability_run *run, const ms_stability *s, ms_error *err)
+static ms_status make_target(ms_target *target, const ms_changed *c, const ms_stability *s, ms_error *err)
 {
     double n[3];
-    ms_status status = change_mesh(c, run, s->input, err);
-    if (status == MS_OK) {
-        ms_voxelize_extents(n, &c->mesh, run->voxel_size);
-        if (ms_target_bytes(n) > s->flags->max_memory) {
-            status = ms_fail(err, MS_ERR_LIMIT, "a grid of %.6gx%.6gx%.6g voxels takes more than the memory allowed",
-                             n[0], n[1], n[2]);
-        }
+    ms_voxelize_extents(n, &c->mesh, c->voxel_size);
+    if (ms_target_bytes(n) > s->flags->max_memory) {
+        return ms_fail(err, MS_ERR_LIMIT, "a grid of %.6gx%.6gx%.6g voxels takes more than the memory allowed", n[0],
+                       n[1], n[2]);
     }
-    return status == MS_OK ? ms_target_from_mesh(&c->target, &c->mesh, s->input->report.closed, run->voxel_size,
-                                                 s->flags->rule, err)
-                           : status;
-}
-
-static void free_changed(changed *c)
-{
-    ms_target_free(&c->target);
-    ms_mesh_free(&c->mesh);
+    return ms_target_from_mesh(target, &c->mesh, s->input->report.closed, c->voxel_size, s->flags->rule, err);
 }
 
 static uint64_t sum_spheres(const ms_clump *clump)
@@ -191,7 +57,7 @@ static ms_status seek_number(ms_stability_run *run, ms_run job, const ms_stabili
 {
     ms_clump clump;
     ms_stop_reason reason;
-    job.stop = ms_stop_none();
+    job.stop = (ms_stop){0};
     job.stop.spheres =
         s->spheres < MS_CLUMP_MAX_SPHERES / UNTIL_FACTOR ? s->spheres * UNTIL_FACTOR : MS_CLUMP_MAX_SPHERES;
     job.stop.dice = s->until_dice;
@@ -201,52 +67,65 @@ static ms_status seek_number(ms_stability_run *run, ms_run job, const ms_stabili
     return status;
 }
 
-static ms_status run_method(ms_stability_run *run, const changed *c, const ms_stability *s, ms_error *err)
+static ms_status run_method(ms_stability_run *run, const ms_target *target, const ms_motion *motion,
+                            const ms_stability *s, ms_error *err)
 {
     ms_clump clump;
-    ms_run job = {.target = &c->target, .stop = ms_stop_none(), .settings = &s->method->settings, .seed = run->seed};
+    ms_run job = {.target = target, .settings = &s->method->settings, .seed = run->seed};
     job.stop.spheres = s->spheres;
     const double start = omp_get_wtime();
     ms_status status = ms_generator_run(&clump, &run->reason, s->method->generator, &job, err);
     run->seconds = omp_get_wtime() - start;
     if (status == MS_OK) {
-        ms_perturb_motion_undo(&clump, &c->motion);
+        ms_perturb_motion_undo(&clump, motion);
         run->checksum = sum_spheres(&clump);
         status = ms_metrics_compute(&run->metrics, NULL, &s->input->target, &clump, ms_input_max_voxels(s->flags), err);
     }
-    if (status == MS_OK && s->until_dice >= 0) {
+    if (status == MS_OK && s->until_dice > 0) {
         status = seek_number(run, job, s, err);
     }
     ms_clump_free(&clump);
     return status;
 }
 
-void ms_stability_try(ms_stability_run *run, const ms_stability *s, ms_change change, int number)
+/* Changes the shape, makes its target, runs the method. */
+static void try_change(ms_stability_run *run, const ms_stability *s)
 {
-    changed c = {0};
-    memset(run, 0, sizeof *run);
-    run->shape = s->input->path;
-    run->method = s->method;
-    run->shape_checksum = s->input->checksum;
-    run->change = change;
-    run->number = number;
-    run->level = level_of(s, change, number);
-    run->seed = change == MS_CHANGE_SEED ? (uint64_t)run->level : s->seed;
-    run->voxel_size = s->input->target.grid.h / (change == MS_CHANGE_RESOLUTION ? run->level : 1);
-    run->threads = change == MS_CHANGE_THREADS ? (int)run->level : s->threads;
-    run->asked = s->spheres;
-    run->until_dice = s->until_dice;
+    ms_changed c;
+    ms_target target = {0};
+    ms_status status = apply_change(&c, run, s, &run->cause);
+    run->seed = c.seed;
+    run->voxel_size = c.voxel_size;
+    run->threads = c.threads;
     omp_set_num_threads(run->threads);
-    if (make_changed(&c, run, s, &run->cause) != MS_OK) {
+    if (status == MS_OK) {
+        status = make_target(&target, &c, s, &run->cause);
+    }
+    if (status != MS_OK) {
         run->outcome = MS_OUTCOME_UNUSABLE;
-    } else if (run_method(run, &c, s, &run->cause) != MS_OK) {
+    } else if (run_method(run, &target, &c.motion, s, &run->cause) != MS_OK) {
         run->outcome = MS_OUTCOME_FAILED;
     } else {
         run->outcome = run->metrics.spheres < s->spheres ? MS_OUTCOME_SHORT : MS_OUTCOME_OK;
         run->cause.text[0] = 0;
     }
     omp_set_num_threads(s->threads);
-    free_changed(&c);
+    ms_target_free(&target);
+    ms_mesh_free(&c.mesh);
+}
+
+void ms_stability_try(ms_stability_run *run, const ms_stability *s, const ms_change *change, int number)
+{
+    memset(run, 0, sizeof *run);
+    run->shape = s->input->path;
+    run->method = s->method;
+    run->shape_checksum = s->input->checksum;
+    run->change = change;
+    run->number = number;
+    run->level = ms_change_level(change, s->seed, number, s->runs);
+    run->asked = s->spheres;
+    run->until_dice = s->until_dice;
+    try_change(run, s);
 }
 
 ms_label ms_stability_label(const ms_method *method)
@@ -263,19 +142,36 @@ int ms_stability_gave(const ms_stability_run *run)
 
 const ms_stability_run *ms_stability_unchanged(const ms_stability_run *runs, const ms_stability_run *run)
 {
-    while (run > runs && run->change != MS_CHANGE_NONE) {
+    while (run > runs && run->change != &ms_changes[0]) {
         run--;
     }
     return ms_stability_gave(run) ? run : NULL;
 }
 
+/* The measures that are columns, in their order: first those of S and U, then those of the spheres; no surfaces. */
+static size_t list_measures(const ms_measure *listed[MS_MEASURES])
+{
+    size_t count = 0;
+    for (int of_spheres = 0; of_spheres < 2; of_spheres++) {
+        for (const ms_measure *m = ms_measures; m->name; m++) {
+            if (m->kind != MS_MEASURE_KIND_SURFACE && ms_measure_is_of_score(m) == !of_spheres) {
+                listed[count++] = m;
+            }
+        }
+    }
+    return count;
+}
+
 void ms_stability_header(FILE *stream)
 {
-    fputs("shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,status,n,stopped_by,"
-          "eta,dice,coverage,overshoot,off_volume,inertia_error,smallest_radius_ratio,pieces,n_until,seconds,spheres_"
-          "fnv1a,"
-          "cause\n",
+    const ms_measure *listed[MS_MEASURES];
+    const size_t count = list_measures(listed);
+    fputs("shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,status,n,stopped_by",
           stream);
+    for (size_t m = 0; m < count; m++) {
+        fprintf(stream, ",%s", listed[m]->in_stability);
+    }
+    fputs(",n_until,seconds,spheres_fnv1a,cause\n", stream);
 }
 
 /* Empty where there is none. */
@@ -284,18 +180,27 @@ static void put_number(FILE *stream, double value)
     fprintf(stream, ",%s", isfinite(value) ? ms_text_of_number(value).text : "");
 }
 
+/* From n to spheres_fnv1a; all empty if the run gave nothing. */
 static void put_results(FILE *stream, const ms_stability_run *run)
 {
-    const ms_metrics *m = &run->metrics;
-    const double values[] = {m->score.eta,        m->score.dice,       m->score.coverage,        m->score.overshoot,
-                             m->score.off_volume, m->inertia.weighted, m->smallest_radius_ratio, (double)m->pieces};
-    fprintf(stream, ",%zu,%s", m->spheres, ms_stop_name(run->reason));
-    for (size_t v = 0; v < sizeof values / sizeof *values; v++) {
-        put_number(stream, values[v]);
+    const int gave = ms_stability_gave(run);
+    const double nothing = (double)NAN;
+    const ms_measure *listed[MS_MEASURES];
+    const size_t count = list_measures(listed);
+    fputc(',', stream);
+    if (gave) {
+        fprintf(stream, "%zu", run->metrics.spheres);
     }
-    put_number(stream, run->spheres_until ? (double)run->spheres_until : (double)NAN);
-    put_number(stream, run->seconds);
-    fprintf(stream, ",%016" PRIx64, run->checksum);
+    fprintf(stream, ",%s", gave ? ms_stop_name(run->reason) : "");
+    for (size_t m = 0; m < count; m++) {
+        put_number(stream, gave ? listed[m]->of_metrics(&run->metrics) : nothing);
+    }
+    put_number(stream, gave && run->spheres_until ? (double)run->spheres_until : nothing);
+    put_number(stream, gave ? run->seconds : nothing);
+    fputc(',', stream);
+    if (gave) {
+        fprintf(stream, "%016" PRIx64, run->checksum);
+    }
 }
 
 void ms_stability_row(FILE *stream, const ms_stability_run *run)
@@ -305,16 +210,12 @@ void ms_stability_row(FILE *stream, const ms_stability_run *run)
     ms_csv_put(stream, run->method->name);
     fputc(',', stream);
     ms_csv_put(stream, run->method->options);
-    fprintf(stream, ",%s", CHANGES[run->change]);
+    fprintf(stream, ",%s", run->change->name);
     put_number(stream, run->level);
     fprintf(stream, ",%" PRIu64, run->seed);
     put_number(stream, run->voxel_size);
     fprintf(stream, ",%d,%zu,%s", run->threads, run->asked, OUTCOMES[run->outcome]);
-    if (ms_stability_gave(run)) {
-        put_results(stream, run);
-    } else {
-        fputs(",,,,,,,,,,,,,", stream);
-    }
+    put_results(stream, run);
     fputc(',', stream);
     ms_csv_put(stream, run->cause.text);
     fputc('\n', stream);

@@ -7,33 +7,7 @@
 #include "cli/ms_input.h"
 #include "compare/ms_compare_methods.h"
 #include "measure/ms_metrics.h"
-
-/* Changes, and what says how large one is (its level). */
-#define MS_CHANGE_LIST(X)                                                            \
-    X(NONE, "none", "nothing is changed: what the others are compared with")         \
-    X(AXES, "axes", "number of the rotation of the cube, 1 to 23")                   \
-    X(ROTATION, "rotation", "seed of the random rotation")                           \
-    X(SHIFT, "shift", "number of the shift by parts of a voxel")                     \
-    X(RESOLUTION, "resolution", "cells over those asked for, 0.5 to 2")              \
-    X(NOISE, "noise", "amplitude of the vertices' displacement, 0.001 to 0.03 d_eq") \
-    X(REFINE, "refine", "times that each triangle was cut in four, 1 or 2")          \
-    X(DECIMATE, "decimate", "cell in which vertices were joined, 0.02 to 0.2 d_eq")  \
-    X(SEED, "seed", "seed of the method")                                            \
-    X(ORDER, "order", "seed of the order of vertices and triangles")                 \
-    X(THREADS, "threads", "number of threads")
-
-#define MS_CHANGE_ENUM(code, name, level) MS_CHANGE_##code,
-typedef enum ms_change { MS_CHANGE_LIST(MS_CHANGE_ENUM) MS_CHANGES } ms_change;
-#undef MS_CHANGE_ENUM
-
-/** "none", "axes", ... */
-const char *ms_stability_change_name(ms_change change);
-
-/** @return MS_OK; MS_ERR_ARG with the names */
-ms_status ms_stability_change_find(ms_change *change, const char *name, ms_error *err);
-
-/** How many different levels there are, of so many asked for: not all changes have as many. */
-int ms_stability_change_runs(ms_change change, int runs);
+#include "ms_change.h"
 
 /** How a run ended. */
 #define MS_OUTCOME_LIST(X)                                                  \
@@ -51,7 +25,7 @@ typedef struct ms_stability {
     const ms_input *input; /* unchanged, with its target: the judge of all runs */
     const ms_method *method;
     size_t spheres;
-    double until_dice; /* below 0: not asked for */
+    double until_dice; /* 0: not asked for */
     uint64_t seed;
     int threads;
     int runs; /* levels of each change */
@@ -63,14 +37,14 @@ typedef struct ms_stability_run {
     const char *shape;       /* borrowed */
     const ms_method *method; /* borrowed */
     uint64_t shape_checksum;
-    ms_change change;
+    const ms_change *change;
     int number; /* from 1 */
     double level;
     uint64_t seed;
     double voxel_size;
     int threads;
     size_t asked;
-    double until_dice; /* below 0: not asked for */
+    double until_dice; /* 0: not asked for */
     ms_outcome outcome;
     ms_stop_reason reason;
     ms_metrics metrics;   /* against the unchanged shape, of the spheres moved back */
@@ -84,9 +58,9 @@ typedef struct ms_stability_run {
  * Changes the shape, runs the method on it, moves the spheres back and judges them on the grid of the unchanged shape.
  * A failure is a result: it stands in the run.
  *
- * @param number from 1 to ms_stability_change_runs
+ * @param number from 1 to ms_change_runs
  */
-void ms_stability_try(ms_stability_run *run, const ms_stability *s, ms_change change, int number);
+void ms_stability_try(ms_stability_run *run, const ms_stability *s, const ms_change *change, int number);
 
 /** What a method is called in tables: NAME or NAME:OPTIONS, cut if it is long. */
 typedef struct ms_label {

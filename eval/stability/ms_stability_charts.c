@@ -69,7 +69,7 @@ static ms_status draw(album *a, const char *kind, ms_chart chart, ms_error *err)
     return status;
 }
 
-static int is_of(const album *a, const ms_stability_run *run, ms_change change)
+static int is_of(const album *a, const ms_stability_run *run, const ms_change *change)
 {
     return run->change == change && ms_stability_gave(run) && run->method == a->method;
 }
@@ -79,21 +79,21 @@ static ms_status draw_all(album *a, ms_error *err)
     static const ms_chart chart = {
         .x_label = "D of the unchanged shape", .y_label = "D of the changed shape", .x_log = 1, .y_log = 1};
     a->n_points = a->n_series = 0;
-    for (int c = 0; c < MS_CHANGES; c++) {
-        begin_series(a, ms_stability_change_name((ms_change)c), MS_CHART_POINTS);
+    for (const ms_change *change = ms_changes; change->name; change++) {
+        begin_series(a, change->name, MS_CHART_POINTS);
         for (size_t r = 0; r < a->n_runs; r++) {
             const ms_stability_run *run = &a->runs[r];
-            if (is_of(a, run, (ms_change)c)) {
-                add_point(a, unchanged_dice(a, run), run->metrics.score.dice, c == MS_CHANGE_NONE ? run->shape : "");
+            if (is_of(a, run, change)) {
+                add_point(a, unchanged_dice(a, run), run->metrics.score.dice, change == ms_changes ? run->shape : "");
             }
         }
     }
     return a->n_points ? draw(a, "all", chart, err) : MS_OK;
 }
 
-static ms_status draw_levels(album *a, ms_change change, const char *x_label, ms_error *err)
+static ms_status draw_levels(album *a, const ms_change *change, ms_error *err)
 {
-    const ms_chart chart = {.x_label = x_label, .y_label = "D / D of the unchanged shape", .x_log = 1, .y_log = 1};
+    const ms_chart chart = {.x_label = change->axis, .y_label = "D / D of the unchanged shape", .x_log = 1, .y_log = 1};
     const char *shape = NULL;
     a->n_points = a->n_series = 0;
     for (size_t r = 0; r < a->n_runs; r++) {
@@ -107,19 +107,16 @@ static ms_status draw_levels(album *a, ms_change change, const char *x_label, ms
         }
         add_point(a, run->level, run->metrics.score.dice / unchanged_dice(a, run), "");
     }
-    return a->n_points ? draw(a, ms_stability_change_name(change), chart, err) : MS_OK;
+    return a->n_points ? draw(a, change->name, chart, err) : MS_OK;
 }
 
 static ms_status draw_method(album *a, ms_error *err)
 {
     ms_status status = draw_all(a, err);
-    if (status == MS_OK) {
-        status = draw_levels(a, MS_CHANGE_RESOLUTION, "cells / cells asked for", err);
+    for (const ms_change *change = ms_changes; change->name && status == MS_OK; change++) {
+        status = change->axis ? draw_levels(a, change, err) : MS_OK;
     }
-    if (status == MS_OK) {
-        status = draw_levels(a, MS_CHANGE_NOISE, "amplitude of the noise / d_eq", err);
-    }
-    return status == MS_OK ? draw_levels(a, MS_CHANGE_DECIMATE, "cell of joined vertices / d_eq", err) : status;
+    return status;
 }
 
 /* Has a run before this one the same method? */
@@ -138,7 +135,7 @@ ms_status ms_stability_charts(const char *folder, const ms_stability_run *runs, 
                .runs = runs,
                .n_runs = n_runs,
                .point = malloc((n_runs + 1) * sizeof *a.point),
-               .series = malloc((n_runs + MS_CHANGES) * sizeof *a.series)};
+               .series = malloc((n_runs + MS_CHANGE_MOST) * sizeof *a.series)};
     ms_status status =
         a.point && a.series ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for charts of %zu runs", n_runs);
     for (size_t r = 0; r < n_runs && status == MS_OK; r++) {

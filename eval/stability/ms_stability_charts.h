@@ -6,7 +6,7 @@
 
 /**
  * For each method, numbered as in the runs: NUMBER-METHOD-all, D of the changed shape over D of the unchanged one, and of
- * resolution, noise and decimation NUMBER-METHOD-KIND, the ratio of the two over the level, a line for each shape. A
+ * each change that has an axis NUMBER-METHOD-KIND, the ratio of the two over the level, a line for each shape. A
  * chart without points is left out.
  *
  * @param folder exists

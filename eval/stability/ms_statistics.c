@@ -72,7 +72,7 @@ static void measure(ms_statistics_group *g, const ms_stability_run *runs, size_t
         if (ms_stability_gave(run)) {
             const ms_stability_run *unchanged = ms_stability_unchanged(runs, run);
             g->identical += unchanged && run->checksum == unchanged->checksum;
-            g->not_reached += run->until_dice >= 0 && !run->spheres_until;
+            g->not_reached += run->until_dice > 0 && !run->spheres_until;
             dice[n] = weigh_dice(g, &largest, run, unchanged);
             inertia[n] = run->metrics.inertia.weighted;
             until[n++] = run->spheres_until ? (double)run->spheres_until : (double)NAN;
@@ -144,8 +144,8 @@ static void print_head(FILE *stream, const ms_statistics_group *g, int until)
 static void print_group(FILE *stream, const ms_statistics_group *g, int until)
 {
     const ms_statistics *d = &g->dice;
-    fprintf(stream, "  %-22s %-10s %4zu %5zu %6zu %5zu %8zu", ms_stability_label(g->method).text,
-            ms_stability_change_name(g->change), g->runs, g->identical, g->failed, g->shorter, g->unusable);
+    fprintf(stream, "  %-22s %-10s %4zu %5zu %6zu %5zu %8zu", ms_stability_label(g->method).text, g->change->name,
+            g->runs, g->identical, g->failed, g->shorter, g->unusable);
     print_number(stream, 7, 4, d->least);
     print_number(stream, 7, 4, d->median);
     print_number(stream, 7, 4, d->most);
@@ -180,30 +180,42 @@ void ms_statistics_print(FILE *stream, const ms_statistics_group *groups, size_t
         const ms_statistics_group *at = &groups[g];
         if (at->shape && at->cause) {
             fprintf(stream, "%s, %s, %s: %zu failed, %zu unusable: %s\n", at->shape,
-                    ms_stability_label(at->method).text, ms_stability_change_name(at->change), at->failed, at->unusable,
-                    at->cause->text);
+                    ms_stability_label(at->method).text, at->change->name, at->failed, at->unusable, at->cause->text);
         }
     }
 }
 
-static json_t *spread_json(const ms_statistics *s)
+static json_t *statistics_json(const ms_statistics *s)
 {
-    return json_pack("{s:I,s:o,s:o,s:o,s:o}", "count", (json_int_t)s->count, "min", ms_report_number(s->least),
-                     "median", ms_report_number(s->median), "max", ms_report_number(s->most), "deviation",
-                     ms_report_number(s->deviation));
+    json_t *json = json_object();
+    int failed = json_object_set_new(json, "count", json_integer((json_int_t)s->count));
+    failed |= json_object_set_new(json, "min", ms_report_number(s->least));
+    failed |= json_object_set_new(json, "median", ms_report_number(s->median));
+    failed |= json_object_set_new(json, "max", ms_report_number(s->most));
+    failed |= json_object_set_new(json, "deviation", ms_report_number(s->deviation));
+    return ms_report_whole(json, failed);
 }
 
 static json_t *group_json(const ms_statistics_group *g)
 {
-    return json_pack(
-        "{s:o,s:o,s:s,s:I,s:I,s:I,s:I,s:I,s:I,s:o,s:o,s:o,s:o,s:o}", "shape",
-        g->shape ? ms_report_text(g->shape) : json_null(), "method", ms_report_text(ms_stability_label(g->method).text),
-        "perturbation", ms_stability_change_name(g->change), "runs", (json_int_t)g->runs, "identical",
-        (json_int_t)g->identical, "failed", (json_int_t)g->failed, "short", (json_int_t)g->shorter, "unusable",
-        (json_int_t)g->unusable, "not_reached", (json_int_t)g->not_reached, g->shape ? "dice" : "dice_ratio",
-        spread_json(&g->dice), "inertia_error_spread", spread_json(&g->inertia), "n_until", spread_json(&g->until),
-        "worst", g->worst ? ms_report_text(g->worst) : json_null(), "cause",
-        g->cause ? ms_report_text(g->cause->text) : json_null());
+    const struct {
+        const char *key;
+        size_t value;
+    } counts[] = {{"runs", g->runs},     {"identical", g->identical}, {"failed", g->failed},
+                  {"short", g->shorter}, {"unusable", g->unusable},   {"not_reached", g->not_reached}};
+    json_t *json = json_object();
+    int failed = json_object_set_new(json, "shape", g->shape ? ms_report_text(g->shape) : json_null());
+    failed |= json_object_set_new(json, "method", ms_report_text(ms_stability_label(g->method).text));
+    failed |= json_object_set_new(json, "perturbation", json_string(g->change->name));
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+        failed |= json_object_set_new(json, counts[c].key, json_integer((json_int_t)counts[c].value));
+    }
+    failed |= json_object_set_new(json, g->shape ? "dice" : "dice_ratio", statistics_json(&g->dice));
+    failed |= json_object_set_new(json, "inertia_error_spread", statistics_json(&g->inertia));
+    failed |= json_object_set_new(json, "n_until", statistics_json(&g->until));
+    failed |= json_object_set_new(json, "worst", g->worst ? ms_report_text(g->worst) : json_null());
+    failed |= json_object_set_new(json, "cause", g->cause ? ms_report_text(g->cause->text) : json_null());
+    return ms_report_whole(json, failed);
 }
 
 json_t *ms_statistics_json(const ms_statistics_group *groups, size_t count)

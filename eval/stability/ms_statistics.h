@@ -21,7 +21,7 @@ ms_statistics ms_statistics_of(double *values, size_t count);
 typedef struct ms_statistics_group {
     const char *shape;       /* borrowed; NULL: all */
     const ms_method *method; /* borrowed */
-    ms_change change;
+    const ms_change *change;
     size_t runs; /* without the unusable ones */
     size_t failed, shorter, unusable;
     size_t identical;      /* the spheres of the unchanged shape, to the last bit */

@@ -19,7 +19,7 @@ static ms_status time_mss(double *seconds, const ms_target *target, ms_error *er
     ms_clump clump = {0};
     ms_stop_reason reason;
     ms_status status = ms_option_settings_init(&settings, ms_generator_mss.options, err);
-    ms_run run = {.target = target, .stop = ms_stop_none(), .settings = &settings};
+    ms_run run = {.target = target, .settings = &settings};
     run.stop.spheres = 50;
     const double start = omp_get_wtime();
     if (status == MS_OK) {

@@ -31,7 +31,7 @@ static ms_status run_mss(const ms_mesh *mesh, double h, ms_error *err)
     }
     const double made = omp_get_wtime();
     status = ms_option_settings_init(&settings, ms_generator_mss.options, err);
-    ms_run run = {.target = &target, .stop = ms_stop_none(), .settings = &settings};
+    ms_run run = {.target = &target, .settings = &settings};
     run.stop.spheres = 70;
     if (status == MS_OK) {
         status = ms_generator_run(&clump, &reason, &ms_generator_mss, &run, err);

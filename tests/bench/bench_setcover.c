@@ -16,7 +16,7 @@ static ms_status run_setcover(const ms_target *target, double coverage, const ch
     if (status == MS_OK) {
         status = ms_option_settings_set(&settings, "candidates", candidates, err);
     }
-    ms_run run = {.target = target, .stop = ms_stop_none(), .settings = &settings};
+    ms_run run = {.target = target, .settings = &settings};
     run.stop.coverage = coverage;
     const double start = omp_get_wtime();
     if (status == MS_OK) {

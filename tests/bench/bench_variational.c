@@ -69,7 +69,7 @@ static ms_status measure(double *seconds, const ms_target *target, const ms_gene
     ms_stop_reason reason;
     ms_metrics metrics;
     ms_status status = ms_option_settings_init(&settings, generator->options, err);
-    ms_run run = {.target = target, .stop = ms_stop_none(), .settings = &settings};
+    ms_run run = {.target = target, .settings = &settings};
     run.stop.spheres = spheres;
     const double start = omp_get_wtime();
     if (status == MS_OK) {

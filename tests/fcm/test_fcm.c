@@ -33,7 +33,7 @@ static ms_clump run_fcm(const ms_target *target, size_t spheres, const char *opt
     ms_clump clump;
     ms_stop_reason reason;
     ms_error err;
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     stop.spheres = spheres;
     if (try_fcm(&clump, &reason, target, stop, options, seed, &err) != MS_OK) {
         fail_msg("%s", err.text);
@@ -141,7 +141,7 @@ static void nodes_out_of_reach_are_an_error(void **state)
     ms_clump clump;
     ms_stop_reason reason;
     ms_error err;
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     stop.spheres = 5;
     make_shape(&mesh, "cube", "");
     make_target(&target, &mesh, 30, MS_VOXEL_HALF);
@@ -218,7 +218,7 @@ static void the_stone_of_the_paper(void **state)
     ms_mesh mesh;
     ms_target target;
     ms_error err;
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     stop.spheres = 500;
     make_shape(&mesh, "grain", "fineness=10");
     assert_in_range(mesh.n_vertices, 390, 410);
@@ -247,7 +247,7 @@ static void the_volume_ends_the_run(void **state)
     ms_clump clump;
     ms_stop_reason reason;
     ms_error err;
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     stop.radius = 0.05;
     make_shape(&mesh, "ellipsoid", "fineness=12");
     make_target(&target, &mesh, 30, MS_VOXEL_HALF);
@@ -300,7 +300,7 @@ static void bad_options_are_refused(void **state)
     ms_clump clump;
     ms_stop_reason reason;
     ms_error err;
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     stop.spheres = 5;
     make_shape(&mesh, "ball", "fineness=8");
     make_target(&target, &mesh, 20, MS_VOXEL_HALF);

@@ -37,7 +37,7 @@ static outcome run_with(const ms_generator *g, const ms_target *target, ms_stop 
 
 static outcome run_spheres(const ms_generator *g, const ms_target *target, size_t spheres)
 {
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     stop.spheres = spheres;
     return run_with(g, target, stop);
 }
@@ -232,15 +232,15 @@ static void check_measure(const ms_generator *g, const ms_target *target, ms_sto
     outcome o = run_with(g, target, stop);
     const ms_score end = score_of(&o.clump, target);
     assert_int_equal(o.reason, wanted);
-    assert_true(stop.eta < 0 || end.eta <= stop.eta);
-    assert_true(stop.dice < 0 || end.dice <= stop.dice);
-    assert_true(stop.coverage < 0 || end.coverage >= stop.coverage);
+    assert_true(stop.eta == 0 || end.eta <= stop.eta);
+    assert_true(stop.dice == 0 || end.dice <= stop.dice);
+    assert_true(stop.coverage == 0 || end.coverage >= stop.coverage);
     if (g->nested && o.clump.n_spheres > 1) {
         o.clump.n_spheres--;
         const ms_score before = score_of(&o.clump, target);
-        assert_true(stop.eta < 0 || before.eta > stop.eta);
-        assert_true(stop.dice < 0 || before.dice > stop.dice);
-        assert_true(stop.coverage < 0 || before.coverage < stop.coverage);
+        assert_true(stop.eta == 0 || before.eta > stop.eta);
+        assert_true(stop.dice == 0 || before.dice > stop.dice);
+        assert_true(stop.coverage == 0 || before.coverage < stop.coverage);
     }
     ms_clump_free(&o.clump);
 }
@@ -249,13 +249,13 @@ static void measures_end_the_run(void **state)
 {
     fixture *f = *state;
     for (const ms_generator *const *g = ms_generators; *g; g++) {
-        ms_stop stop = ms_stop_none();
+        ms_stop stop = {0};
         stop.eta = 0.25;
         check_measure(*g, &f->rough, stop, MS_STOP_ETA);
-        stop = ms_stop_none();
+        stop = (ms_stop){0};
         stop.dice = 0.11;
         check_measure(*g, &f->rough, stop, MS_STOP_DICE);
-        stop = ms_stop_none();
+        stop = (ms_stop){0};
         stop.coverage = 0.83;
         check_measure(*g, &f->rough, stop, MS_STOP_COVERAGE);
         stop.coverage = 0.99; /* the first of several rules that holds */
@@ -270,7 +270,7 @@ static void inertia_ends_the_run(void **state)
 {
     fixture *f = *state;
     for (const ms_generator *const *g = ms_generators; *g; g++) {
-        ms_stop stop = ms_stop_none();
+        ms_stop stop = {0};
         ms_metrics metrics;
         ms_error err;
         stop.inertia = 0.3;
@@ -286,7 +286,7 @@ static void least_radius_is_kept(void **state)
 {
     fixture *f = *state;
     for (const ms_generator *const *g = ms_generators; *g; g++) {
-        ms_stop stop = ms_stop_none();
+        ms_stop stop = {0};
         stop.radius = 0.7 * ms_target_equivalent_radius(&f->rough);
         outcome o = run_with(*g, &f->rough, stop);
         assert_int_equal(o.reason, MS_STOP_RADIUS);
@@ -301,7 +301,7 @@ static void nothing_asked_is_an_error(void **state)
     for (const ms_generator *const *g = ms_generators; *g; g++) {
         outcome o;
         ms_error err;
-        ms_stop stop = ms_stop_none();
+        ms_stop stop = {0};
         assert_int_equal(try_run(&o, *g, &f->rough, stop, &err), MS_ERR_ARG);
         assert_int_equal(o.clump.n_spheres, 0);
         const ms_run bare = {.target = &f->rough, .stop = {.spheres = 3}};

@@ -17,13 +17,13 @@ static void reasons_have_names(void **state)
 static void measures_are_set_by_name(void **state)
 {
     (void)state;
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     assert_int_equal(ms_stop_set(&stop, "eta", 0.5, NULL), MS_OK);
-    assert_int_equal(ms_stop_set(&stop, "dice", 0, NULL), MS_OK);
+    assert_int_equal(ms_stop_set(&stop, "dice", 1e-9, NULL), MS_OK);
     assert_int_equal(ms_stop_set(&stop, "coverage", 1, NULL), MS_OK);
     assert_int_equal(ms_stop_set(&stop, "inertia", 0.25, NULL), MS_OK);
     assert_int_equal(ms_stop_set(&stop, "radius", 2385, NULL), MS_OK);
-    assert_true(stop.eta == 0.5 && stop.dice == 0 && stop.coverage == 1 && stop.inertia == 0.25);
+    assert_true(stop.eta == 0.5 && stop.dice == 1e-9 && stop.coverage == 1 && stop.inertia == 0.25);
     assert_true(stop.radius == 2385 && stop.spheres == 0);
 }
 
@@ -31,10 +31,10 @@ static void values_out_of_range_are_refused(void **state)
 {
     (void)state;
     static const char *const names[] = {"eta", "dice", "coverage", "inertia", "radius"};
-    const double bad[] = {-1e-9, 1.0001, (double)NAN, HUGE_VAL, -HUGE_VAL, -5};
+    const double bad[] = {-1e-9, 1.0001, (double)NAN, HUGE_VAL, -HUGE_VAL, -5, 0}; /* 0: not asked for */
     for (int m = 0; m < 5; m++) {
-        for (int b = 0; b < 6; b++) {
-            ms_stop stop = ms_stop_none();
+        for (int b = 0; b < 7; b++) {
+            ms_stop stop = {0};
             ms_error err = {{0}};
             if (m == 4 && b == 1) {
                 continue; /* a radius may be large */
@@ -42,10 +42,10 @@ static void values_out_of_range_are_refused(void **state)
             assert_int_equal(ms_stop_set(&stop, names[m], bad[b], &err), MS_ERR_ARG);
             expect_message(&err, names[m]);
             expect_message(&err, "out of range");
-            assert_true(stop.eta < 0 && stop.dice < 0 && stop.coverage < 0 && stop.inertia < 0 && stop.radius < 0);
+            assert_true(ms_stop_is_none(&stop));
         }
     }
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     static const char *const unknown[] = {"", "Eta", "et", "etaa", "spheres", "exhausted"};
     for (int u = 0; u < 6; u++) {
         ms_error err = {{0}};
@@ -69,7 +69,7 @@ static ms_tally lower_part(int slices, int64_t outside)
 
 static ms_stop_reason reached(const ms_target *target, const char *measure, double value, int slices, int64_t outside)
 {
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     const ms_tally sum = lower_part(slices, outside);
     assert_int_equal(ms_stop_set(&stop, measure, value, NULL), MS_OK);
     return ms_stop_reached(&stop, target, &sum, 3);
@@ -104,7 +104,48 @@ static void each_measure_ends_a_run(void **state)
         }
     }
     assert_int_equal(reached(&target, "inertia", 1, 0, 0), MS_STOP_NOT); /* nothing covered: no inertia at all */
-    assert_int_equal(reached(&target, "radius", 0, 10, 0), MS_STOP_NOT); /* the generator's to see */
+    assert_int_equal(reached(&target, "radius", 2, 10, 0), MS_STOP_NOT); /* the generator's to see */
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
+/* A zeroed rule asks for nothing, one of ten spheres for ten and nothing else. */
+static void zeroed_is_nothing(void **state)
+{
+    (void)state;
+    ms_mesh mesh;
+    ms_target target = cube_target(&mesh);
+    const ms_stop none = {0}, ten = {.spheres = 10};
+    const ms_tally whole = lower_part(10, 0); /* as good as can be in every measure */
+    assert_true(ms_stop_is_none(&none) && !ms_stop_has_measure(&none));
+    assert_true(!ms_stop_is_none(&ten) && !ms_stop_has_measure(&ten));
+    assert_int_equal(ms_stop_reached(&none, &target, &whole, 9), MS_STOP_NOT);
+    assert_int_equal(ms_stop_reached(&ten, &target, &whole, 9), MS_STOP_NOT);
+    assert_int_equal(ms_stop_reached(&ten, &target, &whole, 10), MS_STOP_SPHERES);
+    for (const ms_measure *m = ms_measures; m->name; m++) {
+        assert_true(ms_stop_asked(&ten, m) == 0);
+    }
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
+/* What the table says can be asked for can be set by name, is found again, and names the reason. */
+static void goals_of_the_table_are_known(void **state)
+{
+    (void)state;
+    ms_mesh mesh;
+    ms_target target = cube_target(&mesh);
+    const ms_tally whole = lower_part(10, 0);
+    for (const ms_measure *m = ms_measures; m->name; m++) {
+        ms_stop stop = {0};
+        const int goal = m->kind == MS_MEASURE_KIND_GOAL;
+        assert_int_equal(ms_stop_set(&stop, m->name, 0.5, NULL), goal ? MS_OK : MS_ERR_ARG);
+        assert_true(ms_stop_asked(&stop, m) == (goal ? 0.5 : 0));
+        assert_int_equal(ms_stop_has_measure(&stop), goal);
+        if (goal) {
+            assert_string_equal(ms_stop_name(ms_stop_reached(&stop, &target, &whole, 1)), m->name);
+        }
+    }
     ms_target_free(&target);
     ms_mesh_free(&mesh);
 }
@@ -115,19 +156,19 @@ static void the_first_of_the_list_is_named(void **state)
     ms_mesh mesh;
     ms_target target = cube_target(&mesh);
     const ms_tally whole = lower_part(10, 0);
-    ms_stop stop = {.spheres = 4, .eta = 0, .dice = 0, .coverage = 1, .inertia = 1e-9, .radius = -1};
+    ms_stop stop = {.spheres = 4, .eta = 1e-9, .dice = 1e-9, .coverage = 1, .inertia = 1e-9};
     assert_int_equal(ms_stop_reached(&stop, &target, &whole, 4), MS_STOP_SPHERES);
     assert_int_equal(ms_stop_reached(&stop, &target, &whole, 5), MS_STOP_SPHERES);
     assert_int_equal(ms_stop_reached(&stop, &target, &whole, 3), MS_STOP_ETA);
-    stop.eta = -1;
+    stop.eta = 0;
     assert_int_equal(ms_stop_reached(&stop, &target, &whole, 3), MS_STOP_DICE);
-    stop.dice = -1;
+    stop.dice = 0;
     assert_int_equal(ms_stop_reached(&stop, &target, &whole, 3), MS_STOP_COVERAGE);
-    stop.coverage = -1;
+    stop.coverage = 0;
     assert_int_equal(ms_stop_reached(&stop, &target, &whole, 3), MS_STOP_INERTIA);
-    stop.inertia = -1;
+    stop.inertia = 0;
     assert_int_equal(ms_stop_reached(&stop, &target, &whole, 3), MS_STOP_NOT);
-    stop = ms_stop_none();
+    stop = (ms_stop){0};
     assert_int_equal(ms_stop_reached(&stop, &target, &whole, 1000000), MS_STOP_NOT);
     ms_target_free(&target);
     ms_mesh_free(&mesh);
@@ -194,6 +235,8 @@ int main(void)
         cmocka_unit_test(measures_are_set_by_name),
         cmocka_unit_test(values_out_of_range_are_refused),
         cmocka_unit_test(each_measure_ends_a_run),
+        cmocka_unit_test(zeroed_is_nothing),
+        cmocka_unit_test(goals_of_the_table_are_known),
         cmocka_unit_test(the_first_of_the_list_is_named),
         cmocka_unit_test(inertia_of_boxes_is_compared),
         cmocka_unit_test(axes_that_nothing_determines_have_no_angle),

@@ -42,7 +42,7 @@ static outcome run_mss(const ms_target *target, ms_stop stop, const char *option
 
 static ms_stop at_most(size_t spheres)
 {
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     stop.spheres = spheres;
     return stop;
 }
@@ -132,7 +132,7 @@ static void symmetric_targets_give_symmetric_clumps(void **state)
             ms_target target;
             make_target(&target, &mesh, cells, MS_VOXEL_HALF);
             for (size_t o = 0; o < sizeof OPTIONS / sizeof *OPTIONS; o++) {
-                ms_stop stop = ms_stop_none();
+                ms_stop stop = {0};
                 stop.radius = 2 * target.grid.h; /* to the end: all sets are whole */
                 outcome out = run_mss(&target, stop, OPTIONS[o]);
                 assert_true(out.reason == MS_STOP_RADIUS || out.reason == MS_STOP_EXHAUSTED);

@@ -32,7 +32,7 @@ static ms_clump run_setcover(const ms_target *target, size_t spheres, const char
     ms_clump clump;
     ms_stop_reason reason;
     ms_error err;
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     stop.spheres = spheres;
     if (try_setcover(&clump, &reason, target, stop, options, &err) != MS_OK) {
         fail_msg("%s", err.text);
@@ -241,7 +241,7 @@ static void huge_lattices_are_refused(void **state)
     ms_clump clump;
     ms_stop_reason reason;
     ms_error err;
-    ms_stop stop = ms_stop_none();
+    ms_stop stop = {0};
     stop.spheres = 3;
     make_shape(&mesh, "needle", "");
     target_of_deq(&target, &mesh, 20);

@@ -28,7 +28,7 @@ static ms_clump generate_by(const ms_generator *generator, const ms_target *targ
     for (; options && options[0]; options += 2) {
         assert_int_equal(ms_option_settings_set(&settings, options[0], options[1], &err), MS_OK);
     }
-    ms_run run = {.target = target, .stop = ms_stop_none(), .settings = &settings, .seed = 3};
+    ms_run run = {.target = target, .settings = &settings, .seed = 3};
     run.stop.spheres = n;
     if (ms_generator_run(&clump, &reason, generator, &run, &err) != MS_OK) {
         fail_msg("%s", err.text);
