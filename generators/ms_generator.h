@@ -24,19 +24,35 @@ typedef struct ms_run {
     void *progress_context;
 } ms_run;
 
-/** One method. */
+/**
+ * One method. What all of them owe, whatever their options' defaults say, stands here and is checked on every one in
+ * the table (tests/generators):
+ *
+ * - Asked for n spheres of a body that has room for them it gives n, in the order in which they matter, and says
+ *   MS_STOP_SPHERES; each radius is above 0 and each centre within the box of the shape.
+ * - A nested one gives the first k of n spheres when asked for k.
+ * - The same run gives the same spheres to the last bit at any number of threads, and moved and scaled ones for a moved
+ *   and scaled shape, up to rounding.
+ * - It ends as soon as the stop rule holds and names the first reason in the order of ms_stop_reason; a nested one with
+ *   the very sphere that made it hold. No sphere is smaller than the least radius: MS_STOP_RADIUS if it needed one.
+ * - It takes any target of one voxel or more, of a mesh or a volume; each option has a help text, a default within its
+ *   range, and a place on the page docs/methods/NAME.md.
+ * - Its spheres stand for the shape: of a smooth tablet 20 of them reach D < 0.3 and coverage > 0.6, of a rough lump
+ *   without a bound on their number eta 0.25, D 0.11, coverage 0.83 and inertia error 0.3. A baseline is spared this.
+ */
 typedef struct ms_generator {
     const char *name;         /* what --generator takes */
     const char *summary;      /* one line for `mskit generators` */
     const char *source;       /* the paper: authors, year, DOI or arXiv number */
     int nested;               /* nonzero: the first k spheres of a run are the clump of k spheres */
+    int baseline;             /* nonzero: something plain to compare with, which promises no quality */
     const ms_option *options; /* ends with a NULL name */
     /**
-     * REQUIRED. Target in, ordered spheres out, in the unit and frame of the shape; the same
-     * spheres to the last bit for the same run, whatever the number of threads.
+     * REQUIRED. Target in, ordered spheres out, in the unit and frame of the shape. A nested method that chooses one
+     * sphere after the other calls ms_nested_run (shared/ms_nested.h).
      *
      * @param[out] clump  empty on entry; the caller frees it; empty on failure
-     * @param[out] reason what ended the run
+     * @param[out] reason MS_STOP_NOT on entry; what ended the run
      */
     ms_status (*generate)(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err);
 } ms_generator;

@@ -14,6 +14,7 @@
 #include "ms_random_spheres.h"
 #include "shared/ms_bisect_count.h"
 #include "shared/ms_cover.h"
+#include "shared/ms_judge.h"
 
 enum {
     NODES_COVERED,
@@ -228,18 +229,12 @@ static void make_spheres(attempt *a, const double (*centre)[4], size_t n, const 
 /* Scores the spheres, and says why they are enough; MS_STOP_NOT if they are not. */
 static ms_status judge_attempt(attempt *a, const fcm *f, ms_error *err)
 {
-    const ms_target *target = f->run->target;
-    ms_tally sum;
-    const ms_status status = ms_raster_union(&sum, &target->grid, target->rule, a->ball, a->count, err);
+    ms_score score;
+    const ms_status status = ms_judge_union(&score, &a->reason, f->run, a->ball, a->count, err);
     if (status == MS_OK) {
-        const ms_score score = ms_metrics_score(&sum, target->voxels);
         a->dice = score.dice;
-        a->reason = ms_stop_reached(&f->run->stop, target, &sum, a->count);
         if (a->reason == MS_STOP_NOT && f->off_volume > 0 && score.off_volume >= f->off_volume) {
             a->reason = MS_STOP_OFF_VOLUME;
-        }
-        if (f->run->progress) {
-            f->run->progress(f->run->progress_context, a->count, a->dice);
         }
     }
     return status;
@@ -326,7 +321,7 @@ static ms_status add_sphere(ms_clump *clump, const ms_ball *ball, const ms_run *
 }
 
 /* The spheres by the voxels of the shape that each adds, those that add none as they come. */
-static ms_status order(ms_clump *clump, const attempt *a, const ms_run *run, ms_error *err)
+static ms_status order_spheres(ms_clump *clump, const attempt *a, const ms_run *run, ms_error *err)
 {
     ms_cover *cover = NULL;
     uint8_t *taken = calloc(a->count + 1, sizeof *taken);
@@ -369,7 +364,7 @@ static ms_status make_clump_of(void *context, ms_clump *clump, ms_stop_reason *r
         status = sweep_fuzzifier(&t, f, err);
     }
     if (status == MS_OK) {
-        status = order(clump, &t.best, f->run, err);
+        status = order_spheres(clump, &t.best, f->run, err);
     }
     *reason = t.best.reason;
     if (*reason == MS_STOP_NOT) {

@@ -13,6 +13,7 @@
 #include "ms_mss_field.h"
 #include "ms_mss_select.h"
 #include "ms_peaks.h"
+#include "shared/ms_nested.h"
 
 enum { SPACING, BOOST, OFFSET, ORDER, CONFINE, PLANES };
 enum { ORDER_RADIUS, ORDER_GAIN };
@@ -172,21 +173,14 @@ static ms_status update_candidates(mss *m, size_t first_new, ms_error *err)
 }
 
 /* Copies the new spheres to the clump until the stop rule holds. */
-static ms_status accept(ms_clump *clump, ms_stop_reason *reason, mss *m, size_t first_new, ms_error *err)
+static ms_status accept_spheres(ms_clump *clump, ms_stop_reason *reason, mss *m, size_t first_new, ms_error *err)
 {
-    const ms_target *target = m->run->target;
-    for (size_t s = first_new; s < m->field.raster.n_balls && *reason == MS_STOP_NOT; s++) {
-        ms_sphere sphere;
-        ms_target_from_voxels(sphere.centre, &sphere.radius, &target->grid, m->field.raster.ball[s].centre,
-                              m->field.raster.ball[s].radius);
-        ms_status status = ms_clump_add(clump, &sphere, err);
-        if (status != MS_OK) {
-            return status;
-        }
-        ms_tally_add(&m->sum, &m->field.raster.tally[s]);
-        *reason = ms_stop_reached(&m->run->stop, target, &m->sum, clump->n_spheres);
+    const ms_raster *raster = &m->field.raster;
+    ms_status status = MS_OK;
+    for (size_t s = first_new; s < raster->n_balls && *reason == MS_STOP_NOT && status == MS_OK; s++) {
+        status = ms_nested_accept(clump, reason, &m->sum, m->run, &raster->ball[s], &raster->tally[s], err);
     }
-    return MS_OK;
+    return status;
 }
 
 /* The radius at the mean of several maxima: that of E there, if that is less (ms_mss_select_rule). */
@@ -241,7 +235,7 @@ static ms_status add_spheres(ms_clump *clump, ms_stop_reason *reason, mss *m, co
     const size_t before = m->field.raster.n_balls;
     ms_status status = ms_mss_field_add(&m->field, chosen, count, err);
     if (status == MS_OK) {
-        status = accept(clump, reason, m, before, err);
+        status = accept_spheres(clump, reason, m, before, err);
     }
     if (status == MS_OK && *reason == MS_STOP_NOT) {
         status = update_candidates(m, before, err);

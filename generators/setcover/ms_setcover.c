@@ -10,6 +10,7 @@
 
 #include "ms_setcover_candidates.h"
 #include "shared/ms_cover.h"
+#include "shared/ms_nested.h"
 
 enum { SKELETON, SKELETON_DEQ, CANDIDATES, ALIGN, CONNECTED };
 
@@ -46,45 +47,26 @@ static void drop_small(ms_ball *candidate, size_t *count, const ms_run *run)
     *count = kept;
 }
 
-/* Takes one sphere. */
-static ms_status accept(ms_clump *clump, ms_stop_reason *reason, ms_tally *sum, ms_raster *raster, const ms_ball *ball,
-                        const ms_run *run, ms_error *err)
-{
-    ms_sphere sphere;
-    ms_target_from_voxels(sphere.centre, &sphere.radius, &run->target->grid, ball->centre, ball->radius);
-    ms_status status = ms_clump_add(clump, &sphere, err);
-    if (status == MS_OK) {
-        status = ms_raster_add(raster, ball, 1, err);
-    }
-    if (status == MS_OK) {
-        ms_tally_add(sum, &raster->tally[raster->n_balls - 1]);
-        *reason = ms_stop_reached(&run->stop, run->target, sum, clump->n_spheres);
-        if (run->progress) {
-            run->progress(run->progress_context, clump->n_spheres, ms_metrics_score(sum, run->target->voxels).dice);
-        }
-    }
-    return status;
-}
+/* What the spheres are chosen from. */
+typedef struct setcover_choice {
+    ms_cover *cover;
+    const ms_ball *candidate;
+    int dropped; /* nonzero: some were smaller than the least radius */
+} setcover_choice;
 
-/* Algorithm 2, until the stop rule holds. */
-static ms_status cover_greedily(ms_clump *clump, ms_stop_reason *reason, ms_cover *cover, const ms_ball *candidate,
-                                const ms_run *run, ms_error *err)
+/* A step of algorithm 2; ms_nested_choose. */
+static ms_status choose_ball(void *context, ms_ball *ball, ms_stop_reason *reason, const ms_raster *placed,
+                             ms_error *err)
 {
-    ms_raster raster;
-    ms_tally sum = {0};
+    const setcover_choice *choice = context;
     size_t which;
-    ms_status status = ms_raster_alloc(&raster, &run->target->grid, run->target->rule, err);
-    while (status == MS_OK && *reason == MS_STOP_NOT) {
-        if (clump->n_spheres == MS_CLUMP_MAX_SPHERES) {
-            *reason = MS_STOP_SPHERES; /* as many as a clump can have */
-        } else if (ms_cover_next(&which, cover) == 0) {
-            *reason = MS_STOP_EXHAUSTED;
-        } else {
-            status = accept(clump, reason, &sum, &raster, &candidate[which], run, err);
-        }
+    (void)placed, (void)err;
+    if (ms_cover_next(&which, choice->cover) == 0) {
+        *reason = choice->dropped ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
+    } else {
+        *ball = choice->candidate[which];
     }
-    ms_raster_free(&raster);
-    return status;
+    return MS_OK;
 }
 
 static ms_status generate_by_setcover(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
@@ -104,10 +86,8 @@ static ms_status generate_by_setcover(ms_clump *clump, ms_stop_reason *reason, c
             ms_cover_build(&cover, &run->target->grid, candidate, count, setcover_option(run, CONNECTED) != 0, err);
     }
     if (status == MS_OK) {
-        status = cover_greedily(clump, reason, cover, candidate, run, err);
-    }
-    if (*reason == MS_STOP_EXHAUSTED && count < found) {
-        *reason = MS_STOP_RADIUS;
+        setcover_choice choice = {cover, candidate, count < found};
+        status = ms_nested_run(clump, reason, run, choose_ball, &choice, err);
     }
     ms_cover_free(cover);
     free(candidate);

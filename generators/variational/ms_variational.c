@@ -10,6 +10,7 @@
 
 #include "ms_variational_solve.h"
 #include "shared/ms_bisect_count.h"
+#include "shared/ms_judge.h"
 
 enum { EFFORT, POINTS, PROTRUSION, EQUAL_RADIUS, SYMMETRY, PLANES, REFINE };
 
@@ -61,28 +62,19 @@ static ms_status to_clump(ms_clump *clump, const ms_ball *ball, size_t count, co
 static ms_status judge_clump(ms_stop_reason *reason, const ms_clump *clump, size_t asked, const ms_run *run,
                              ms_error *err)
 {
-    const ms_target *target = run->target;
     const size_t n = clump->n_spheres;
-    ms_tally sum;
     ms_ball *ball = malloc((n + 1) * sizeof *ball);
     for (size_t s = 0; ball && s < n; s++) {
-        ms_target_to_voxels(ball[s].centre, &ball[s].radius, &target->grid, clump->sphere[s].centre,
+        ms_target_to_voxels(ball[s].centre, &ball[s].radius, &run->target->grid, clump->sphere[s].centre,
                             clump->sphere[s].radius);
     }
-    const ms_status status = ball ? ms_raster_union(&sum, &target->grid, target->rule, ball, n, err)
+    const ms_status status = ball ? ms_judge_union(NULL, reason, run, ball, n, err)
                                   : ms_fail(err, MS_ERR_NOMEM, "no memory to score %zu spheres", n);
     free(ball);
-    if (status != MS_OK) {
-        return status;
-    }
-    *reason = n > 0 ? ms_stop_reached(&run->stop, target, &sum, n) : MS_STOP_NOT;
-    if (*reason == MS_STOP_NOT && n < asked) {
+    if (status == MS_OK && *reason == MS_STOP_NOT && n < asked) {
         *reason = run->stop.radius > 0 ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
     }
-    if (run->progress && n > 0) {
-        run->progress(run->progress_context, n, ms_metrics_score(&sum, target->voxels).dice);
-    }
-    return MS_OK;
+    return status;
 }
 
 static ms_variational_settings read_settings(const ms_run *run)

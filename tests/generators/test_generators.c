@@ -7,8 +7,23 @@
 
 #include "measure/ms_metrics.h"
 #include "ms_generator.h"
+#include "support/generator_samples.h"
 
 static const char *const CONTRACTED[] = {"mss", "setcover", "fcm", "variational"};
+
+/* What is checked: the table, and a plain one that promises no quality; ends with NULL. */
+enum { MOST_GENERATORS = 32 };
+static const ms_generator *checked[MOST_GENERATORS];
+
+static void list_generators(void)
+{
+    size_t count = 0;
+    for (const ms_generator *const *g = ms_generators; *g; g++) {
+        assert_true(count < MOST_GENERATORS - 2);
+        checked[count++] = *g;
+    }
+    checked[count] = &deepest_generator;
+}
 
 typedef struct outcome {
     ms_clump clump;
@@ -67,6 +82,7 @@ typedef struct fixture {
 static int set_up(void **state)
 {
     static fixture f;
+    list_generators();
     make_shape(&f.grain, "grain", "");
     make_shape(&f.tablet, "tablet", "");
     make_target(&f.rough, &f.grain, 40, MS_VOXEL_HALF);
@@ -132,7 +148,7 @@ static void options_are_documented(void **state)
 static void asked_number_is_given(void **state)
 {
     fixture *f = *state;
-    for (const ms_generator *const *g = ms_generators; *g; g++) {
+    for (const ms_generator *const *g = checked; *g; g++) {
         static const size_t ASKED[] = {1, 2, 7, 23};
         for (size_t a = 0; a < sizeof ASKED / sizeof *ASKED; a++) {
             outcome o = run_spheres(*g, &f->rough, ASKED[a]);
@@ -147,7 +163,7 @@ static void asked_number_is_given(void **state)
 static void spheres_are_sane(void **state)
 {
     fixture *f = *state;
-    for (const ms_generator *const *g = ms_generators; *g; g++) {
+    for (const ms_generator *const *g = checked; *g; g++) {
         outcome o = run_spheres(*g, &f->smooth, 20);
         double lo[3], hi[3];
         ms_mesh_box(lo, hi, &f->tablet);
@@ -159,7 +175,7 @@ static void spheres_are_sane(void **state)
             }
         }
         const ms_score score = score_of(&o.clump, &f->smooth);
-        assert_true(score.dice < 0.3 && score.coverage > 0.6);
+        assert_true((*g)->baseline || (score.dice < 0.3 && score.coverage > 0.6));
         ms_clump_free(&o.clump);
     }
 }
@@ -167,7 +183,7 @@ static void spheres_are_sane(void **state)
 static void prefixes_are_clumps(void **state)
 {
     fixture *f = *state;
-    for (const ms_generator *const *g = ms_generators; *g; g++) {
+    for (const ms_generator *const *g = checked; *g; g++) {
         if (!(*g)->nested) {
             continue;
         }
@@ -182,7 +198,7 @@ static void threads_do_not_matter(void **state)
 {
     fixture *f = *state;
     const int before = omp_get_max_threads();
-    for (const ms_generator *const *g = ms_generators; *g; g++) {
+    for (const ms_generator *const *g = checked; *g; g++) {
         omp_set_num_threads(1);
         outcome alone = run_spheres(*g, &f->rough, 23);
         for (int threads = 2; threads <= 5; threads += 3) {
@@ -200,7 +216,7 @@ static void threads_do_not_matter(void **state)
 static void frame_follows_the_mesh(void **state)
 {
     fixture *f = *state;
-    for (const ms_generator *const *g = ms_generators; *g; g++) {
+    for (const ms_generator *const *g = checked; *g; g++) {
         ms_mesh moved;
         ms_target target;
         outcome here = run_spheres(*g, &f->rough, 12);
@@ -226,10 +242,20 @@ static void frame_follows_the_mesh(void **state)
     }
 }
 
+/* A baseline need not get as far, and says so. */
+static int gave_up(const ms_generator *g, const outcome *o)
+{
+    return g->baseline && o->reason == MS_STOP_EXHAUSTED;
+}
+
 /* The run ends with the first sphere that makes the measure good enough. */
 static void check_measure(const ms_generator *g, const ms_target *target, ms_stop stop, ms_stop_reason wanted)
 {
     outcome o = run_with(g, target, stop);
+    if (gave_up(g, &o)) {
+        ms_clump_free(&o.clump);
+        return;
+    }
     const ms_score end = score_of(&o.clump, target);
     assert_int_equal(o.reason, wanted);
     assert_true(stop.eta == 0 || end.eta <= stop.eta);
@@ -248,7 +274,7 @@ static void check_measure(const ms_generator *g, const ms_target *target, ms_sto
 static void measures_end_the_run(void **state)
 {
     fixture *f = *state;
-    for (const ms_generator *const *g = ms_generators; *g; g++) {
+    for (const ms_generator *const *g = checked; *g; g++) {
         ms_stop stop = {0};
         stop.eta = 0.25;
         check_measure(*g, &f->rough, stop, MS_STOP_ETA);
@@ -269,15 +295,15 @@ static void measures_end_the_run(void **state)
 static void inertia_ends_the_run(void **state)
 {
     fixture *f = *state;
-    for (const ms_generator *const *g = ms_generators; *g; g++) {
+    for (const ms_generator *const *g = checked; *g; g++) {
         ms_stop stop = {0};
         ms_metrics metrics;
         ms_error err;
         stop.inertia = 0.3;
         outcome o = run_with(*g, &f->rough, stop);
-        assert_int_equal(o.reason, MS_STOP_INERTIA);
+        assert_true(o.reason == MS_STOP_INERTIA || gave_up(*g, &o));
         assert_int_equal(ms_metrics_compute(&metrics, NULL, &f->rough, &o.clump, 1u << 28, &err), MS_OK);
-        assert_true(metrics.inertia.weighted <= 0.3);
+        assert_true(metrics.inertia.weighted <= 0.3 || gave_up(*g, &o));
         ms_clump_free(&o.clump);
     }
 }
@@ -285,7 +311,7 @@ static void inertia_ends_the_run(void **state)
 static void least_radius_is_kept(void **state)
 {
     fixture *f = *state;
-    for (const ms_generator *const *g = ms_generators; *g; g++) {
+    for (const ms_generator *const *g = checked; *g; g++) {
         ms_stop stop = {0};
         stop.radius = 0.7 * ms_target_equivalent_radius(&f->rough);
         outcome o = run_with(*g, &f->rough, stop);
@@ -298,7 +324,7 @@ static void least_radius_is_kept(void **state)
 static void nothing_asked_is_an_error(void **state)
 {
     fixture *f = *state;
-    for (const ms_generator *const *g = ms_generators; *g; g++) {
+    for (const ms_generator *const *g = checked; *g; g++) {
         outcome o;
         ms_error err;
         ms_stop stop = {0};
@@ -321,7 +347,7 @@ static void small_targets_work(void **state)
     uint32_t label[4 * 3 * 3] = {0};
     label[1 + 4 * (1 + 3 * 1)] = 5;
     const ms_volume one = {.n = {4, 3, 3}, .spacing = 0.5, .origin = {10, 20, 30}, .label = label};
-    for (const ms_generator *const *g = ms_generators; *g; g++) {
+    for (const ms_generator *const *g = checked; *g; g++) {
         ms_target target;
         ms_error err;
         assert_int_equal(ms_target_from_volume(&target, &one, 0, &err), MS_OK);
