@@ -31,11 +31,11 @@ static size_t count_places(const ms_chart *chart, const ms_chart_series *series)
 }
 
 /* What an axis spans: a little more than its values. */
-typedef struct range {
+typedef struct axis_range {
     double lo, hi;
-} range;
+} axis_range;
 
-static void widen(range *r, int is_log)
+static void widen_range(axis_range *r, int is_log)
 {
     if (is_log) {
         r->lo /= 1.25;
@@ -48,23 +48,23 @@ static void widen(range *r, int is_log)
 }
 
 /* Nonzero if there is anything to draw. */
-static int find_ranges(range *x, range *y, const ms_chart *chart)
+static int find_ranges(axis_range *x, axis_range *y, const ms_chart *chart)
 {
-    *x = *y = (range){HUGE_VAL, -HUGE_VAL};
+    *x = *y = (axis_range){HUGE_VAL, -HUGE_VAL};
     for (size_t s = 0; s < chart->n_series; s++) {
         for (size_t p = 0; p < chart->series[s].count; p++) {
             const ms_chart_point *point = &chart->series[s].point[p];
             if (has_place(chart, point)) {
-                *x = (range){fmin(x->lo, point->x), fmax(x->hi, point->x)};
-                *y = (range){fmin(y->lo, height(chart, point)), fmax(y->hi, height(chart, point))};
+                *x = (axis_range){fmin(x->lo, point->x), fmax(x->hi, point->x)};
+                *y = (axis_range){fmin(y->lo, height(chart, point)), fmax(y->hi, height(chart, point))};
             }
         }
     }
     if (x->lo > x->hi) {
         return 0;
     }
-    widen(x, chart->x_log);
-    widen(y, chart->y_log);
+    widen_range(x, chart->x_log);
+    widen_range(y, chart->y_log);
     return 1;
 }
 
@@ -159,7 +159,7 @@ static void put_series(FILE *stream, const ms_chart_series *series, int index, i
     }
 }
 
-static void put_axis(FILE *stream, char axis, const char *label, double least, const range *r, int is_log)
+static void put_axis(FILE *stream, char axis, const char *label, double least, const axis_range *r, int is_log)
 {
     char whole[256];
     snprintf(whole, sizeof whole, "%s (%g: that or less)", label, least);
@@ -178,7 +178,7 @@ static void put_axis(FILE *stream, char axis, const char *label, double least, c
     }
 }
 
-static void put_script(FILE *stream, const ms_chart *chart, const char *name, const range *x, const range *y)
+static void put_script(FILE *stream, const ms_chart *chart, const char *name, const axis_range *x, const axis_range *y)
 {
     int index = 0, look = 0; /* a series looks the same in all charts of a list, with points or without */
     fprintf(stream,
@@ -232,7 +232,7 @@ static const char *name_of(const char *stem)
 
 ms_status ms_chart_write(const ms_chart *chart, const char *stem, ms_error *err)
 {
-    range x, y;
+    axis_range x, y;
     ms_output output;
     if (!find_ranges(&x, &y, chart)) {
         return ms_fail(err, MS_ERR_ARG, "%s: this chart has no points", stem);

@@ -34,13 +34,13 @@ static void print_help(const ms_command *command)
 }
 
 /* What getopt works on. */
-typedef struct tables {
+typedef struct flag_tables {
     struct option longs[MAX_FLAGS];
     char shorts[2 * MAX_FLAGS];
     size_t count;
-} tables;
+} flag_tables;
 
-static void add_long(tables *t, const char *name, int has_argument, int value)
+static void add_long(flag_tables *t, const char *name, int has_argument, int value)
 {
     for (size_t f = 0; f < t->count; f++) {
         if (strcmp(t->longs[f].name, name) == 0) {
@@ -52,7 +52,7 @@ static void add_long(tables *t, const char *name, int has_argument, int value)
     }
 }
 
-static void make_tables(tables *t, const ms_command *command, int generator_options)
+static void make_tables(flag_tables *t, const ms_command *command, int generator_options)
 {
     char *letter = t->shorts;
     memset(t, 0, sizeof *t);
@@ -73,7 +73,7 @@ static void make_tables(tables *t, const ms_command *command, int generator_opti
     }
 }
 
-static void print_choices(const ms_command *command, const tables *t)
+static void print_choices(const ms_command *command, const flag_tables *t)
 {
     fprintf(stderr, "mskit %s: choose from", command->name);
     for (size_t f = 0; f < t->count; f++) {
@@ -95,7 +95,7 @@ static const char *name_of_letter(const ms_command *command, int letter)
 int ms_flags_parse(int *first_word, const ms_command *command, int generator_options, int argc, char **argv,
                    ms_flag_handler handler, void *context)
 {
-    tables t;
+    flag_tables t;
     int found, at = 0;
     ms_error err;
     char name[64];

@@ -117,7 +117,7 @@ void ms_mass_print(FILE *stream, const ms_mass *mass)
             r->error_mass, r->error_centre, largest(r->error_moment), largest(r->error_product));
 }
 
-static json_t *vector(const double v[3])
+static json_t *pack_mass_vector(const double v[3])
 {
     return json_pack("[f,f,f]", v[0], v[1], v[2]);
 }
@@ -128,5 +128,6 @@ json_t *ms_mass_json(const ms_mass *mass)
     return json_pack("{s:f,s:f,s:f,s:f,s:f,s:f,s:f,s:o,s:o,s:f}", "epsilon", r->epsilon, "products_epsilon",
                      r->products, "centre_epsilon", r->centre, "least", r->least_mass, "most", r->most_mass,
                      "error_mass", r->error_mass, "error_centre", r->error_centre, "error_moments",
-                     vector(r->error_moment), "error_products", vector(r->error_product), "seconds", mass->seconds);
+                     pack_mass_vector(r->error_moment), "error_products", pack_mass_vector(r->error_product), "seconds",
+                     mass->seconds);
 }

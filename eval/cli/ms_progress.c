@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-static void show(void *context, size_t spheres, double dice)
+static void show_line(void *context, size_t spheres, double dice)
 {
     ms_progress_line *line = context;
     const double now = omp_get_wtime();
@@ -21,7 +21,7 @@ static void show(void *context, size_t spheres, double dice)
 
 void ms_progress_show(ms_run *run, ms_progress_line *line)
 {
-    run->progress = isatty(STDERR_FILENO) ? show : NULL;
+    run->progress = isatty(STDERR_FILENO) ? show_line : NULL;
     run->progress_context = line;
 }
 

@@ -82,7 +82,7 @@ json_t *ms_report_text(const char *text)
     return json;
 }
 
-static json_t *vector(const double v[3])
+static json_t *pack_vector(const double v[3])
 {
     return json_pack("[o,o,o]", ms_report_number(v[0]), ms_report_number(v[1]), ms_report_number(v[2]));
 }
@@ -93,7 +93,7 @@ static json_t *inertia_json(const ms_metrics *m)
     if (!(m->body.volume > 0)) {
         return json_null();
     }
-    return json_pack("{s:o,s:o,s:o,s:o}", "moments", vector(m->inertia.moment), "weighted_mean",
+    return json_pack("{s:o,s:o,s:o,s:o}", "moments", pack_vector(m->inertia.moment), "weighted_mean",
                      ms_report_number(m->inertia.weighted), "axes_degrees", ms_report_number(m->inertia.angle),
                      "centroid", ms_report_number(m->inertia.centre));
 }
@@ -144,7 +144,7 @@ json_t *ms_report_input_json(const ms_input *input)
     json_t *json = json_pack("{s:o,s:s,s:s,s:[i,i,i],s:f,s:o,s:I}", "path", ms_report_text(input->path), "fnv1a",
                              checksum, "rule", input->target.rule == MS_VOXEL_HALF ? "half" : "centre", "grid",
                              grid->n[0], grid->n[1], grid->n[2], "voxel_size", grid->h, "grid_origin",
-                             vector(grid->origin), "voxels", (json_int_t)input->target.voxels);
+                             pack_vector(grid->origin), "voxels", (json_int_t)input->target.voxels);
     if (input->mesh.n_triangles && json) {
         json_object_set_new(json, "triangles", json_integer((json_int_t)input->mesh.n_triangles));
         json_object_set_new(json, "closed", json_boolean(input->report.closed));
@@ -156,10 +156,11 @@ json_t *ms_report_input_json(const ms_input *input)
 
 json_t *ms_report_body_json(const ms_body *body, const ms_principal *p)
 {
-    return json_pack("{s:f,s:o,s:[o,o,o],s:o,s:[o,o,o]}", "volume", body->volume, "centroid", vector(body->centroid),
-                     "inertia", vector(body->inertia[0]), vector(body->inertia[1]), vector(body->inertia[2]),
-                     "principal_moments", vector(p->moment), "principal_axes", vector(p->axis[0]), vector(p->axis[1]),
-                     vector(p->axis[2]));
+    return json_pack("{s:f,s:o,s:[o,o,o],s:o,s:[o,o,o]}", "volume", body->volume, "centroid",
+                     pack_vector(body->centroid), "inertia", pack_vector(body->inertia[0]),
+                     pack_vector(body->inertia[1]), pack_vector(body->inertia[2]), "principal_moments",
+                     pack_vector(p->moment), "principal_axes", pack_vector(p->axis[0]), pack_vector(p->axis[1]),
+                     pack_vector(p->axis[2]));
 }
 
 ms_status ms_report_print(FILE *stream, json_t *value, ms_error *err)

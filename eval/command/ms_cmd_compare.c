@@ -28,13 +28,13 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
-typedef struct arguments {
+typedef struct compare_arguments {
     ms_comparison comparison;
     const char *output;
     int resume;
-} arguments;
+} compare_arguments;
 
-static void insert(ms_numbers *list, double value)
+static void insert_number(ms_numbers *list, double value)
 {
     size_t at = list->count;
     while (at > 0 && list->value[at - 1] > value) {
@@ -62,7 +62,7 @@ static ms_status take_numbers(ms_numbers *list, const char *name, const char *te
         if (status != MS_OK) {
             return status;
         }
-        insert(list, value);
+        insert_number(list, value);
         at += length;
         if (*at == '\0') {
             return MS_OK;
@@ -70,9 +70,9 @@ static ms_status take_numbers(ms_numbers *list, const char *name, const char *te
     }
 }
 
-static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+static ms_status take_compare_flag(void *context, const char *name, const char *value, ms_error *err)
 {
-    arguments *a = context;
+    compare_arguments *a = context;
     ms_comparison *c = &a->comparison;
     int taken;
     if (strcmp(name, "cells") == 0) {
@@ -116,7 +116,7 @@ static ms_status check_files(const ms_comparison *c, ms_error *err)
     return c->charts ? ms_outputs_make_folder(c->charts, err) : MS_OK;
 }
 
-static int work(const ms_command *command, const arguments *a)
+static int execute_compare(const ms_command *command, const compare_arguments *a)
 {
     ms_error err;
     ms_csv csv;
@@ -135,7 +135,7 @@ static int work(const ms_command *command, const arguments *a)
 }
 
 /* What follows from all flags together. */
-static ms_status settle(ms_comparison *c, ms_error *err)
+static ms_status resolve_compare(ms_comparison *c, ms_error *err)
 {
     static const double ASKED[] = {5, 10, 20, 50, 100};
     if (c->asked.count == 0) {
@@ -143,7 +143,7 @@ static ms_status settle(ms_comparison *c, ms_error *err)
         c->asked.count = sizeof ASKED / sizeof *ASKED;
     }
     if (c->cells.count == 0) {
-        insert(&c->cells, 100);
+        insert_number(&c->cells, 100);
     }
     if (ms_compare_methods_clumps(&c->methods) > 0 && c->n_shapes > 1) {
         return ms_fail(err, MS_ERR_ARG, "--clump belongs to one shape; compare the others by themselves");
@@ -151,20 +151,21 @@ static ms_status settle(ms_comparison *c, ms_error *err)
     return ms_compare_methods_check(&c->methods, err);
 }
 
-static int run(const ms_command *command, int argc, char **argv)
+static int run_compare(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {.comparison = {.repeats = 1, .seed = 1}, .output = "compare.csv"};
+    compare_arguments a = {.comparison = {.repeats = 1, .seed = 1}, .output = "compare.csv"};
     int first;
     ms_error err;
     ms_input_defaults(&a.comparison.input);
-    int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
+    int code = ms_flags_parse(&first, command, 0, argc, argv, take_compare_flag, &a);
     if (code == MS_FLAGS_GO_ON && first >= argc) {
         code = ms_flags_wrong_usage(command, "takes one or more shapes");
     }
     if (code == MS_FLAGS_GO_ON) {
         a.comparison.shape = argv + first;
         a.comparison.n_shapes = (size_t)(argc - first);
-        code = settle(&a.comparison, &err) == MS_OK ? work(command, &a) : ms_flags_wrong_usage(command, err.text);
+        code = resolve_compare(&a.comparison, &err) == MS_OK ? execute_compare(command, &a)
+                                                             : ms_flags_wrong_usage(command, err.text);
     }
     ms_compare_methods_free(&a.comparison.methods);
     return code;
@@ -176,5 +177,5 @@ const ms_command ms_command_compare = {
     .usage = "SHAPE... [-g NAME[:OPTION=VALUE,...]]... [-n N,N,...] [--cells N,N,...] [-o FILE] [--charts DIR]",
     .example = "mskit compare grain.stl -g mss -g mss:order=gain -g setcover -n 5,10,20,50 --charts charts",
     .flags = FLAGS,
-    .run = run,
+    .run = run_compare,
 };

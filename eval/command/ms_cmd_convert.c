@@ -13,15 +13,15 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
-typedef struct arguments {
+typedef struct convert_arguments {
     const char *clump, *frame;
     ms_mass_flags mass;
     ms_outputs outputs;
-} arguments;
+} convert_arguments;
 
-static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+static ms_status take_convert_flag(void *context, const char *name, const char *value, ms_error *err)
 {
-    arguments *a = context;
+    convert_arguments *a = context;
     int taken;
     ms_status status = ms_mass_flag(&taken, &a->mass, name, value, err);
     if (!taken) {
@@ -34,7 +34,8 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
 }
 
 /* What the file does not say of the particle: from the sums of the spheres and from the flags. */
-static ms_status complete(ms_particle *particle, const arguments *a, const ms_clump *clump, ms_error *err)
+static ms_status complete_particle(ms_particle *particle, const convert_arguments *a, const ms_clump *clump,
+                                   ms_error *err)
 {
     if (particle->mass > 0 && (a->mass.unit || a->mass.scale > 0) && a->mass.scale != particle->scale) {
         return ms_fail(err, MS_ERR_ARG, "%s says that its unit is %g m, and not %g", a->clump, particle->scale,
@@ -56,7 +57,7 @@ static ms_status complete(ms_particle *particle, const arguments *a, const ms_cl
     return MS_OK;
 }
 
-static ms_status read(ms_clump *clump, ms_particle *particle, const arguments *a, ms_error *err)
+static ms_status read_clump(ms_clump *clump, ms_particle *particle, const convert_arguments *a, ms_error *err)
 {
     ms_status status = ms_read_clump(clump, particle, a->clump, err);
     if (status == MS_OK && a->frame) {
@@ -65,14 +66,14 @@ static ms_status read(ms_clump *clump, ms_particle *particle, const arguments *a
             status = ms_template_undo(clump, particle, err);
         }
     }
-    return status == MS_OK ? complete(particle, a, clump, err) : status;
+    return status == MS_OK ? complete_particle(particle, a, clump, err) : status;
 }
 
-static ms_status work(arguments *a, ms_error *err)
+static ms_status execute_convert(convert_arguments *a, ms_error *err)
 {
     ms_clump clump;
     ms_particle particle;
-    ms_status status = read(&clump, &particle, a, err);
+    ms_status status = read_clump(&clump, &particle, a, err);
     if (status == MS_OK) {
         const int known = particle.mass > 0 && particle.density > 0;
         const ms_need need = !known ? MS_NEED_SPHERES : clump.mass ? MS_NEED_MASSES : MS_NEED_PARTICLE;
@@ -90,19 +91,19 @@ static ms_status work(arguments *a, ms_error *err)
 }
 
 /* Checks the flags; what can be written of the clump is known when it is read. */
-static ms_status settle(arguments *a, ms_error *err)
+static ms_status resolve_convert(convert_arguments *a, ms_error *err)
 {
     const int unit_given = a->mass.unit || a->mass.scale > 0;
     ms_status status = unit_given ? ms_mass_resolve(&a->mass, err) : MS_OK;
     return status == MS_OK ? ms_outputs_resolve(&a->outputs, a->clump, "", MS_NEED_MASSES, 0, err) : status;
 }
 
-static int run(const ms_command *command, int argc, char **argv)
+static int run_convert(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {0};
+    convert_arguments a = {0};
     int first;
     ms_error err;
-    int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
+    int code = ms_flags_parse(&first, command, 0, argc, argv, take_convert_flag, &a);
     if (code != MS_FLAGS_GO_ON) {
         return code;
     }
@@ -110,10 +111,10 @@ static int run(const ms_command *command, int argc, char **argv)
         return ms_flags_wrong_usage(command, "takes one clump file");
     }
     a.clump = argv[first];
-    if (settle(&a, &err) != MS_OK) {
+    if (resolve_convert(&a, &err) != MS_OK) {
         code = ms_flags_wrong_usage(command, err.text);
     } else {
-        code = work(&a, &err) == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
+        code = execute_convert(&a, &err) == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
     }
     ms_outputs_free(&a.outputs);
     return code;
@@ -125,5 +126,5 @@ const ms_command ms_command_convert = {
     .usage = "CLUMP -o FILE...",
     .example = "mskit convert grain.json -o grain.liggghts -o grain.yade",
     .flags = FLAGS,
-    .run = run,
+    .run = run_convert,
 };

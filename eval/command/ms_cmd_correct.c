@@ -20,17 +20,17 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
-typedef struct arguments {
+typedef struct correct_arguments {
     ms_input_flags input;
     ms_mass_flags mass;
     ms_outputs outputs;
     const char *clump, *target;
     int json;
-} arguments;
+} correct_arguments;
 
-static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+static ms_status take_correct_flag(void *context, const char *name, const char *value, ms_error *err)
 {
-    arguments *a = context;
+    correct_arguments *a = context;
     int taken;
     ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
     if (!taken) {
@@ -47,7 +47,7 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
 }
 
 /* Volume, centre and inertia of the shape: the integrals over a closed mesh need no voxels. */
-static ms_status body_of_target(ms_body *body, const arguments *a, ms_error *err)
+static ms_status body_of_target(ms_body *body, const correct_arguments *a, ms_error *err)
 {
     ms_input input;
     ms_status status = ms_input_read(&input, a->target, &a->input, err);
@@ -67,7 +67,7 @@ static ms_status body_of_target(ms_body *body, const arguments *a, ms_error *err
     return status;
 }
 
-static ms_status report(const arguments *a, const ms_clump *clump, const ms_mass *mass, ms_error *err)
+static ms_status report_correct(const correct_arguments *a, const ms_clump *clump, const ms_mass *mass, ms_error *err)
 {
     FILE *words = a->json || ms_outputs_to_stdout(&a->outputs) ? stderr : stdout;
     json_t *json = json_pack("{s:o}", "masses", ms_mass_json(mass));
@@ -92,7 +92,7 @@ static ms_status report(const arguments *a, const ms_clump *clump, const ms_mass
     return status;
 }
 
-static ms_status work(const arguments *a, ms_error *err)
+static ms_status execute_correct(const correct_arguments *a, ms_error *err)
 {
     ms_clump clump;
     ms_particle unused;
@@ -113,14 +113,14 @@ static ms_status work(const arguments *a, ms_error *err)
         status = ms_mass_correct(&mass, &clump, &a->mass, &body, ms_input_max_voxels(&a->input), err);
     }
     if (status == MS_OK) {
-        status = report(a, &clump, &mass, err);
+        status = report_correct(a, &clump, &mass, err);
     }
     ms_clump_free(&clump);
     return status;
 }
 
 /* What follows from all flags together. */
-static ms_status settle(arguments *a, ms_error *err)
+static ms_status resolve_correct(correct_arguments *a, ms_error *err)
 {
     if (!a->target == !a->mass.of_union) {
         return ms_fail(err, MS_ERR_ARG, "takes either --target SHAPE or --properties union");
@@ -138,13 +138,13 @@ static ms_status settle(arguments *a, ms_error *err)
                : status;
 }
 
-static int run(const ms_command *command, int argc, char **argv)
+static int run_correct(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {0};
+    correct_arguments a = {0};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);
-    int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
+    int code = ms_flags_parse(&first, command, 0, argc, argv, take_correct_flag, &a);
     if (code != MS_FLAGS_GO_ON) {
         return code;
     }
@@ -152,10 +152,10 @@ static int run(const ms_command *command, int argc, char **argv)
         return ms_flags_wrong_usage(command, "takes one clump file");
     }
     a.clump = argv[first];
-    if (settle(&a, &err) != MS_OK) {
+    if (resolve_correct(&a, &err) != MS_OK) {
         code = ms_flags_wrong_usage(command, err.text);
     } else {
-        code = work(&a, &err) == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
+        code = execute_correct(&a, &err) == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
     }
     ms_outputs_free(&a.outputs);
     return code;
@@ -167,5 +167,5 @@ const ms_command ms_command_correct = {
     .usage = "CLUMP --target SHAPE --density RHO [--unit m|mm|um] -o FILE...",
     .example = "mskit correct grain.csv --target grain.stl --density 2650 --unit mm -o grain.json -o grain.lammps",
     .flags = FLAGS,
-    .run = run,
+    .run = run_correct,
 };

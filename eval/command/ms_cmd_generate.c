@@ -34,7 +34,7 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
-typedef struct arguments {
+typedef struct generate_arguments {
     const char *shape;
     ms_input_flags input;
     ms_recipe recipe;
@@ -44,9 +44,9 @@ typedef struct arguments {
     int correct;
     const char *target_grid, *curve;
     int json;
-} arguments;
+} generate_arguments;
 
-static ms_status take_until(arguments *a, const char *text, ms_error *err)
+static ms_status take_until(generate_arguments *a, const char *text, ms_error *err)
 {
     char name[64];
     const char *value = NULL;
@@ -64,9 +64,9 @@ static ms_status take_until(arguments *a, const char *text, ms_error *err)
     return status == MS_OK ? ms_stop_set(&a->stop, name, number, err) : status;
 }
 
-static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+static ms_status take_generate_flag(void *context, const char *name, const char *value, ms_error *err)
 {
-    arguments *a = context;
+    generate_arguments *a = context;
     double number;
     int taken;
     ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
@@ -103,14 +103,14 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
 }
 
 /* Number of files that go to standard output. */
-static int outputs_to_stdout(const arguments *a)
+static int outputs_to_stdout(const generate_arguments *a)
 {
     return ms_outputs_to_stdout(&a->outputs) + (a->target_grid && strcmp(a->target_grid, "-") == 0) +
            (a->curve && strcmp(a->curve, "-") == 0);
 }
 
 /* Checks before the work what can be known of the outputs. */
-static ms_status resolve_outputs(arguments *a, ms_error *err)
+static ms_status resolve_outputs(generate_arguments *a, ms_error *err)
 {
     char behind[64];
     snprintf(behind, sizeof behind, "-%s", a->recipe.generator->name);
@@ -121,7 +121,7 @@ static ms_status resolve_outputs(arguments *a, ms_error *err)
                : status;
 }
 
-static ms_status resolve_masses(arguments *a, ms_error *err)
+static ms_status resolve_masses(generate_arguments *a, ms_error *err)
 {
     if (!a->correct && a->mass.any) {
         return ms_fail(err, MS_ERR_ARG, "flags about masses take --correct beside them");
@@ -132,7 +132,7 @@ static ms_status resolve_masses(arguments *a, ms_error *err)
     return ms_mass_resolve(&a->mass, err);
 }
 
-static ms_status try_outputs(const arguments *a, ms_error *err)
+static ms_status try_generate_outputs(const generate_arguments *a, ms_error *err)
 {
     ms_status status = a->target_grid ? ms_outputs_try_file(a->shape, a->target_grid, err) : MS_OK;
     if (a->curve && status == MS_OK) {
@@ -142,7 +142,7 @@ static ms_status try_outputs(const arguments *a, ms_error *err)
 }
 
 /* What the generators are given; a line is shown on a terminal only. */
-static ms_run make_run(const arguments *a, const ms_input *input, ms_progress_line *line)
+static ms_run make_run(const generate_arguments *a, const ms_input *input, ms_progress_line *line)
 {
     ms_run run = {
         .target = &input->target, .stop = a->stop, .settings = &a->recipe.settings, .seed = (uint64_t)a->recipe.seed};
@@ -150,7 +150,7 @@ static ms_run make_run(const arguments *a, const ms_input *input, ms_progress_li
     return run;
 }
 
-static ms_status generate(ms_result *r, const arguments *a, const ms_input *input, ms_error *err)
+static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_input *input, ms_error *err)
 {
     const char *name = a->recipe.generator->name;
     ms_progress_line line = {.name = name};
@@ -177,7 +177,7 @@ static ms_status generate(ms_result *r, const arguments *a, const ms_input *inpu
     return status;
 }
 
-static ms_status write_curve(const arguments *a, const ms_input *input, const ms_clump *clump, ms_error *err)
+static ms_status write_curve(const generate_arguments *a, const ms_input *input, const ms_clump *clump, ms_error *err)
 {
     ms_output output;
     ms_progress_line line = {.name = "curve"};
@@ -195,7 +195,7 @@ static ms_status write_curve(const arguments *a, const ms_input *input, const ms
     return status;
 }
 
-static int writes_to_stdout(const arguments *a)
+static int writes_to_stdout(const generate_arguments *a)
 {
     return a->json || outputs_to_stdout(a) > 0;
 }
@@ -207,8 +207,8 @@ static void say_written(FILE *words, const char *path)
     }
 }
 
-static ms_status write_outputs(const arguments *a, const ms_input *input, const ms_result *r, const char *record,
-                               ms_error *err)
+static ms_status write_outputs(const generate_arguments *a, const ms_input *input, const ms_result *r,
+                               const char *record, ms_error *err)
 {
     FILE *words = writes_to_stdout(a) ? stderr : stdout;
     const ms_particle *particle = a->correct ? &r->mass.particle : NULL;
@@ -229,7 +229,7 @@ static ms_status write_outputs(const arguments *a, const ms_input *input, const 
     return status;
 }
 
-static ms_status report(const arguments *a, const ms_input *input, const ms_result *r, ms_error *err)
+static ms_status report_generate(const generate_arguments *a, const ms_input *input, const ms_result *r, ms_error *err)
 {
     const ms_recipe *recipe = &a->recipe;
     json_t *json = ms_record_json(recipe->generator, &recipe->settings, &a->stop, (uint64_t)recipe->seed, input, r);
@@ -257,7 +257,7 @@ static ms_status report(const arguments *a, const ms_input *input, const ms_resu
     return status;
 }
 
-static int work(const ms_command *command, const arguments *a)
+static int execute_generate(const ms_command *command, const generate_arguments *a)
 {
     ms_error err;
     ms_input input;
@@ -267,15 +267,15 @@ static int work(const ms_command *command, const arguments *a)
     if (status != MS_OK) {
         return ms_flags_fail(command, &err);
     }
-    status = try_outputs(a, &err);
+    status = try_generate_outputs(a, &err);
     if (status == MS_OK) {
         status = ms_input_target(&input, &a->input, &err);
     }
     if (status == MS_OK) {
-        status = generate(&r, a, &input, &err);
+        status = make_clump(&r, a, &input, &err);
     }
     if (status == MS_OK) {
-        status = report(a, &input, &r, &err);
+        status = report_generate(a, &input, &r, &err);
     }
     ms_clump_free(&r.clump);
     ms_input_free(&input);
@@ -283,7 +283,7 @@ static int work(const ms_command *command, const arguments *a)
 }
 
 /* What follows from all flags together. */
-static ms_status settle(arguments *a, ms_error *err)
+static ms_status resolve_generate(generate_arguments *a, ms_error *err)
 {
     if (ms_stop_is_none(&a->stop)) {
         a->stop.spheres = DEFAULT_SPHERES;
@@ -295,13 +295,13 @@ static ms_status settle(arguments *a, ms_error *err)
     return status == MS_OK ? resolve_outputs(a, err) : status;
 }
 
-static int run(const ms_command *command, int argc, char **argv)
+static int run_generate(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {.recipe = {.name = "mss", .seed = 1}};
+    generate_arguments a = {.recipe = {.name = "mss", .seed = 1}};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);
-    int code = ms_flags_parse(&first, command, 1, argc, argv, take_flag, &a);
+    int code = ms_flags_parse(&first, command, 1, argc, argv, take_generate_flag, &a);
     if (code != MS_FLAGS_GO_ON) {
         return code;
     }
@@ -309,7 +309,8 @@ static int run(const ms_command *command, int argc, char **argv)
         return ms_flags_wrong_usage(command, "takes one shape");
     }
     a.shape = argv[first];
-    code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_flags_wrong_usage(command, err.text);
+    code =
+        resolve_generate(&a, &err) == MS_OK ? execute_generate(command, &a) : ms_flags_wrong_usage(command, err.text);
     ms_outputs_free(&a.outputs);
     ms_recipe_free(&a.recipe);
     return code;
@@ -321,5 +322,5 @@ const ms_command ms_command_generate = {
     .usage = "SHAPE [-g NAME] [-n N] [--until MEASURE=VALUE]... [-o FILE]...",
     .example = "mskit generate grain.stl --generator mss --spheres 50 --cells 100 -o grain.csv -o grain.json",
     .flags = FLAGS,
-    .run = run,
+    .run = run_generate,
 };

@@ -13,14 +13,14 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
-typedef struct arguments {
+typedef struct info_arguments {
     ms_input_flags input;
     int json;
-} arguments;
+} info_arguments;
 
-static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+static ms_status take_info_flag(void *context, const char *name, const char *value, ms_error *err)
 {
-    arguments *a = context;
+    info_arguments *a = context;
     int taken;
     if (strcmp(name, "json") == 0) {
         a->json = 1;
@@ -30,28 +30,28 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
 }
 
 /* What is known of a shape. */
-typedef struct facts {
+typedef struct info_facts {
     const ms_input *input;
     double lo[3], hi[3];
     double area; /* NAN for a volume */
     int has_body;
     ms_body body;
     ms_principal principal;
-} facts;
+} info_facts;
 
-static double equivalent_diameter(const facts *f)
+static double equivalent_diameter(const info_facts *f)
 {
     return f->has_body ? cbrt(6 * f->body.volume / acos(-1.0)) : (double)NAN;
 }
 
 /* Wadell: area of the ball of equal volume over the area of the body. */
-static double sphericity(const facts *f)
+static double sphericity(const info_facts *f)
 {
     const double d = equivalent_diameter(f);
     return acos(-1.0) * d * d / f->area;
 }
 
-static ms_status gather(facts *f, ms_input *input, const ms_input_flags *flags, ms_error *err)
+static ms_status gather(info_facts *f, ms_input *input, const ms_input_flags *flags, ms_error *err)
 {
     ms_status status = MS_OK;
     memset(f, 0, sizeof *f);
@@ -83,7 +83,7 @@ static void print_vector(const char *name, const double v[3])
     printf("  %-22s %.9g %.9g %.9g\n", name, v[0], v[1], v[2]);
 }
 
-static void print_mesh(const facts *f)
+static void print_mesh(const info_facts *f)
 {
     const ms_mesh_report *r = &f->input->report;
     printf("  %-22s %zu\n  %-22s %zu\n", "triangles", f->input->mesh.n_triangles, "vertices",
@@ -97,7 +97,7 @@ static void print_mesh(const facts *f)
     }
 }
 
-static void print_facts(const facts *f)
+static void print_facts(const info_facts *f)
 {
     static const char *const ROWS[] = {"inertia tensor", "", ""}, *const AXES[] = {"principal axes", "", ""};
     printf("%s\n", f->input->path);
@@ -131,7 +131,7 @@ static void print_facts(const facts *f)
     }
 }
 
-static json_t *facts_json(const facts *f)
+static json_t *facts_json(const info_facts *f)
 {
     const ms_mesh_report *r = &f->input->report;
     json_t *json = json_pack("{s:o,s:[f,f,f],s:[f,f,f],s:o,s:o,s:o}", "path", ms_report_text(f->input->path), "box_lo",
@@ -158,15 +158,15 @@ static json_t *facts_json(const facts *f)
     return json;
 }
 
-static int run(const ms_command *command, int argc, char **argv)
+static int run_info(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {0};
+    info_arguments a = {0};
     int first;
     ms_error err;
     ms_input input;
-    facts f;
+    info_facts f;
     ms_input_defaults(&a.input);
-    const int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
+    const int code = ms_flags_parse(&first, command, 0, argc, argv, take_info_flag, &a);
     if (code != MS_FLAGS_GO_ON) {
         return code;
     }
@@ -193,5 +193,5 @@ const ms_command ms_command_info = {
     .usage = "SHAPE [--json] [--label L]",
     .example = "mskit info grain.stl",
     .flags = FLAGS,
-    .run = run,
+    .run = run_info,
 };

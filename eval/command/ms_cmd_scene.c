@@ -32,7 +32,7 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
-typedef struct arguments {
+typedef struct scene_arguments {
     const char *source; /* manifest or shape */
     ms_goal goal;
     double max_spheres, min_radius;
@@ -41,7 +41,7 @@ typedef struct arguments {
     const char *folder;
     const ms_format *format;
     int json;
-} arguments;
+} scene_arguments;
 
 static ms_status set_goal(ms_goal *goal, ms_goal_kind kind, double value, ms_error *err)
 {
@@ -96,7 +96,7 @@ static ms_status take_goal(int *taken, ms_goal *goal, const char *name, const ch
     return MS_OK;
 }
 
-static ms_status take_format(arguments *a, const char *name, ms_error *err)
+static ms_status take_template_format(scene_arguments *a, const char *name, ms_error *err)
 {
     a->format = ms_write_format_find(name, err);
     if (a->format && a->format->need != MS_NEED_SPHERES) {
@@ -106,9 +106,9 @@ static ms_status take_format(arguments *a, const char *name, ms_error *err)
     return a->format ? MS_OK : MS_ERR_ARG;
 }
 
-static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+static ms_status take_scene_flag(void *context, const char *name, const char *value, ms_error *err)
 {
-    arguments *a = context;
+    scene_arguments *a = context;
     int taken;
     ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
     if (!taken) {
@@ -128,7 +128,7 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
         return value[0] ? MS_OK : ms_fail(err, MS_ERR_ARG, "--output '' names no folder");
     }
     if (strcmp(name, "format") == 0) {
-        return take_format(a, value, err);
+        return take_template_format(a, value, err);
     }
     if (strcmp(name, "json") == 0) {
         a->json = 1;
@@ -168,7 +168,7 @@ static ms_status resolve_goal(ms_goal *goal, const ms_manifest *manifest, const 
 
 /* FOLDER/NAME.ENDING, where NAME is that of the shape without folder and ending. The caller frees it; NULL without
  * memory. */
-static char *template_path(const arguments *a, const char *shape)
+static char *template_path(const scene_arguments *a, const char *shape)
 {
     const char *slash = strrchr(shape, '/'), *base = slash ? slash + 1 : shape, *dot = strrchr(base, '.');
     const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
@@ -181,7 +181,7 @@ static char *template_path(const arguments *a, const char *shape)
 }
 
 /* Names the file of each template and tries it. Without a folder there are none. */
-static ms_status plan_outputs(ms_outputs *outputs, const arguments *a, const ms_manifest *manifest, ms_error *err)
+static ms_status plan_outputs(ms_outputs *outputs, const scene_arguments *a, const ms_manifest *manifest, ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t r = 0; a->folder && r < manifest->count && status == MS_OK; r++) {
@@ -209,7 +209,7 @@ static ms_status plan_outputs(ms_outputs *outputs, const arguments *a, const ms_
 }
 
 /* How a template came about, for its JSON file. */
-static char *record_of(const arguments *a, const ms_scene_shape *shape)
+static char *record_of(const scene_arguments *a, const ms_scene_shape *shape)
 {
     json_t *json = ms_scene_record_json(&a->recipe, (size_t)a->max_spheres, a->min_radius);
     json_object_set_new(json, "scores", ms_scene_scores_json(shape));
@@ -219,7 +219,8 @@ static char *record_of(const arguments *a, const ms_scene_shape *shape)
     return record;
 }
 
-static ms_status write_templates(const ms_outputs *outputs, const arguments *a, const ms_scene *scene, ms_error *err)
+static ms_status write_templates(const ms_outputs *outputs, const scene_arguments *a, const ms_scene *scene,
+                                 ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t s = 0; a->folder && s < scene->count && status == MS_OK; s++) {
@@ -232,7 +233,7 @@ static ms_status write_templates(const ms_outputs *outputs, const arguments *a, 
     return status;
 }
 
-static ms_status report(const arguments *a, const ms_scene *scene, ms_error *err)
+static ms_status report_scene(const scene_arguments *a, const ms_scene *scene, ms_error *err)
 {
     if (!a->json) {
         printf("%s with %s: ", a->source, a->recipe.generator->name);
@@ -244,7 +245,7 @@ static ms_status report(const arguments *a, const ms_scene *scene, ms_error *err
     return ms_report_print(stdout, json, err);
 }
 
-static ms_status work(arguments *a, const ms_manifest *manifest, ms_outputs *outputs, ms_error *err)
+static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, ms_outputs *outputs, ms_error *err)
 {
     ms_scene scene;
     const ms_scene_run run = {&a->recipe, &a->input, (size_t)a->max_spheres, a->min_radius};
@@ -257,7 +258,7 @@ static ms_status work(arguments *a, const ms_manifest *manifest, ms_outputs *out
     }
     status = ms_scene_choose(&scene, &a->goal, err);
     if (status == MS_OK) {
-        status = report(a, &scene, err);
+        status = report_scene(a, &scene, err);
     }
     if (status == MS_OK) {
         status = write_templates(outputs, a, &scene, err);
@@ -275,7 +276,7 @@ static ms_status read_manifest(ms_manifest *manifest, const char *source, ms_err
                                       : ms_manifest_of_shape(manifest, source, err);
 }
 
-static int resolve_and_work(const ms_command *command, arguments *a, const ms_manifest *manifest)
+static int resolve_and_work(const ms_command *command, scene_arguments *a, const ms_manifest *manifest)
 {
     ms_error err;
     ms_status status = resolve_goal(&a->goal, manifest, a->source, &err);
@@ -287,7 +288,7 @@ static int resolve_and_work(const ms_command *command, arguments *a, const ms_ma
         status = ms_fail(&err, MS_ERR_NOMEM, "no memory for %zu templates", manifest->count);
     }
     if (status == MS_OK) {
-        status = work(a, manifest, outputs, &err);
+        status = execute_scene(a, manifest, outputs, &err);
     }
     for (size_t r = 0; outputs && r < manifest->count; r++) {
         ms_outputs_free(&outputs[r]);
@@ -296,7 +297,7 @@ static int resolve_and_work(const ms_command *command, arguments *a, const ms_ma
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
-static int read_and_work(const ms_command *command, arguments *a)
+static int read_and_work(const ms_command *command, scene_arguments *a)
 {
     ms_manifest manifest;
     ms_error err;
@@ -308,13 +309,13 @@ static int read_and_work(const ms_command *command, arguments *a)
     return code;
 }
 
-static int run(const ms_command *command, int argc, char **argv)
+static int run_scene(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {.max_spheres = DEFAULT_MAX_SPHERES, .recipe = {.name = "variational", .seed = 1}};
+    scene_arguments a = {.max_spheres = DEFAULT_MAX_SPHERES, .recipe = {.name = "variational", .seed = 1}};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);
-    int code = ms_flags_parse(&first, command, 1, argc, argv, take_flag, &a);
+    int code = ms_flags_parse(&first, command, 1, argc, argv, take_scene_flag, &a);
     if (code != MS_FLAGS_GO_ON) {
         return code;
     }
@@ -338,5 +339,5 @@ const ms_command ms_command_scene = {
     .usage = "MANIFEST|SHAPE --budget N|--tolerance MEASURE=V|--mean-tolerance dice=V|--knee PART [-o DIR]",
     .example = "mskit scene grain.stl --knee 0.1 --max-spheres 20 --cells 50 -o templates",
     .flags = FLAGS,
-    .run = run,
+    .run = run_scene,
 };

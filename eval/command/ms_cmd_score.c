@@ -17,15 +17,15 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
-typedef struct arguments {
+typedef struct score_arguments {
     ms_input_flags input;
     const char *target;
     int json, curve;
-} arguments;
+} score_arguments;
 
-static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+static ms_status take_score_flag(void *context, const char *name, const char *value, ms_error *err)
 {
-    arguments *a = context;
+    score_arguments *a = context;
     int taken;
     ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
     if (taken) {
@@ -39,7 +39,7 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
     return MS_OK;
 }
 
-static ms_status report(const arguments *a, const ms_input *input, const ms_clump *clump, ms_error *err)
+static ms_status report_score(const score_arguments *a, const ms_input *input, const ms_clump *clump, ms_error *err)
 {
     ms_metrics metrics;
     ms_score *curve = malloc((clump->n_spheres + 1) * sizeof *curve);
@@ -61,16 +61,16 @@ static ms_status report(const arguments *a, const ms_input *input, const ms_clum
     return status;
 }
 
-static int run(const ms_command *command, int argc, char **argv)
+static int run_score(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {0};
+    score_arguments a = {0};
     int first;
     ms_error err;
     ms_input input;
     ms_clump clump;
     ms_particle unused;
     ms_input_defaults(&a.input);
-    const int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
+    const int code = ms_flags_parse(&first, command, 0, argc, argv, take_score_flag, &a);
     if (code != MS_FLAGS_GO_ON) {
         return code;
     }
@@ -88,7 +88,7 @@ static int run(const ms_command *command, int argc, char **argv)
     if (status == MS_OK) {
         status = ms_input_target(&input, &a.input, &err);
         if (status == MS_OK) {
-            status = report(&a, &input, &clump, &err);
+            status = report_score(&a, &input, &clump, &err);
         }
         ms_input_free(&input);
     }
@@ -102,5 +102,5 @@ const ms_command ms_command_score = {
     .usage = "CLUMP --target SHAPE [...]",
     .example = "mskit score grain.csv --target grain.stl --cells 150",
     .flags = FLAGS,
-    .run = run,
+    .run = run_score,
 };

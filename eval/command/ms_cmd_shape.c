@@ -14,14 +14,14 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
-typedef struct arguments {
+typedef struct shape_arguments {
     const char *output;
     int list;
-} arguments;
+} shape_arguments;
 
-static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+static ms_status take_shape_flag(void *context, const char *name, const char *value, ms_error *err)
 {
-    arguments *a = context;
+    shape_arguments *a = context;
     (void)err;
     if (strcmp(name, "output") == 0) {
         a->output = value;
@@ -86,11 +86,11 @@ static int make(const ms_command *command, const char *output, int n_words, char
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
-static int run(const ms_command *command, int argc, char **argv)
+static int run_shape(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {0};
+    shape_arguments a = {0};
     int first;
-    const int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
+    const int code = ms_flags_parse(&first, command, 0, argc, argv, take_shape_flag, &a);
     if (code != MS_FLAGS_GO_ON) {
         return code;
     }
@@ -114,5 +114,5 @@ const ms_command ms_command_shape = {
     .usage = "KIND [KEY=VALUE]... -o FILE",
     .example = "mskit shape ellipsoid a=2 b=1 c=1 -o ellipsoid.stl",
     .flags = FLAGS,
-    .run = run,
+    .run = run_shape,
 };

@@ -32,7 +32,7 @@ static const ms_flag FLAGS[] = {
     {0},
 };
 
-typedef struct arguments {
+typedef struct stability_arguments {
     ms_input_flags input;
     ms_methods methods;
     int wanted[MS_CHANGE_MOST]; /* of ms_changes */
@@ -41,16 +41,16 @@ typedef struct arguments {
     int json;
     char **shape; /* none: the built-in ones */
     int n_shapes;
-} arguments;
+} stability_arguments;
 
 /* What has been done so far. */
-typedef struct progress {
+typedef struct stability_progress {
     FILE *rows;
     ms_stability_run *run;
     size_t n_runs, planned;
-} progress;
+} stability_progress;
 
-static ms_status take_change(arguments *a, const char *name, ms_error *err)
+static ms_status take_change(stability_arguments *a, const char *name, ms_error *err)
 {
     const ms_change *change = ms_change_find(name, err);
     if (!change) {
@@ -60,9 +60,9 @@ static ms_status take_change(arguments *a, const char *name, ms_error *err)
     return MS_OK;
 }
 
-static ms_status take_flag(void *context, const char *name, const char *value, ms_error *err)
+static ms_status take_stability_flag(void *context, const char *name, const char *value, ms_error *err)
 {
-    arguments *a = context;
+    stability_arguments *a = context;
     int taken;
     ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
     if (taken) {
@@ -95,7 +95,7 @@ static ms_status take_flag(void *context, const char *name, const char *value, m
 }
 
 /* What follows from all flags together. */
-static ms_status settle(arguments *a, ms_error *err)
+static ms_status resolve_stability(stability_arguments *a, ms_error *err)
 {
     int any = 0;
     for (int c = 0; ms_changes[c].name; c++) {
@@ -156,7 +156,7 @@ static ms_status make_input(ms_input *input, const char *name, const ms_input_fl
 }
 
 /* Before the work: are all files there? */
-static ms_status try_shapes(const arguments *a, ms_error *err)
+static ms_status try_shapes(const stability_arguments *a, ms_error *err)
 {
     ms_status status = MS_OK;
     for (int s = 0; s < a->n_shapes && status == MS_OK; s++) {
@@ -171,7 +171,7 @@ static ms_status try_shapes(const arguments *a, ms_error *err)
     return status;
 }
 
-static ms_status try_outputs(const arguments *a, ms_error *err)
+static ms_status try_stability_outputs(const stability_arguments *a, ms_error *err)
 {
     ms_status status = strcmp(a->output, "-") == 0 ? MS_OK : ms_outputs_try_file("", a->output, err);
     for (int s = 0; s < a->n_shapes && status == MS_OK; s++) {
@@ -180,7 +180,7 @@ static ms_status try_outputs(const arguments *a, ms_error *err)
     return status == MS_OK && a->charts ? ms_outputs_make_folder(a->charts, err) : status;
 }
 
-static void show(const progress *p, const ms_stability *s, const ms_change *change)
+static void show_run(const stability_progress *p, const ms_stability *s, const ms_change *change)
 {
     if (isatty(STDERR_FILENO)) {
         fprintf(stderr, "\r\033[K%zu of %zu: %s, %s, %s ", p->n_runs + 1, p->planned, s->input->path,
@@ -188,17 +188,18 @@ static void show(const progress *p, const ms_stability *s, const ms_change *chan
     }
 }
 
-static ms_status add_run(progress *p, const ms_stability *s, const ms_change *change, int number, ms_error *err)
+static ms_status add_run(stability_progress *p, const ms_stability *s, const ms_change *change, int number,
+                         ms_error *err)
 {
     ms_stability_run *run = &p->run[p->n_runs];
-    show(p, s, change);
+    show_run(p, s, change);
     ms_stability_try(run, s, change, number);
     p->n_runs++;
     ms_stability_row(p->rows, run);
     return fflush(p->rows) == 0 ? MS_OK : ms_fail(err, MS_ERR_IO, "a row could not be written; is the disk full?");
 }
 
-static ms_status try_shape(progress *p, const arguments *a, const char *name, ms_error *err)
+static ms_status try_shape(stability_progress *p, const stability_arguments *a, const char *name, ms_error *err)
 {
     ms_input input;
     ms_status status = make_input(&input, name, &a->input, err);
@@ -226,7 +227,7 @@ static ms_status try_shape(progress *p, const arguments *a, const char *name, ms
     return status;
 }
 
-static ms_status try_all(progress *p, const arguments *a, ms_error *err)
+static ms_status try_all(stability_progress *p, const stability_arguments *a, ms_error *err)
 {
     ms_status status = MS_OK;
     ms_stability_header(p->rows);
@@ -242,7 +243,7 @@ static ms_status try_all(progress *p, const arguments *a, ms_error *err)
     return status;
 }
 
-static ms_status report(const arguments *a, const progress *p, ms_error *err)
+static ms_status report_stability(const stability_arguments *a, const stability_progress *p, ms_error *err)
 {
     ms_statistics_group *groups;
     size_t count;
@@ -257,7 +258,7 @@ static ms_status report(const arguments *a, const progress *p, ms_error *err)
     return status == MS_OK && a->charts ? ms_stability_charts(a->charts, p->run, p->n_runs, err) : status;
 }
 
-static size_t count_runs(const arguments *a)
+static size_t count_runs(const stability_arguments *a)
 {
     size_t each = 0, shapes = (size_t)a->n_shapes;
     for (int c = 0; ms_changes[c].name; c++) {
@@ -270,7 +271,7 @@ static size_t count_runs(const arguments *a)
 }
 
 /* The rows are written in place, so that a run that is killed leaves those there are. */
-static ms_status begin(progress *p, const arguments *a, ms_error *err)
+static ms_status open_rows(stability_progress *p, const stability_arguments *a, ms_error *err)
 {
     p->planned = count_runs(a);
     p->run = malloc(p->planned * sizeof *p->run);
@@ -281,23 +282,23 @@ static ms_status begin(progress *p, const arguments *a, ms_error *err)
     return p->rows ? MS_OK : ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s", a->output, strerror(errno));
 }
 
-static int work(const ms_command *command, const arguments *a)
+static int execute_stability(const ms_command *command, const stability_arguments *a)
 {
     ms_error err;
-    progress p = {0};
+    stability_progress p = {0};
     ms_status status = try_shapes(a, &err);
     if (status == MS_OK) {
-        status = try_outputs(a, &err);
+        status = try_stability_outputs(a, &err);
     }
     if (status != MS_OK) {
         return ms_flags_fail(command, &err);
     }
-    status = begin(&p, a, &err);
+    status = open_rows(&p, a, &err);
     if (status == MS_OK) {
         status = try_all(&p, a, &err);
     }
     if (status == MS_OK) {
-        status = report(a, &p, &err);
+        status = report_stability(a, &p, &err);
     }
     if (p.rows && p.rows != stdout && fclose(p.rows) != 0 && status == MS_OK) {
         status = ms_fail(&err, MS_ERR_IO, "%s: could not be written; is the disk full?", a->output);
@@ -306,17 +307,18 @@ static int work(const ms_command *command, const arguments *a)
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
-static int run(const ms_command *command, int argc, char **argv)
+static int run_stability(const ms_command *command, int argc, char **argv)
 {
-    arguments a = {.spheres = DEFAULT_SPHERES, .runs = DEFAULT_RUNS, .seed = 1, .output = "stability.csv"};
+    stability_arguments a = {.spheres = DEFAULT_SPHERES, .runs = DEFAULT_RUNS, .seed = 1, .output = "stability.csv"};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);
-    int code = ms_flags_parse(&first, command, 0, argc, argv, take_flag, &a);
+    int code = ms_flags_parse(&first, command, 0, argc, argv, take_stability_flag, &a);
     if (code == MS_FLAGS_GO_ON) {
         a.shape = argv + first;
         a.n_shapes = argc - first;
-        code = settle(&a, &err) == MS_OK ? work(command, &a) : ms_flags_wrong_usage(command, err.text);
+        code = resolve_stability(&a, &err) == MS_OK ? execute_stability(command, &a)
+                                                    : ms_flags_wrong_usage(command, err.text);
     }
     ms_compare_methods_free(&a.methods);
     return code;
@@ -328,5 +330,5 @@ const ms_command ms_command_stability = {
     .usage = "[SHAPE...] [-g NAME[:OPTION=VALUE,...]]... [-n N] [--perturb KIND]...",
     .example = "mskit stability cube speck -g mss -g fcm -n 5 --runs 2 --perturb rotation --perturb noise -o s.csv",
     .flags = FLAGS,
-    .run = run,
+    .run = run_stability,
 };

@@ -220,7 +220,7 @@ static void name_shape(char *out, size_t size, const record *shape)
     ms_compare_name(out, size, shape->field[MS_COLUMN_SHAPE], shape->field[MS_COLUMN_LABEL]);
 }
 
-static ms_status draw(const records *all, const record *shape, const chart_kind *k, ms_error *err)
+static ms_status draw_compare_chart(const records *all, const record *shape, const chart_kind *k, ms_error *err)
 {
     char name[256], title[512], at[64];
     draft d = {0};
@@ -278,7 +278,7 @@ static void draw_kind(ms_status *status, const records *all, const record *shape
     if (k->x == MS_COLUMN_CELLS && !several(all, shape, MS_COLUMN_CELLS)) {
         return;
     }
-    const ms_status drawn = draw(all, shape, k, &why);
+    const ms_status drawn = draw_compare_chart(all, shape, k, &why);
     if (*status == MS_OK && drawn != MS_OK) {
         *status = drawn;
         *err = why;
@@ -286,7 +286,7 @@ static void draw_kind(ms_status *status, const records *all, const record *shape
 }
 
 /* Without gnuplot all scripts are written nevertheless; the first failure is reported. */
-static ms_status draw_all(const records *all, ms_error *err)
+static ms_status draw_compare_charts(const records *all, ms_error *err)
 {
     ms_status status = check_names(all, err);
     if (status != MS_OK) {
@@ -312,7 +312,7 @@ ms_status ms_compare_charts(const ms_csv *csv, const char *folder, ms_error *err
     records all = {.folder = folder};
     ms_status status = cut_rows(&all, csv, err);
     if (status == MS_OK) {
-        status = draw_all(&all, err);
+        status = draw_compare_charts(&all, err);
     }
     free_records(&all);
     return status;

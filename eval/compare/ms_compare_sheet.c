@@ -103,7 +103,7 @@ static ms_status draw_tiles(ms_picture *picture, const ms_compare_sheet *sheet, 
     return status;
 }
 
-static void put_label(FILE *stream, const char *text, double x, double y, const char *align)
+static void put_sheet_label(FILE *stream, const char *text, double x, double y, const char *align)
 {
     fputs("set label '", stream);
     for (; *text; text++) {
@@ -113,7 +113,7 @@ static void put_label(FILE *stream, const char *text, double x, double y, const 
 }
 
 /* Puts words to the tiles; y of gnuplot's picture goes upward. */
-static void put_script(FILE *stream, const ms_compare_sheet *sheet, const ms_picture *picture)
+static void put_sheet_script(FILE *stream, const ms_compare_sheet *sheet, const ms_picture *picture)
 {
     fprintf(stream,
             "# `gnuplot %s-sheet.gp`, here, draws %s-sheet.png from %s-tiles.png\n"
@@ -124,18 +124,18 @@ static void put_script(FILE *stream, const ms_compare_sheet *sheet, const ms_pic
             "set xrange [0:%d]\nset yrange [0:%d]\n",
             sheet->shape, sheet->shape, sheet->shape, picture->width, picture->height + HEAD, picture->width,
             picture->height + HEAD, sheet->shape, picture->width, picture->height + HEAD);
-    put_label(stream, sheet->shape, 0.5 * TILE, picture->height + 0.5 * HEAD, "center");
+    put_sheet_label(stream, sheet->shape, 0.5 * TILE, picture->height + 0.5 * HEAD, "center");
     for (size_t m = 0; m < sheet->methods->count; m++) {
         char name[256];
         const ms_method *method = &sheet->methods->method[m];
         snprintf(name, sizeof name, "%.80s%s%.120s", method->name, method->generator && method->options[0] ? ":" : "",
                  method->generator ? method->options : "");
-        put_label(stream, name, ((double)m + 1.5) * TILE, picture->height + 0.5 * HEAD, "center");
+        put_sheet_label(stream, name, ((double)m + 1.5) * TILE, picture->height + 0.5 * HEAD, "center");
     }
     for (size_t row = 0; row < count_rows(sheet); row++) {
         char number[64];
         snprintf(number, sizeof number, "n = %g", row_number(sheet, row));
-        put_label(stream, number, TILE - 8, picture->height - (double)row * TILE - 16, "right");
+        put_sheet_label(stream, number, TILE - 8, picture->height - (double)row * TILE - 16, "right");
     }
     fprintf(stream, "plot '%s-tiles.png' binary filetype=png with rgbimage\n", sheet->shape);
 }
@@ -146,7 +146,7 @@ static ms_status write_script(const ms_compare_sheet *sheet, const ms_picture *p
     char *path = make_path(sheet, "sheet.gp", err);
     ms_status status = path ? ms_output_open(&output, path, err) : MS_ERR_NOMEM;
     if (status == MS_OK) {
-        put_script(output.stream, sheet, picture);
+        put_sheet_script(output.stream, sheet, picture);
         status = ms_output_close(&output, MS_OK, err);
     }
     free(path);

@@ -13,7 +13,7 @@
 #include "ms_version.h"
 
 /* Where the comparison stands: shapes, resolutions, methods and numbers follow one another in a fixed order. */
-typedef struct walk {
+typedef struct compare_walk {
     const ms_comparison *a;
     ms_csv *csv;
     size_t at, failed; /* rows */
@@ -27,9 +27,9 @@ typedef struct walk {
     ms_compare_sheet sheet; /* of the shape, at its last resolution */
     ms_status drawn;        /* of the first chart that failed; the comparison goes on */
     ms_error why_not;
-} walk;
+} compare_walk;
 
-static ms_compare_row begin_row(const walk *w, const ms_method *method, double asked)
+static ms_compare_row begin_row(const compare_walk *w, const ms_method *method, double asked)
 {
     ms_compare_row row = ms_compare_empty();
     row.text[MS_COLUMN_SHAPE] = w->shape;
@@ -57,7 +57,8 @@ static void put_input(ms_compare_row *row, const ms_input *input)
 }
 
 /* Nonzero if the next row was there before, which must have been made for the same. */
-static int is_there(const walk *w, size_t at, const ms_method *method, double asked, ms_status *status, ms_error *err)
+static int is_there(const compare_walk *w, size_t at, const ms_method *method, double asked, ms_status *status,
+                    ms_error *err)
 {
     if (at >= w->csv->n_rows) {
         return 0;
@@ -77,7 +78,7 @@ static int is_there(const walk *w, size_t at, const ms_method *method, double as
 }
 
 /* The target is made only where a row needs it. */
-static void need_target(walk *w)
+static void need_target(compare_walk *w)
 {
     ms_input_flags flags = w->a->input;
     if (w->target_made || w->status != MS_OK) {
@@ -112,7 +113,7 @@ static void say_row(const ms_compare_row *row)
     fflush(stdout);
 }
 
-static ms_status add_row(walk *w, const ms_compare_row *row, ms_error *err)
+static ms_status add_row(compare_walk *w, const ms_compare_row *row, ms_error *err)
 {
     char *line = ms_compare_line(row);
     ms_status status = line ? ms_csv_add(w->csv, line, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for a row");
@@ -126,7 +127,7 @@ static ms_status add_row(walk *w, const ms_compare_row *row, ms_error *err)
 }
 
 /* Remembers the first failure of a chart. */
-static void note_drawn(walk *w, ms_status status, const ms_error *err)
+static void note_drawn(compare_walk *w, ms_status status, const ms_error *err)
 {
     if (status != MS_OK && w->drawn == MS_OK) {
         w->drawn = status;
@@ -135,7 +136,7 @@ static void note_drawn(walk *w, ms_status status, const ms_error *err)
 }
 
 /* For the contact sheet. */
-static void keep_clump(walk *w, const ms_method *method, double asked, const ms_clump *clump, size_t n)
+static void keep_clump(compare_walk *w, const ms_method *method, double asked, const ms_clump *clump, size_t n)
 {
     ms_error err;
     const ms_clump prefix = {.n_spheres = n, .capacity = n, .sphere = clump->sphere};
@@ -146,7 +147,7 @@ static void keep_clump(walk *w, const ms_method *method, double asked, const ms_
 }
 
 /* One row, of the first spheres of what a trial or another tool gave, or of why there are none. */
-static ms_status make_row(walk *w, const ms_method *method, double asked, const ms_trial *trial, double seconds,
+static ms_status make_row(compare_walk *w, const ms_method *method, double asked, const ms_trial *trial, double seconds,
                           ms_status failure, const ms_error *why, ms_error *err)
 {
     ms_error cause;
@@ -173,7 +174,7 @@ static ms_status make_row(walk *w, const ms_method *method, double asked, const 
 }
 
 /* The rows of one run, from `first` on; those before were there. */
-static ms_status make_rows(walk *w, const ms_method *method, const double *asked, size_t count, size_t first,
+static ms_status make_rows(compare_walk *w, const ms_method *method, const double *asked, size_t count, size_t first,
                            ms_error *err)
 {
     size_t n[MS_NUMBERS_MAX];
@@ -205,7 +206,7 @@ static ms_status make_rows(walk *w, const ms_method *method, const double *asked
     return status;
 }
 
-static ms_status compare_method(walk *w, const ms_method *method, ms_error *err)
+static ms_status compare_method(compare_walk *w, const ms_method *method, ms_error *err)
 {
     static const double AS_IT_IS[] = {HUGE_VAL};
     const ms_numbers *list = &w->a->asked;
@@ -226,7 +227,7 @@ static ms_status compare_method(walk *w, const ms_method *method, ms_error *err)
     return status;
 }
 
-static ms_status compare_methods(walk *w, ms_error *err)
+static ms_status compare_methods(compare_walk *w, ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t m = 0; m < w->a->methods.count && status == MS_OK; m++) {
@@ -235,7 +236,7 @@ static ms_status compare_methods(walk *w, ms_error *err)
     return status;
 }
 
-static void draw_sheet(walk *w)
+static void draw_sheet(compare_walk *w)
 {
     ms_error err;
     need_target(w);
@@ -244,7 +245,7 @@ static void draw_sheet(walk *w)
     }
 }
 
-static ms_status compare_shape(walk *w, const char *shape, ms_error *err)
+static ms_status compare_shape(compare_walk *w, const char *shape, ms_error *err)
 {
     const ms_numbers *cells = &w->a->cells;
     ms_status status = MS_OK;
@@ -271,7 +272,7 @@ static ms_status compare_shape(walk *w, const char *shape, ms_error *err)
     return status;
 }
 
-static ms_status compare_shapes(walk *w, ms_error *err)
+static ms_status compare_shapes(compare_walk *w, ms_error *err)
 {
     const ms_comparison *a = w->a;
     ms_status status = MS_OK;
@@ -287,7 +288,7 @@ static ms_status compare_shapes(walk *w, ms_error *err)
 
 ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error *err)
 {
-    walk w = {.a = comparison, .csv = csv};
+    compare_walk w = {.a = comparison, .csv = csv};
     if (comparison->input.threads) {
         omp_set_num_threads(comparison->input.threads);
     }

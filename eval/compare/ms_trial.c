@@ -47,17 +47,17 @@ static double peak_memory(void)
 }
 
 /* Notes when each number of spheres was there, and shows on a terminal how far the run is. */
-typedef struct watch {
+typedef struct trial_watch {
     const ms_trial_run *run;
     double start, shown;
     size_t next;
     double *seconds;
     int terminal;
-} watch;
+} trial_watch;
 
-static void look(void *context, size_t spheres, double dice)
+static void note_progress(void *context, size_t spheres, double dice)
 {
-    watch *w = context;
+    trial_watch *w = context;
     const double now = omp_get_wtime();
     while (w->next < w->run->n_asked && spheres >= w->run->asked[w->next]) {
         w->seconds[w->next++] = now - w->start;
@@ -76,9 +76,12 @@ static void look(void *context, size_t spheres, double dice)
 static ms_status run_once(ms_trial *trial, double *seconds, const ms_trial_run *run, const ms_target *target,
                           ms_error *err)
 {
-    watch w = {.run = run, .start = omp_get_wtime(), .seconds = seconds, .terminal = isatty(STDERR_FILENO)};
-    ms_run one = {
-        .target = target, .settings = run->settings, .seed = run->seed, .progress = look, .progress_context = &w};
+    trial_watch w = {.run = run, .start = omp_get_wtime(), .seconds = seconds, .terminal = isatty(STDERR_FILENO)};
+    ms_run one = {.target = target,
+                  .settings = run->settings,
+                  .seed = run->seed,
+                  .progress = note_progress,
+                  .progress_context = &w};
     one.stop.spheres = run->asked[run->n_asked - 1];
     ms_clump_free(&trial->clump);
     const ms_status status = ms_generator_run(&trial->clump, &trial->reason, run->generator, &one, err);

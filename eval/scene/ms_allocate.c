@@ -10,19 +10,19 @@
 static const double ROUNDING = 1e-12;
 
 /* From a template to a larger one. */
-typedef struct step {
+typedef struct hull_step {
     size_t to;
     double slope; /* error taken away by each further sphere; 0: no template up to the last is better */
-} step;
+} hull_step;
 
 /* The steepest descent from template n to one of at most `last` spheres: along the lower hull of what lies ahead. */
-static step steepest(const ms_share *share, size_t n, size_t last)
+static hull_step steepest(const ms_share *share, size_t n, size_t last)
 {
-    step best = {n, 0};
+    hull_step best = {n, 0};
     for (size_t to = n + 1; to <= last; to++) {
         const double slope = (share->error[n - 1] - share->error[to - 1]) / (double)(to - n);
         if (slope > best.slope) {
-            best = (step){to, slope};
+            best = (hull_step){to, slope};
         }
     }
     return best;
@@ -58,25 +58,26 @@ double ms_allocate_gain(const ms_share *share, const size_t *n, size_t count)
 }
 
 /* The sums of errors and the spheres of all templates, as kinds of a knapsack. */
-typedef struct table {
+typedef struct error_table {
     ms_kind *kind;
     double *error, *spheres; /* shape behind shape */
-} table;
+} error_table;
 
-static void table_free(table *t)
+static void free_table(error_table *t)
 {
     free(t->kind);
     free(t->error);
     free(t->spheres);
 }
 
-static ms_status table_make(table *t, const ms_share *share, size_t count, int by_error, ms_error *err)
+static ms_status make_table(error_table *t, const ms_share *share, size_t count, int by_error, ms_error *err)
 {
     size_t size = 0, at = 0;
     for (size_t s = 0; s < count; s++) {
         size += share[s].most;
     }
-    *t = (table){malloc(count * sizeof *t->kind), malloc(size * sizeof *t->error), malloc(size * sizeof *t->spheres)};
+    *t = (error_table){malloc(count * sizeof *t->kind), malloc(size * sizeof *t->error),
+                       malloc(size * sizeof *t->spheres)};
     if (!t->kind || !t->error || !t->spheres) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu templates", size);
     }
@@ -102,10 +103,10 @@ typedef struct aim {
 static ms_status improve(size_t *n, ms_allocation *sum, const ms_share *share, size_t count, const aim *wanted,
                          ms_error *err)
 {
-    table t;
+    error_table t;
     int proven = 0;
     const double slack = sum->slack;
-    ms_status status = table_make(&t, share, count, wanted->by_error, err);
+    ms_status status = make_table(&t, share, count, wanted->by_error, err);
     for (size_t s = 0; s < count; s++) {
         n[s]--; /* places in the table */
     }
@@ -117,14 +118,14 @@ static ms_status improve(size_t *n, ms_allocation *sum, const ms_share *share, s
     }
     *sum = ms_allocate_sum(share, n, count);
     sum->slack = proven ? 0 : slack;
-    table_free(&t);
+    free_table(&t);
     return status;
 }
 
 /* One sphere each, and the steepest step of each shape from there; NULL without memory. */
-static step *begin(size_t *n, const ms_share *share, size_t count, ms_error *err)
+static hull_step *begin_steps(size_t *n, const ms_share *share, size_t count, ms_error *err)
 {
-    step *ahead = malloc((count + 1) * sizeof *ahead);
+    hull_step *ahead = malloc((count + 1) * sizeof *ahead);
     if (!ahead) {
         ms_fail(err, MS_ERR_NOMEM, "no memory for the steps of %zu shapes", count);
         return NULL;
@@ -137,7 +138,7 @@ static step *begin(size_t *n, const ms_share *share, size_t count, ms_error *err
 }
 
 /* The shape with the steepest step; the first of equals. */
-static size_t first_of(const step *ahead, size_t count)
+static size_t first_of(const hull_step *ahead, size_t count)
 {
     size_t best = 0;
     for (size_t s = 1; s < count; s++) {
@@ -148,15 +149,15 @@ static size_t first_of(const step *ahead, size_t count)
 
 /* The same among the steps that the rest pays: where it does not pay the steepest of a shape, one to a smaller template
  * may do. */
-static size_t first_payable(step *best, const step *ahead, const size_t *n, const ms_share *share, size_t count,
-                            uint64_t rest)
+static size_t first_payable(hull_step *best, const hull_step *ahead, const size_t *n, const ms_share *share,
+                            size_t count, uint64_t rest)
 {
     size_t shape = 0;
-    *best = (step){n[0], 0};
+    *best = (hull_step){n[0], 0};
     for (size_t s = 0; s < count; s++) {
-        const step payable = cost(&share[s], n[s], ahead[s].to) <= rest
-                                 ? ahead[s]
-                                 : steepest(&share[s], n[s], n[s] + (size_t)(rest / share[s].particles));
+        const hull_step payable = cost(&share[s], n[s], ahead[s].to) <= rest
+                                      ? ahead[s]
+                                      : steepest(&share[s], n[s], n[s] + (size_t)(rest / share[s].particles));
         if (payable.slope > best->slope) {
             *best = payable;
             shape = s;
@@ -165,20 +166,21 @@ static size_t first_payable(step *best, const step *ahead, const size_t *n, cons
     return shape;
 }
 
-static void take(size_t *n, step *ahead, const ms_share *share, size_t shape, size_t to)
+static void take(size_t *n, hull_step *ahead, const ms_share *share, size_t shape, size_t to)
 {
     n[shape] = to;
     ahead[shape] = steepest(&share[shape], to, share[shape].most);
 }
 
 /* The steps of ms_allocate_budget, from one sphere each; in `price` the slope of the first that cannot be paid. */
-static ms_allocation spend(size_t *n, double *price, step *ahead, const ms_share *share, size_t count, uint64_t budget)
+static ms_allocation spend(size_t *n, double *price, hull_step *ahead, const ms_share *share, size_t count,
+                           uint64_t budget)
 {
     ms_allocation sum = ms_allocate_sum(share, n, count);
     double bound = HUGE_VAL; /* on the mean error, from the first step that cannot be paid */
     *price = 0;
     for (;;) {
-        step next;
+        hull_step next;
         const uint64_t rest = budget - sum.spheres;
         const double wanted = ahead[first_of(ahead, count)].slope;
         const size_t shape = first_payable(&next, ahead, n, share, count, rest);
@@ -200,7 +202,7 @@ ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share
                              ms_error *err)
 {
     double price = 0;
-    step *ahead = begin(n, share, count, err);
+    hull_step *ahead = begin_steps(n, share, count, err);
     if (!ahead) {
         return MS_ERR_NOMEM;
     }
@@ -235,7 +237,7 @@ static ms_status shrink_budget(size_t *n, ms_allocation *sum, double fewest, con
     }
     while (few + 1 < sum->spheres && status == MS_OK) {
         const uint64_t budget = few + (sum->spheres - few) / 2;
-        step *ahead = begin(fewer, share, count, err);
+        hull_step *ahead = begin_steps(fewer, share, count, err);
         status = ahead ? MS_OK : MS_ERR_NOMEM;
         const ms_allocation less = ahead ? spend(fewer, &unused, ahead, share, count, budget) : *sum;
         if (ahead && less.error <= error) {
@@ -252,8 +254,8 @@ static ms_status shrink_budget(size_t *n, ms_allocation *sum, double fewest, con
 
 /* Steps from one sphere each until the error is reached; in `price` the spheres for a unit of error at the last, in
  * `fewest` how many any allocation needs, by the hulls. */
-static ms_status reach(size_t *n, ms_allocation *sum, double *price, double *fewest, step *ahead, const ms_share *share,
-                       size_t count, double error, ms_error *err)
+static ms_status reach(size_t *n, ms_allocation *sum, double *price, double *fewest, hull_step *ahead,
+                       const ms_share *share, size_t count, double error, ms_error *err)
 {
     *price = *fewest = 0;
     *sum = ms_allocate_sum(share, n, count);
@@ -275,7 +277,7 @@ ms_status ms_allocate_error(size_t *n, ms_allocation *allocated, const ms_share 
                             ms_error *err)
 {
     double price, fewest;
-    step *ahead = begin(n, share, count, err);
+    hull_step *ahead = begin_steps(n, share, count, err);
     if (!ahead) {
         return MS_ERR_NOMEM;
     }

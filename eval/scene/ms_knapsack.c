@@ -8,28 +8,28 @@
 enum { MOST_STATES = 2000000, MOST_TRIES = 50000000 };
 
 /* Sums over the kinds so far. */
-typedef struct state {
+typedef struct knapsack_state {
     double value, weight;
     uint32_t from; /* the state before, by its place among all */
     uint32_t chosen;
-} state;
+} knapsack_state;
 
 /* What some kinds add at the least. */
 typedef struct bound {
     double value, weight, both; /* both: value + price * weight */
 } bound;
 
-typedef struct search {
+typedef struct knapsack_search {
     const ms_kind *kind;
     size_t count;
     double limit, price, aim; /* aim: to be better than this */
     bound *rest;              /* of the kinds from i on */
-    state *all;               /* layer behind layer */
+    knapsack_state *all;      /* layer behind layer */
     size_t n_states, capacity, tries;
     size_t *begin; /* where the layer of i kinds begins */
-} search;
+} knapsack_search;
 
-static ms_status search_begin(search *s, ms_error *err)
+static ms_status begin_search(knapsack_search *s, ms_error *err)
 {
     s->rest = calloc(s->count + 1, sizeof *s->rest);
     s->begin = calloc(s->count + 2, sizeof *s->begin);
@@ -50,18 +50,18 @@ static ms_status search_begin(search *s, ms_error *err)
     return MS_OK;
 }
 
-static void search_free(search *s)
+static void free_search(knapsack_search *s)
 {
     free(s->rest);
     free(s->begin);
     free(s->all);
 }
 
-static ms_status add(search *s, const state *next, ms_error *err)
+static ms_status add_state(knapsack_search *s, const knapsack_state *next, ms_error *err)
 {
     if (s->n_states == s->capacity) {
         const size_t capacity = 2 * s->capacity + 1024;
-        state *grown = realloc(s->all, capacity * sizeof *grown);
+        knapsack_state *grown = realloc(s->all, capacity * sizeof *grown);
         if (!grown) {
             return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu choices", capacity);
         }
@@ -73,7 +73,7 @@ static ms_status add(search *s, const state *next, ms_error *err)
 }
 
 /* Can a choice that begins like this fit, and be better than what there is? */
-static int is_promising(const search *s, const state *next, size_t kinds)
+static int is_promising(const knapsack_search *s, const knapsack_state *next, size_t kinds)
 {
     const bound *rest = &s->rest[kinds];
     return next->weight + rest->weight <= s->limit && next->value + rest->value <= s->aim &&
@@ -81,7 +81,7 @@ static int is_promising(const search *s, const state *next, size_t kinds)
 }
 
 /* All choices of one kind more. */
-static ms_status extend(search *s, size_t i, ms_error *err)
+static ms_status extend_states(knapsack_search *s, size_t i, ms_error *err)
 {
     const ms_kind *kind = &s->kind[i];
     const size_t end = s->n_states;
@@ -89,10 +89,10 @@ static ms_status extend(search *s, size_t i, ms_error *err)
     s->begin[i + 1] = end;
     for (size_t at = s->begin[i]; at < end && status == MS_OK; at++) {
         for (size_t c = 0; c < kind->count && status == MS_OK; c++) {
-            const state next = {s->all[at].value + kind->value[c], s->all[at].weight + kind->weight[c], (uint32_t)at,
-                                (uint32_t)c};
+            const knapsack_state next = {s->all[at].value + kind->value[c], s->all[at].weight + kind->weight[c],
+                                         (uint32_t)at, (uint32_t)c};
             if (is_promising(s, &next, i + 1)) {
-                status = add(s, &next, err);
+                status = add_state(s, &next, err);
             }
         }
         s->tries += kind->count;
@@ -106,7 +106,7 @@ static ms_status extend(search *s, size_t i, ms_error *err)
 /* By weight, then by value; equals by their origin, so that the order is the same everywhere. */
 static int compare(const void *left, const void *right)
 {
-    const state *a = left, *b = right;
+    const knapsack_state *a = left, *b = right;
     if (a->weight != b->weight) {
         return a->weight < b->weight ? -1 : 1;
     }
@@ -117,7 +117,7 @@ static int compare(const void *left, const void *right)
 }
 
 /* Of the last layer, drops what another state beats in both. */
-static void drop_beaten(search *s, size_t begin)
+static void drop_beaten(knapsack_search *s, size_t begin)
 {
     double least = HUGE_VAL;
     size_t kept = begin;
@@ -132,7 +132,7 @@ static void drop_beaten(search *s, size_t begin)
 }
 
 /* The way back from the last state, which has the least value of the last layer. */
-static void trace(size_t *choice, const search *s)
+static void trace_choice(size_t *choice, const knapsack_search *s)
 {
     size_t at = s->n_states - 1;
     for (size_t i = s->count; i-- > 0;) {
@@ -144,18 +144,18 @@ static void trace(size_t *choice, const search *s)
 ms_status ms_knapsack_improve(size_t *choice, int *proven, const ms_kind *kind, size_t count, double limit,
                               double price, double step, ms_error *err)
 {
-    search s = {.kind = kind, .count = count, .limit = limit, .price = price, .aim = -step};
-    const state none = {0};
+    knapsack_search s = {.kind = kind, .count = count, .limit = limit, .price = price, .aim = -step};
+    const knapsack_state none = {0};
     for (size_t i = 0; i < count; i++) {
         s.aim += kind[i].value[choice[i]];
     }
     *proven = 0;
-    ms_status status = search_begin(&s, err);
+    ms_status status = begin_search(&s, err);
     if (status == MS_OK) {
-        status = add(&s, &none, err);
+        status = add_state(&s, &none, err);
     }
     for (size_t i = 0; i < count && status == MS_OK; i++) {
-        status = extend(&s, i, err);
+        status = extend_states(&s, i, err);
         if (s.n_states > MOST_STATES || s.tries > MOST_TRIES) {
             break;
         }
@@ -163,8 +163,8 @@ ms_status ms_knapsack_improve(size_t *choice, int *proven, const ms_kind *kind, 
         *proven = i + 1 == count;
     }
     if (status == MS_OK && *proven && s.n_states > s.begin[count]) {
-        trace(choice, &s);
+        trace_choice(choice, &s);
     }
-    search_free(&s);
+    free_search(&s);
     return status;
 }

@@ -131,14 +131,14 @@ ms_status ms_perturb_noise(ms_mesh *mesh, double amplitude, uint64_t seed, ms_er
 }
 
 /* A side of a triangle: its ends, the lower first, and where its middle is to be written. */
-typedef struct side {
+typedef struct triangle_side {
     uint32_t end[2];
     uint64_t at; /* 3 * triangle + side */
-} side;
+} triangle_side;
 
 static int compare_sides(const void *a, const void *b)
 {
-    const side *p = a, *q = b;
+    const triangle_side *p = a, *q = b;
     for (int e = 0; e < 2; e++) {
         if (p->end[e] != q->end[e]) {
             return p->end[e] < q->end[e] ? -1 : 1;
@@ -148,13 +148,13 @@ static int compare_sides(const void *a, const void *b)
 }
 
 /* Numbers the edges: middle[3 t + k] is that of the side behind corner k of triangle t. @return how many */
-static size_t number_edges(uint32_t *middle, side *sides, const ms_mesh *mesh)
+static size_t number_edges(uint32_t *middle, triangle_side *sides, const ms_mesh *mesh)
 {
     size_t count = 0;
     const size_t n = 3 * mesh->n_triangles;
     for (size_t s = 0; s < n; s++) {
         const uint32_t a = mesh->triangle[s / 3][s % 3], b = mesh->triangle[s / 3][(s + 1) % 3];
-        sides[s] = (side){{a < b ? a : b, a < b ? b : a}, s};
+        sides[s] = (triangle_side){{a < b ? a : b, a < b ? b : a}, s};
     }
     qsort(sides, n, sizeof *sides, compare_sides);
     for (size_t s = 0; s < n; s++) {
@@ -190,7 +190,7 @@ ms_status ms_perturb_refine(ms_mesh *out, const ms_mesh *mesh, ms_error *err)
     if (n > UINT32_MAX - mesh->n_vertices) {
         return ms_fail(err, MS_ERR_LIMIT, "%zu triangles are too many to be cut in four", mesh->n_triangles);
     }
-    side *sides = malloc(n * sizeof *sides);
+    triangle_side *sides = malloc(n * sizeof *sides);
     uint32_t *middle = malloc(n * sizeof *middle);
     ms_status status = sides && middle
                            ? MS_OK
@@ -208,14 +208,14 @@ ms_status ms_perturb_refine(ms_mesh *out, const ms_mesh *mesh, ms_error *err)
 }
 
 /* The cell of a vertex. */
-typedef struct place {
+typedef struct vertex_cell {
     double cell[3];
     uint32_t vertex;
-} place;
+} vertex_cell;
 
 static int compare_places(const void *a, const void *b)
 {
-    const place *p = a, *q = b;
+    const vertex_cell *p = a, *q = b;
     for (int k = 0; k < 3; k++) {
         if (p->cell[k] != q->cell[k]) {
             return p->cell[k] < q->cell[k] ? -1 : 1;
@@ -225,7 +225,7 @@ static int compare_places(const void *a, const void *b)
 }
 
 /* Puts the mean of each cell's vertices in the place of its first one and tells the others where. */
-static void join_vertices(ms_mesh *mesh, uint32_t *joined, place *places, double cell)
+static void join_vertices(ms_mesh *mesh, uint32_t *joined, vertex_cell *places, double cell)
 {
     const size_t n = mesh->n_vertices;
     double lo[3], hi[3];
@@ -258,7 +258,7 @@ ms_status ms_perturb_decimate(ms_mesh *out, ms_mesh_report *report, const ms_mes
     if (!(cell > 0) || !isfinite(cell)) {
         return ms_fail(err, MS_ERR_ARG, "vertices cannot be put together in cells of %g", cell);
     }
-    place *places = malloc(mesh->n_vertices * sizeof *places);
+    vertex_cell *places = malloc(mesh->n_vertices * sizeof *places);
     uint32_t *joined = malloc(mesh->n_vertices * sizeof *joined);
     ms_status status = places && joined
                            ? ms_perturb_copy(out, mesh, err)
@@ -280,7 +280,7 @@ ms_status ms_perturb_decimate(ms_mesh *out, ms_mesh_report *report, const ms_mes
 }
 
 /* Vertex v moves to to[v]. */
-static void reorder(ms_mesh *out, const ms_mesh *mesh, const uint32_t *to, gsl_rng *random)
+static void reorder_mesh(ms_mesh *out, const ms_mesh *mesh, const uint32_t *to, gsl_rng *random)
 {
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         memcpy(out->vertex[to[v]], mesh->vertex[v], sizeof *mesh->vertex);
@@ -306,7 +306,7 @@ ms_status ms_perturb_order(ms_mesh *mesh, uint64_t seed, ms_error *err)
             to[v] = (uint32_t)v;
         }
         gsl_ran_shuffle(random, to, mesh->n_vertices, sizeof *to);
-        reorder(&out, mesh, to, random);
+        reorder_mesh(&out, mesh, to, random);
         ms_mesh_free(mesh);
         *mesh = out;
     }

@@ -175,7 +175,7 @@ void ms_stability_header(FILE *stream)
 }
 
 /* Empty where there is none. */
-static void put_number(FILE *stream, double value)
+static void put_field(FILE *stream, double value)
 {
     fprintf(stream, ",%s", isfinite(value) ? ms_text_of_number(value).text : "");
 }
@@ -193,10 +193,10 @@ static void put_results(FILE *stream, const ms_stability_run *run)
     }
     fprintf(stream, ",%s", gave ? ms_stop_name(run->reason) : "");
     for (size_t m = 0; m < count; m++) {
-        put_number(stream, gave ? listed[m]->of_metrics(&run->metrics) : nothing);
+        put_field(stream, gave ? listed[m]->of_metrics(&run->metrics) : nothing);
     }
-    put_number(stream, gave && run->spheres_until ? (double)run->spheres_until : nothing);
-    put_number(stream, gave ? run->seconds : nothing);
+    put_field(stream, gave && run->spheres_until ? (double)run->spheres_until : nothing);
+    put_field(stream, gave ? run->seconds : nothing);
     fputc(',', stream);
     if (gave) {
         fprintf(stream, "%016" PRIx64, run->checksum);
@@ -211,9 +211,9 @@ void ms_stability_row(FILE *stream, const ms_stability_run *run)
     fputc(',', stream);
     ms_csv_put(stream, run->method->options);
     fprintf(stream, ",%s", run->change->name);
-    put_number(stream, run->level);
+    put_field(stream, run->level);
     fprintf(stream, ",%" PRIu64, run->seed);
-    put_number(stream, run->voxel_size);
+    put_field(stream, run->voxel_size);
     fprintf(stream, ",%d,%zu,%s", run->threads, run->asked, OUTCOMES[run->outcome]);
     put_results(stream, run);
     fputc(',', stream);

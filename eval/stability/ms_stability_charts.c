@@ -49,7 +49,7 @@ static void make_stem(char *stem, size_t size, const album *a, const char *kind)
     }
 }
 
-static ms_status draw(album *a, const char *kind, ms_chart chart, ms_error *err)
+static ms_status draw_album_chart(album *a, const char *kind, ms_chart chart, ms_error *err)
 {
     const size_t size = strlen(a->folder) + 128;
     char *stem = malloc(size);
@@ -69,12 +69,12 @@ static ms_status draw(album *a, const char *kind, ms_chart chart, ms_error *err)
     return status;
 }
 
-static int is_of(const album *a, const ms_stability_run *run, const ms_change *change)
+static int is_of_album(const album *a, const ms_stability_run *run, const ms_change *change)
 {
     return run->change == change && ms_stability_gave(run) && run->method == a->method;
 }
 
-static ms_status draw_all(album *a, ms_error *err)
+static ms_status draw_all_changes(album *a, ms_error *err)
 {
     static const ms_chart chart = {
         .x_label = "D of the unchanged shape", .y_label = "D of the changed shape", .x_log = 1, .y_log = 1};
@@ -83,12 +83,12 @@ static ms_status draw_all(album *a, ms_error *err)
         begin_series(a, change->name, MS_CHART_POINTS);
         for (size_t r = 0; r < a->n_runs; r++) {
             const ms_stability_run *run = &a->runs[r];
-            if (is_of(a, run, change)) {
+            if (is_of_album(a, run, change)) {
                 add_point(a, unchanged_dice(a, run), run->metrics.score.dice, change == ms_changes ? run->shape : "");
             }
         }
     }
-    return a->n_points ? draw(a, "all", chart, err) : MS_OK;
+    return a->n_points ? draw_album_chart(a, "all", chart, err) : MS_OK;
 }
 
 static ms_status draw_levels(album *a, const ms_change *change, ms_error *err)
@@ -98,7 +98,7 @@ static ms_status draw_levels(album *a, const ms_change *change, ms_error *err)
     a->n_points = a->n_series = 0;
     for (size_t r = 0; r < a->n_runs; r++) {
         const ms_stability_run *run = &a->runs[r];
-        if (!is_of(a, run, change) || !(unchanged_dice(a, run) > 0)) {
+        if (!is_of_album(a, run, change) || !(unchanged_dice(a, run) > 0)) {
             continue;
         }
         if (!shape || strcmp(shape, run->shape) != 0) {
@@ -107,12 +107,12 @@ static ms_status draw_levels(album *a, const ms_change *change, ms_error *err)
         }
         add_point(a, run->level, run->metrics.score.dice / unchanged_dice(a, run), "");
     }
-    return a->n_points ? draw(a, change->name, chart, err) : MS_OK;
+    return a->n_points ? draw_album_chart(a, change->name, chart, err) : MS_OK;
 }
 
 static ms_status draw_method(album *a, ms_error *err)
 {
-    ms_status status = draw_all(a, err);
+    ms_status status = draw_all_changes(a, err);
     for (const ms_change *change = ms_changes; change->name && status == MS_OK; change++) {
         status = change->axis ? draw_levels(a, change, err) : MS_OK;
     }

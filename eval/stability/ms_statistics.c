@@ -24,7 +24,7 @@ ms_statistics ms_statistics_of(double *values, size_t count)
                            n > 1 ? gsl_stats_sd(values, 1, n) : 0};
 }
 
-static int is_of(const ms_statistics_group *group, const ms_stability_run *run)
+static int is_of_group(const ms_statistics_group *group, const ms_stability_run *run)
 {
     return run->change == group->change && run->method == group->method &&
            (!group->shape || strcmp(run->shape, group->shape) == 0);
@@ -59,13 +59,13 @@ static double weigh_dice(ms_statistics_group *g, double *largest, const ms_stabi
 }
 
 /* `room` has three numbers for each run. */
-static void measure(ms_statistics_group *g, const ms_stability_run *runs, size_t n_runs, double *room)
+static void measure_group(ms_statistics_group *g, const ms_stability_run *runs, size_t n_runs, double *room)
 {
     double *dice = room, *inertia = room + n_runs, *until = room + 2 * n_runs, largest = 1;
     size_t n = 0;
     for (size_t r = 0; r < n_runs; r++) {
         const ms_stability_run *run = &runs[r];
-        if (!is_of(g, run)) {
+        if (!is_of_group(g, run)) {
             continue;
         }
         count_outcome(g, run);
@@ -92,7 +92,7 @@ static size_t list_groups(ms_statistics_group *groups, const ms_stability_run *r
             .shape = all_shapes ? NULL : runs[r].shape, .method = runs[r].method, .change = runs[r].change};
         int known = 0;
         for (size_t g = count; g-- > 0 && !known;) {
-            known = is_of(&groups[g], &runs[r]);
+            known = is_of_group(&groups[g], &runs[r]);
         }
         if (!known) {
             groups[count++] = next;
@@ -118,7 +118,7 @@ ms_status ms_statistics_group_runs(ms_statistics_group **groups, size_t *count, 
         *count += list_groups(*groups + *count, runs, n_runs, 1);
     }
     for (size_t g = 0; g < *count; g++) {
-        measure(&(*groups)[g], runs, n_runs, room);
+        measure_group(&(*groups)[g], runs, n_runs, room);
     }
     free(room);
     return MS_OK;

@@ -11,15 +11,15 @@
 #include "mss/ms_mss_field.h"
 #include "voxel/ms_distance.h"
 
-typedef struct outcome {
+typedef struct mss_outcome {
     ms_clump clump;
     ms_stop_reason reason;
-} outcome;
+} mss_outcome;
 
 /* Options as "name=value name=value". */
-static outcome run_mss(const ms_target *target, ms_stop stop, const char *options)
+static mss_outcome run_mss(const ms_target *target, ms_stop stop, const char *options)
 {
-    outcome o;
+    mss_outcome o;
     ms_error err;
     ms_settings settings;
     char copy[256];
@@ -134,7 +134,7 @@ static void symmetric_targets_give_symmetric_clumps(void **state)
             for (size_t o = 0; o < sizeof OPTIONS / sizeof *OPTIONS; o++) {
                 ms_stop stop = {0};
                 stop.radius = 2 * target.grid.h; /* to the end: all sets are whole */
-                outcome out = run_mss(&target, stop, OPTIONS[o]);
+                mss_outcome out = run_mss(&target, stop, OPTIONS[o]);
                 assert_true(out.reason == MS_STOP_RADIUS || out.reason == MS_STOP_EXHAUSTED);
                 for (int axis = 0; axis < 3; axis++) {
                     assert_mirrored(&out.clump, &target, axis);
@@ -166,7 +166,7 @@ static void two_balls_are_found(void **state)
     ms_target target;
     ms_error err;
     assert_int_equal(ms_target_from_volume(&target, &volume, 0, &err), MS_OK);
-    outcome o = run_mss(&target, at_most(2), "");
+    mss_outcome o = run_mss(&target, at_most(2), "");
     for (int b = 0; b < 2; b++) {
         for (int a = 0; a < 3; a++) {
             assert_close(o.clump.sphere[b].centre[a], truth[b].centre[a], 0.6);
@@ -195,10 +195,10 @@ static void gaps_do_not_swallow_spheres(void **state)
     ms_error err;
     assert_int_equal(ms_target_from_volume(&target, &volume, 0, &err), MS_OK);
     for (size_t o = 0; o < sizeof OPTIONS / sizeof *OPTIONS; o++) {
-        outcome all = run_mss(&target, at_most(300), OPTIONS[o]);
+        mss_outcome all = run_mss(&target, at_most(300), OPTIONS[o]);
         assert_true(all.clump.n_spheres >= 4);
         for (size_t n = 1; n <= 4; n++) {
-            outcome some = run_mss(&target, at_most(n), OPTIONS[o]);
+            mss_outcome some = run_mss(&target, at_most(n), OPTIONS[o]);
             assert_int_equal(some.clump.n_spheres, n);
             assert_memory_equal(some.clump.sphere, all.clump.sphere, n * sizeof *some.clump.sphere);
             ms_clump_free(&some.clump);
@@ -216,8 +216,8 @@ static void offset_reaches_every_sphere(void **state)
     ms_target target;
     make_shape(&mesh, "box", "a=3 b=2 c=1");
     make_target(&target, &mesh, 20, MS_VOXEL_HALF);
-    outcome plain = run_mss(&target, at_most(3), "spacing=4");
-    outcome more = run_mss(&target, at_most(3), "spacing=4 radius-offset=0.5");
+    mss_outcome plain = run_mss(&target, at_most(3), "spacing=4");
+    mss_outcome more = run_mss(&target, at_most(3), "spacing=4 radius-offset=0.5");
     for (size_t s = 0; s < 3; s++) {
         assert_close((more.clump.sphere[s].radius - plain.clump.sphere[s].radius) / target.grid.h, 0.5, 1e-9);
     }
@@ -236,7 +236,7 @@ static void confined_spheres_stay_inside(void **state)
         ms_target target;
         make_shape(&mesh, KINDS[kind], "");
         make_target(&target, &mesh, 30, MS_VOXEL_HALF);
-        outcome o = run_mss(&target, at_most(40), "confine=on radius-offset=1");
+        mss_outcome o = run_mss(&target, at_most(40), "confine=on radius-offset=1");
         for (size_t s = 0; s < o.clump.n_spheres; s++) {
             const ms_sphere *sphere = &o.clump.sphere[s];
             const double room = -ms_closest_signed_distance(target.closest, sphere->centre);
@@ -255,7 +255,7 @@ static void planes_are_not_crossed(void **state)
     ms_target target;
     make_shape(&mesh, "ball", "r=1");
     make_target(&target, &mesh, 40, MS_VOXEL_HALF);
-    outcome o = run_mss(&target, at_most(40), "plane=2,0,0,0.5 plane=0,1,1,-0.3");
+    mss_outcome o = run_mss(&target, at_most(40), "plane=2,0,0,0.5 plane=0,1,1,-0.3");
     for (size_t s = 0; s < o.clump.n_spheres; s++) {
         const double *c = o.clump.sphere[s].centre, r = o.clump.sphere[s].radius;
         assert_true(fabs(c[0] - 0.25) >= r * (1 - 1e-12));
@@ -274,7 +274,7 @@ static void spacing_is_kept(void **state)
     ms_target target;
     make_shape(&mesh, "grain", "");
     make_target(&target, &mesh, 40, MS_VOXEL_HALF);
-    outcome o = run_mss(&target, at_most(200), "spacing=5");
+    mss_outcome o = run_mss(&target, at_most(200), "spacing=5");
     for (size_t s = 0; s < o.clump.n_spheres; s++) {
         for (size_t t = 0; t < s; t++) {
             double square = 0;
@@ -297,7 +297,7 @@ static void ellipsoid_of_the_paper(void **state)
     ms_target target;
     make_shape(&mesh, "ellipsoid", "a=2 b=1 c=1");
     make_target(&target, &mesh, 103, MS_VOXEL_HALF);
-    outcome o = run_mss(&target, at_most(10), "");
+    mss_outcome o = run_mss(&target, at_most(10), "");
     assert_true(dice_of(&o.clump, &target) <= 0.0626);
     ms_clump_free(&o.clump);
     ms_target_free(&target);
@@ -323,7 +323,7 @@ static void femur_of_the_paper(void **state)
     assert_int_equal(ms_mesh_read(&mesh, path, &err), MS_OK);
     assert_int_equal(ms_mesh_repair(&mesh, &report, &err), MS_OK);
     make_target(&target, &mesh, 103, MS_VOXEL_HALF);
-    outcome o = run_mss(&target, at_most(70), "");
+    mss_outcome o = run_mss(&target, at_most(70), "");
     assert_int_equal(o.clump.n_spheres, 70);
     assert_true(dice_of(&o.clump, &target) <= 0.1760);
     ms_clump_free(&o.clump);
