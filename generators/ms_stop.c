@@ -66,34 +66,40 @@ const char *ms_stop_name(ms_stop_reason reason)
     return (size_t)reason < sizeof NAMES / sizeof *NAMES ? NAMES[reason] : "unknown";
 }
 
-static ms_status check_range(const char *name, double value, double most, ms_error *err)
+static ms_status check_radius(double value, ms_error *err)
 {
-    if (value > 0 && value <= most && isfinite(value)) {
-        return MS_OK;
-    }
-    return ms_fail(err, MS_ERR_ARG, "%s=%g is out of range; give a number above 0%s", name, value,
-                   isfinite(most) ? ", up to 1; a tiny one, as 1e-9, asks for an exact match" : "");
+    return value > 0 && isfinite(value)
+               ? MS_OK
+               : ms_fail(err, MS_ERR_ARG, "radius=%g is out of range; give a number above 0", value);
+}
+
+static ms_status check_goal(const ms_measure *measure, double value, ms_error *err)
+{
+    return value > 0 && value <= 1
+               ? MS_OK
+               : ms_fail(err, MS_ERR_ARG, "%s=%g is out of range; give a number above 0, up to 1%s", measure->name,
+                         value, measure->better == MS_BETTER_LESS ? "; 1e-9 asks for an exact match" : "");
 }
 
 ms_status ms_stop_set(ms_stop *stop, const char *measure, double value, ms_error *err)
 {
     char names[256] = "";
     if (strcmp(measure, "radius") == 0) {
-        const ms_status status = check_range(measure, value, HUGE_VAL, err);
+        const ms_status status = check_radius(value, err);
         stop->radius = status == MS_OK ? value : stop->radius;
         return status;
     }
     for (size_t g = 0; g < N_GOALS; g++) {
-        const char *name = ms_measures[GOALS[g].measure].name;
-        if (strcmp(measure, name) == 0) {
-            const ms_status status = check_range(measure, value, 1, err);
+        const ms_measure *goal = &ms_measures[GOALS[g].measure];
+        if (strcmp(measure, goal->name) == 0) {
+            const ms_status status = check_goal(goal, value, err);
             if (status == MS_OK) {
                 memcpy((char *)stop + GOALS[g].offset, &value, sizeof value);
             }
             return status;
         }
         const size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s, ", name);
+        snprintf(names + used, sizeof names - used, "%s, ", goal->name);
     }
     return ms_fail(err, MS_ERR_ARG, "no measure is called '%s'; choose from %sradius", measure, names);
 }

@@ -209,6 +209,14 @@ class Stability(Case):
             found.append((head.split("'")[1], [tuple(float(w) for w in line.split()[:2]) for line in lines]))
         return found
 
+    def test_help_names_every_perturbation(self):
+        refused = self.mskit("stability", "cube", "--perturb", "nonsense", code=2).err
+        known = refused.split("choose from ")[1].split("\n")[0].split(", ")
+        self.assertEqual(known, [kind for kind in KINDS if kind != "none"])
+        text = self.mskit("stability", "--help").out
+        for kind in known:
+            self.assertRegex(text, rf"[ ,]{kind}\b")
+
     def test_wrong_usage(self):
         for args, says in (
             (("-g", "nonsense"), ("'nonsense'", "mss", "fcm")),
@@ -220,7 +228,8 @@ class Stability(Case):
             (("--perturb", "nonsense"), ("'nonsense'", *KINDS)),
             (("--perturb", "none"), ("'none'",)),
             (("--runs", "0"), ("--runs", "1 to 1000")),
-            (("--until-dice", "2"), ("--until-dice", "0 to 1")),
+            (("--until-dice", "2"), ("--until-dice", "1e-09 to 1")),
+            (("--until-dice", "0"), ("--until-dice", "1e-09 to 1")),
             (("-n", "0"), ("--spheres",)),
             (("--json", "-o", "-"), ("standard output",)),
         ):

@@ -1,0 +1,121 @@
+/* The table of measures: complete, in agreement with its structs, and what the guide says of each. */
+#include "support/test_support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "measure/ms_measure.h"
+#include "measure/ms_metrics.h"
+
+static void rows_are_complete(void **state)
+{
+    (void)state;
+    int count = 0;
+    for (const ms_measure *m = ms_measures; m->name; m++, count++) {
+        assert_true(m->name[0] && m->label[0] && m->source[0] && strlen(m->help) > 2);
+        assert_true(m->in_compare[0] && m->in_stability[0] && m->of_metrics);
+        assert_int_equal(ms_measure_is_of_score(m),
+                         m->kind == MS_MEASURE_KIND_GOAL || m->kind == MS_MEASURE_KIND_UNION);
+        assert_true(!m->curve || ms_measure_is_of_score(m)); /* a curve is made of scores */
+        assert_true(m->kind != MS_MEASURE_KIND_GOAL || m->better != MS_BETTER_ONE);
+        for (const ms_measure *other = ms_measures; other < m; other++) {
+            assert_string_not_equal(other->name, m->name);
+        }
+    }
+    assert_int_equal(count, MS_MEASURES);
+}
+
+static void each_row_gives_its_own_field(void **state)
+{
+    (void)state;
+    const ms_metrics metrics = {
+        .score = {.eta = 1, .dice = 2, .coverage = 3, .overshoot = 4, .off_volume = 5, .inertia = 12},
+        .protrusion_max = 6,
+        .protrusion_rms = 7,
+        .gap_max = 8,
+        .gap_rms = 9,
+        .smallest_radius_ratio = 10,
+        .pieces = 11};
+    for (int m = 0; m < MS_MEASURES; m++) {
+        assert_true(ms_measures[m].of_metrics(&metrics) == m + 1);
+        assert_true(!ms_measures[m].of_score || ms_measures[m].of_score(&metrics.score) == m + 1);
+    }
+}
+
+static void what_is_reached_follows_what_is_better(void **state)
+{
+    (void)state;
+    const ms_measure *dice = &ms_measures[MS_MEASURE_DICE], *coverage = &ms_measures[MS_MEASURE_COVERAGE];
+    assert_true(ms_measure_is_reached(dice, 0.25, 0.25) && ms_measure_is_reached(dice, 0.24, 0.25));
+    assert_false(ms_measure_is_reached(dice, 0.26, 0.25));
+    assert_true(ms_measure_is_reached(coverage, 0.25, 0.25) && ms_measure_is_reached(coverage, 0.26, 0.25));
+    assert_false(ms_measure_is_reached(coverage, 0.24, 0.25));
+    assert_false(ms_measure_is_reached(dice, (double)NAN, 1) || ms_measure_is_reached(coverage, (double)NAN, 0.1));
+}
+
+static void goals_are_found_by_name(void **state)
+{
+    (void)state;
+    for (const ms_measure *m = ms_measures; m->name; m++) {
+        ms_error err = {{0}};
+        const ms_measure *found = ms_measure_find_goal(m->name, &err);
+        assert_ptr_equal(found, m->kind == MS_MEASURE_KIND_GOAL ? m : NULL);
+        if (!found) {
+            assert_non_null(strstr(err.text, "choose from eta, dice, coverage, inertia"));
+        }
+    }
+    assert_string_equal(MS_MEASURE_GOAL_NAMES, "eta, dice, coverage, inertia, ");
+    assert_string_equal(MS_MEASURE_CURVE_NAMES, ",eta,dice,coverage,overshoot");
+}
+
+/* In a table of Markdown a bar is escaped. */
+static void add_escaped(char *row, const char *text)
+{
+    char *at = row + strlen(row);
+    for (; *text; text++) {
+        if (*text == '|') {
+            *at++ = '\\';
+        }
+        *at++ = *text;
+    }
+    *at = 0;
+}
+
+/* The guide's table is this one. */
+static void the_guide_has_the_table(void **state)
+{
+    (void)state;
+    static const char *const BEST[] = {[MS_BETTER_LESS] = "less", [MS_BETTER_MORE] = "more", [MS_BETTER_ONE] = "1"};
+    static char text[65536];
+    char path[512];
+    snprintf(path, sizeof path, "%s/guide.md", getenv("MSKIT_DOCS"));
+    FILE *guide = fopen(path, "r");
+    assert_non_null(guide);
+    text[fread(text, 1, sizeof text - 1, guide)] = 0;
+    fclose(guide);
+    for (const ms_measure *m = ms_measures; m->name; m++) {
+        char row[1024] = "| ";
+        add_escaped(row, m->label);
+        strcat(strcat(strcat(row, " | `"), m->name), "` | ");
+        add_escaped(row, m->help);
+        const size_t used = strlen(row);
+        snprintf(row + used, sizeof row - used, " | %s | %s | %s |\n", BEST[m->better], m->unit ? m->unit : "-",
+                 m->source);
+        if (!strstr(text, row)) {
+            fail_msg("docs/guide.md lacks this row of the table of measures:\n%s", row);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rows_are_complete),
+        cmocka_unit_test(each_row_gives_its_own_field),
+        cmocka_unit_test(what_is_reached_follows_what_is_better),
+        cmocka_unit_test(goals_are_found_by_name),
+        cmocka_unit_test(the_guide_has_the_table),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
