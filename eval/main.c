@@ -6,8 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/ms_version.h"
 #include "command/ms_commands.h"
-#include "ms_version.h"
 
 static const ms_command *const COMMANDS[] = {
     &ms_command_generate, &ms_command_score,      &ms_command_correct, &ms_command_convert,

@@ -38,7 +38,7 @@ static void free_clumps(ms_clump *each, size_t count)
 static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_generator *generator,
                           const ms_run *run, size_t max_voxels, ms_error *err)
 {
-    ms_settings settings = *run->settings;
+    ms_settings defaults = {0}, settings;
     ms_run one = *run;
     ms_clump last = {0};
     const ms_clump *larger = clump;
@@ -47,7 +47,11 @@ static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump
     one.settings = &settings;
     one.stop = (ms_stop){0};
     one.stop.radius = run->stop.radius;
-    ms_status status = ms_metrics_compute(&metrics, NULL, run->target, clump, max_voxels, err);
+    ms_status status = ms_option_settings_init(&defaults, generator->options, err);
+    settings = run->settings ? *run->settings : defaults;
+    if (status == MS_OK) {
+        status = ms_metrics_compute(&metrics, NULL, run->target, clump, max_voxels, err);
+    }
     for (size_t n = clump->n_spheres; n >= 1 && status == MS_OK; n--) {
         ms_clump next;
         curve[n - 1] = metrics.score;
@@ -70,6 +74,7 @@ static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump
         }
     }
     ms_clump_free(&last);
+    ms_option_settings_free(&defaults);
     return status;
 }
 

@@ -22,8 +22,8 @@ MS_C_BEGIN
  *
  * Cost: one ms_metrics_compute; unless nested, a run and one of those for each number of spheres.
  */
-ms_status ms_curve_compute(ms_score *curve, const ms_clump *clump, const ms_generator *generator, const ms_run *run,
-                           size_t max_voxels, ms_error *err);
+MS_API ms_status ms_curve_compute(ms_score *curve, const ms_clump *clump, const ms_generator *generator,
+                                  const ms_run *run, size_t max_voxels, ms_error *err);
 
 /**
  * The same, and the clumps themselves.
@@ -33,8 +33,8 @@ ms_status ms_curve_compute(ms_score *curve, const ms_clump *clump, const ms_gene
  *
  * Memory: 32 n^2 bytes at the most for n spheres.
  */
-ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_generator *generator,
-                          const ms_run *run, size_t max_voxels, ms_error *err);
+MS_API ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_generator *generator,
+                                 const ms_run *run, size_t max_voxels, ms_error *err);
 
 MS_C_END
 

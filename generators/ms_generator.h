@@ -18,7 +18,7 @@ typedef void (*ms_progress)(void *context, size_t spheres, double dice);
 typedef struct ms_run {
     const ms_target *target;
     ms_stop stop;
-    const ms_settings *settings; /* of this generator's options */
+    const ms_settings *settings; /* of this generator's options; NULL: their defaults (ms_generator_run) */
     uint64_t seed;               /* for generators that draw random numbers */
     ms_progress progress;        /* NULL: nobody listens */
     void *progress_context;
@@ -58,10 +58,10 @@ typedef struct ms_generator {
 } ms_generator;
 
 /** All generators; ends with NULL. */
-extern const ms_generator *const ms_generators[];
+MS_API extern const ms_generator *const ms_generators[];
 
 /** The generator of that name, or NULL with a message that lists the names. */
-const ms_generator *ms_generator_find(const char *name, ms_error *err);
+MS_API const ms_generator *ms_generator_find(const char *name, ms_error *err);
 
 /**
  * Runs a generator: checks what every generator would have to check, then calls it.
@@ -69,8 +69,8 @@ const ms_generator *ms_generator_find(const char *name, ms_error *err);
  * @return MS_OK with at least one sphere; MS_ERR_ARG if nothing ends the run (no stop rule);
  *         MS_ERR_SHAPE if no sphere could be placed (the message names what ended the run)
  */
-ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator, const ms_run *run,
-                           ms_error *err);
+MS_API ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
+                                  const ms_run *run, ms_error *err);
 
 MS_C_END
 

@@ -38,7 +38,7 @@ typedef struct ms_settings {
 } ms_settings;
 
 /** All defaults. @param[out] settings the caller frees it @return MS_OK; MS_ERR_NOMEM */
-ms_status ms_option_settings_init(ms_settings *settings, const ms_option *options, ms_error *err);
+MS_API ms_status ms_option_settings_init(ms_settings *settings, const ms_option *options, ms_error *err);
 
 /**
  * Sets one option from text.
@@ -47,15 +47,15 @@ ms_status ms_option_settings_init(ms_settings *settings, const ms_option *option
  * @return MS_OK; MS_ERR_ARG for an unknown name (the message lists the names) or a bad value
  *         (the message gives type and range); as ms_read_spheres; MS_ERR_NOMEM
  */
-ms_status ms_option_settings_set(ms_settings *settings, const char *name, const char *text, ms_error *err);
+MS_API ms_status ms_option_settings_set(ms_settings *settings, const char *name, const char *text, ms_error *err);
 
 /** The option of that name; NULL if there is none. */
-const ms_option *ms_option_find(const ms_option *options, const char *name);
+MS_API const ms_option *ms_option_find(const ms_option *options, const char *name);
 
 /** Writes the value as text that ms_option_settings_set reads; planes as "n planes", a clump as "n spheres". */
-void ms_option_settings_text(char *out, size_t size, const ms_settings *settings, size_t option);
+MS_API void ms_option_settings_text(char *out, size_t size, const ms_settings *settings, size_t option);
 
-void ms_option_settings_free(ms_settings *settings);
+MS_API void ms_option_settings_free(ms_settings *settings);
 
 MS_C_END
 

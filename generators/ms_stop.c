@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "voxel/ms_tally.h"
+
 /* A measure that can be asked for. */
 typedef struct stop_goal {
     ms_measure_code measure;

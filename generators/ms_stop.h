@@ -44,16 +44,16 @@ typedef struct ms_stop {
 } ms_stop;
 
 /** Nonzero if nothing is asked for, so that nothing would end a run. */
-int ms_stop_is_none(const ms_stop *stop);
+MS_API int ms_stop_is_none(const ms_stop *stop);
 
 /** Nonzero if a measure has to be reached, and not only a number or a radius. */
-int ms_stop_has_measure(const ms_stop *stop);
+MS_API int ms_stop_has_measure(const ms_stop *stop);
 
 /** What is asked of a measure; 0 if nothing is. */
-double ms_stop_asked(const ms_stop *stop, const ms_measure *measure);
+MS_API double ms_stop_asked(const ms_stop *stop, const ms_measure *measure);
 
 /** "eta", "exhausted", ...: the names that --until takes, but for those that only a method can say. */
-const char *ms_stop_name(ms_stop_reason reason);
+MS_API const char *ms_stop_name(ms_stop_reason reason);
 
 /**
  * Sets one measure, or the radius, by its name.
@@ -61,7 +61,7 @@ const char *ms_stop_name(ms_stop_reason reason);
  * @param value above 0; of a measure up to 1
  * @return MS_OK; MS_ERR_ARG for an unknown name or a value out of range, with the names
  */
-ms_status ms_stop_set(ms_stop *stop, const char *measure, double value, ms_error *err);
+MS_API ms_status ms_stop_set(ms_stop *stop, const char *measure, double value, ms_error *err);
 
 /**
  * Is a union of n spheres good enough? Whether a next sphere would be too small is the
@@ -70,7 +70,8 @@ ms_status ms_stop_set(ms_stop *stop, const char *measure, double value, ms_error
  * @param sum of the tallies of the n spheres
  * @return the first reason in the order of the list; MS_STOP_NOT
  */
-ms_stop_reason ms_stop_reached(const ms_stop *stop, const ms_target *target, const ms_tally *sum, size_t n);
+MS_API ms_stop_reason ms_stop_reached(const ms_stop *stop, const ms_target *target, const struct ms_tally *sum,
+                                      size_t n);
 
 MS_C_END
 

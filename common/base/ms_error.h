@@ -11,6 +11,13 @@
 #define MS_C_END
 #endif
 
+/* What a public header declares, and nothing else, is a symbol of the shared library. */
+#if defined(__GNUC__)
+#define MS_API __attribute__((visibility("default")))
+#else
+#define MS_API
+#endif
+
 MS_C_BEGIN
 
 /* The one list from which the codes and their texts are made. */
@@ -33,7 +40,7 @@ typedef struct ms_error {
 } ms_error;
 
 /** The general text of a status code; never NULL. */
-const char *ms_status_text(ms_status status);
+MS_API const char *ms_status_text(ms_status status);
 
 #if defined(__GNUC__)
 #define MS_PRINTF(format_at, first_at) __attribute__((format(printf, format_at, first_at)))
@@ -50,7 +57,7 @@ const char *ms_status_text(ms_status status);
  * @param      status what is returned
  * @param      format as printf; cut at the size of the message
  */
-ms_status ms_fail(ms_error *err, ms_status status, const char *format, ...) MS_PRINTF(3, 4);
+MS_API ms_status ms_fail(ms_error *err, ms_status status, const char *format, ...) MS_PRINTF(3, 4);
 
 MS_C_END
 

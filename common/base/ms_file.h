@@ -21,11 +21,11 @@ typedef struct ms_bytes {
  * @param[out] bytes the caller frees it with ms_file_free; empty on failure
  * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM
  */
-ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err);
-void ms_file_free(ms_bytes *bytes);
+MS_API ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err);
+MS_API void ms_file_free(ms_bytes *bytes);
 
 /** FNV-1a, 64 bits: names an input in a result so that a run can be repeated. */
-uint64_t ms_file_checksum(const ms_bytes *bytes);
+MS_API uint64_t ms_file_checksum(const ms_bytes *bytes);
 
 /** A file being written. "-" is standard output. */
 typedef struct ms_output {
@@ -35,7 +35,7 @@ typedef struct ms_output {
 } ms_output;
 
 /** Opens a temporary file in the folder of `path`. @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM */
-ms_status ms_output_open(ms_output *output, const char *path, ms_error *err);
+MS_API ms_status ms_output_open(ms_output *output, const char *path, ms_error *err);
 
 /**
  * Ends a file: if `status` is MS_OK and every byte reached the disk it is renamed to its
@@ -43,10 +43,10 @@ ms_status ms_output_open(ms_output *output, const char *path, ms_error *err);
  *
  * @return `status` if that is not MS_OK; MS_OK; MS_ERR_IO
  */
-ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err);
+MS_API ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err);
 
 /** The ending of a path after its last dot, in lower case; "" if none or too long for `out`. */
-void ms_file_ending(char out[16], const char *path);
+MS_API void ms_file_ending(char out[16], const char *path);
 
 MS_C_END
 

@@ -192,30 +192,31 @@ static ms_status judge_masses(ms_density_report *report, const equations *e, con
     return MS_OK;
 }
 
-static ms_status solve_masses(ms_clump *clump, ms_density_report *report, const equations *e, ms_linear_program *p,
-                              const ms_particle *particle, double centre_tolerance, ms_error *err)
+/* What the programme is made of, and what it gives. */
+typedef struct solution {
+    const equations *e;
+    double least, most, centre_tolerance;
+    int input_frame;
+    double *share; /* of the mass, one per sphere */
+    double reached[GOALS];
+} solution;
+
+static ms_status solve_shares(void *context, ms_error *err)
 {
-    double reached[GOALS] = {0};
-    ms_status status = MS_OK;
+    solution *s = context;
+    ms_linear_program *p = make_programme(s->e, s->least, s->most, s->input_frame, err);
+    ms_status status = p ? MS_OK : MS_ERR_NOMEM;
     for (int goal = 0; goal < GOALS && status == MS_OK; goal++) {
-        status = ms_linear_program_minimise(p, goal, EXACT, &reached[goal], err);
-        if (goal == CENTRE && status == MS_OK && reached[CENTRE] > centre_tolerance) {
-            return fail_centre(e, reached[CENTRE], centre_tolerance, err);
+        status = ms_linear_program_minimise(p, goal, EXACT, &s->reached[goal], err);
+        if (goal == CENTRE && status == MS_OK && s->reached[CENTRE] > s->centre_tolerance) {
+            status = fail_centre(s->e, s->reached[CENTRE], s->centre_tolerance, err);
         }
     }
     if (status == MS_OK) {
-        status = ms_clump_alloc_masses(clump, err);
+        status = ms_linear_program_spread(p, s->share, err);
     }
-    if (status == MS_OK) {
-        status = ms_linear_program_spread(p, clump->mass, err);
-    }
-    for (size_t s = 0; s < e->n && status == MS_OK; s++) {
-        clump->mass[s] *= particle->mass;
-    }
-    report->centre = reached[CENTRE];
-    report->epsilon = reached[EPSILON];
-    report->products = reached[PRODUCTS];
-    return status == MS_OK ? judge_masses(report, e, clump, particle, err) : status;
+    ms_linear_program_free(p);
+    return status;
 }
 
 static ms_status check_clump(const ms_clump *clump, double least, double most, const ms_density_options *options,
@@ -251,23 +252,32 @@ ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_
     const double least = options->least > 0 ? options->least : fmin(1e-3, 0.5 / n);
     const double most = options->most > 0 ? options->most : 1;
     equations e = {0};
-    ms_linear_program *programme = NULL;
+    solution s = {&e, least, most, options->centre_tolerance, options->input_frame, NULL, {0}};
     memset(report, 0, sizeof *report);
     ms_status status = check_clump(clump, least, most, options, err);
     if (status == MS_OK) {
         status = make_equations(&e, clump, particle, options->input_frame, err);
     }
     if (status == MS_OK) {
-        programme = make_programme(&e, least, most, options->input_frame, err);
-        status = programme ? solve_masses(clump, report, &e, programme, particle, options->centre_tolerance, err)
-                           : MS_ERR_NOMEM;
+        status = ms_clump_alloc_masses(clump, err);
+        s.share = clump->mass;
+    }
+    if (status == MS_OK) {
+        status = ms_linear_program_apart(solve_shares, &s, err);
+    }
+    if (status == MS_OK) {
+        *report = (ms_density_report){
+            .centre = s.reached[CENTRE], .epsilon = s.reached[EPSILON], .products = s.reached[PRODUCTS]};
+        for (size_t m = 0; m < e.n; m++) {
+            clump->mass[m] *= particle->mass;
+        }
+        status = judge_masses(report, &e, clump, particle, err);
     }
     if (status != MS_OK) {
         memset(report, 0, sizeof *report);
         free(clump->mass);
         clump->mass = NULL;
     }
-    ms_linear_program_free(programme);
     free_equations(&e);
     return status;
 }

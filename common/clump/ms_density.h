@@ -40,12 +40,14 @@ typedef struct ms_density_report {
  *         MS_ERR_SHAPE if the centre of mass cannot be met, with the reason and what would help; MS_ERR_LIMIT if the
  *         simplex method finds no end; MS_ERR_NOMEM
  *
- * GLPK's error hook is used during the call and none is set afterwards; its terminal setting comes back.
+ * GLPK runs in a thread that lives as long as the call: whatever befalls it, what the caller holds of GLPK, its
+ * problems, error hook and terminal settings, is left alone; where GLPK would print and abort, a status comes back. It must
+ * have been built with thread-local storage (glp_config("TLS")), as Debian's is; without it MS_ERR_LIMIT.
  *
  * Source: Yuan 2019, section 4, eqs. 2 to 5, 7, 8; GLPK's simplex method. Cost: 1000 spheres in hundredths of a second.
  */
-ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_particle *particle,
-                           const ms_density_options *options, ms_error *err);
+MS_API ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_particle *particle,
+                                  const ms_density_options *options, ms_error *err);
 
 MS_C_END
 

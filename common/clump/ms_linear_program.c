@@ -1,7 +1,7 @@
 #include "ms_linear_program.h"
 
 #include <glpk.h>
-#include <math.h>
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdlib.h>
 
@@ -19,36 +19,68 @@ struct ms_linear_program {
 };
 
 /* GLPK aborts when it has no memory; this returns to where it was called instead. */
-typedef struct guard {
-    jmp_buf back;
-    int terminal; /* its former setting */
-} guard;
-
-static void leave_solver(void *info)
+static void leave_solver(void *back)
 {
-    longjmp(((guard *)info)->back, 1);
+    longjmp(*(jmp_buf *)back, 1);
 }
 
-static void begin_quiet(guard *g)
-{
-    g->terminal = glp_term_out(GLP_OFF);
-    glp_error_hook(leave_solver, g);
-}
-
-static void end_quiet(const guard *g)
+static void end_guard(void)
 {
     glp_error_hook(NULL, NULL);
-    glp_term_out(g->terminal);
 }
 
-/* After an error GLPK has nothing left that may be used. */
-static ms_status give_up(const guard *g, ms_linear_program *p, ms_error *err)
+/* After an error GLPK has nothing left in this thread that may be used. */
+static ms_status give_up(ms_linear_program *p, ms_error *err)
 {
-    end_quiet(g);
+    end_guard();
     glp_free_env();
     p->problem = NULL;
     return ms_fail(err, MS_ERR_NOMEM,
                    "GLPK could not go on with a programme of %zu spheres; most likely it has no memory", p->n);
+}
+
+/* What the thread is given, and gives back. */
+typedef struct errand {
+    ms_linear_program_work work;
+    void *context;
+    ms_error *err;
+    ms_status status;
+} errand;
+
+/* Takes what GLPK would print: before an error it switches its terminal on. */
+static int swallow(void *info, const char *text)
+{
+    (void)info;
+    (void)text;
+    return 1;
+}
+
+static void *run_errand(void *argument)
+{
+    errand *e = argument;
+    if (glp_init_env() != 0) {
+        e->status = ms_fail(e->err, MS_ERR_NOMEM, "no memory for GLPK");
+        return NULL;
+    }
+    glp_term_hook(swallow, NULL);
+    e->status = e->work(e->context, e->err);
+    glp_free_env();
+    return NULL;
+}
+
+ms_status ms_linear_program_apart(ms_linear_program_work work, void *context, ms_error *err)
+{
+    errand e = {.work = work, .context = context, .err = err};
+    pthread_t thread;
+    if (!glp_config("TLS")) {
+        return ms_fail(err, MS_ERR_LIMIT,
+                       "this GLPK keeps nothing apart for threads; build it with --enable-reentrant");
+    }
+    if (pthread_create(&thread, NULL, run_errand, &e) != 0) {
+        return ms_fail(err, MS_ERR_NOMEM, "no thread could be started to solve for the masses");
+    }
+    pthread_join(thread, NULL);
+    return e.status;
 }
 
 static void make_columns(ms_linear_program *p, double least)
@@ -76,16 +108,16 @@ static void make_upper_bounds(ms_linear_program *p)
 
 static ms_status make_problem(ms_linear_program *p, double least, ms_error *err)
 {
-    guard g;
-    begin_quiet(&g);
-    if (setjmp(g.back)) {
-        return give_up(&g, p, err);
+    jmp_buf back;
+    glp_error_hook(leave_solver, &back);
+    if (setjmp(back)) {
+        return give_up(p, err);
     }
     make_columns(p, least);
     if (p->most < 1) {
         make_upper_bounds(p);
     }
-    end_quiet(&g);
+    end_guard();
     return MS_OK;
 }
 
@@ -134,10 +166,10 @@ static int fill_row(ms_linear_program *p, const double *row, int goal, double we
 ms_status ms_linear_program_equation(ms_linear_program *p, const double *row, double right, int goal, double weight,
                                      ms_error *err)
 {
-    guard g;
-    begin_quiet(&g);
-    if (setjmp(g.back)) {
-        return give_up(&g, p, err);
+    jmp_buf back;
+    glp_error_hook(leave_solver, &back);
+    if (setjmp(back)) {
+        return give_up(p, err);
     }
     for (int side = 0; side < (goal < 0 ? 1 : 2); side++) {
         const int at = glp_add_rows(p->problem, 1);
@@ -145,7 +177,7 @@ ms_status ms_linear_program_equation(ms_linear_program *p, const double *row, do
         glp_set_mat_row(p->problem, at, used, p->index, p->value);
         glp_set_row_bnds(p->problem, at, goal < 0 ? GLP_FX : side == 0 ? GLP_UP : GLP_LO, right, right);
     }
-    end_quiet(&g);
+    end_guard();
     return MS_OK;
 }
 
@@ -153,17 +185,17 @@ ms_status ms_linear_program_equation(ms_linear_program *p, const double *row, do
 static ms_status minimise_objective(ms_linear_program *p, ms_error *err)
 {
     glp_smcp how;
-    guard g;
-    begin_quiet(&g);
-    if (setjmp(g.back)) {
-        return give_up(&g, p, err);
+    jmp_buf back;
+    glp_error_hook(leave_solver, &back);
+    if (setjmp(back)) {
+        return give_up(p, err);
     }
     glp_init_smcp(&how);
     how.msg_lev = GLP_MSG_OFF;
     how.tol_bnd = how.tol_dj = 1e-10;
     how.it_lim = 20000 + 20 * (int)p->n;
     const int failed = glp_simplex(p->problem, &how), status = glp_get_status(p->problem);
-    end_quiet(&g);
+    end_guard();
     if (failed || status != GLP_OPT) {
         return ms_fail(err, MS_ERR_LIMIT,
                        "the simplex method found no masses for %zu spheres (code %d, status %d); leave out spheres "

@@ -11,6 +11,18 @@
  */
 typedef struct ms_linear_program ms_linear_program;
 
+/** What makes, solves and frees programmes. */
+typedef ms_status (*ms_linear_program_work)(void *context, ms_error *err);
+
+/**
+ * Does the work in a thread of its own and waits for it. All else here may be called from such work alone: GLPK
+ * keeps its memory, its error hook and its terminal settings per thread, so that those of the caller stay as they
+ * are, and after an error all of GLPK's memory can be freed without touching a problem of the caller's.
+ *
+ * @return as the work; MS_ERR_NOMEM; MS_ERR_LIMIT if GLPK was built without thread-local storage
+ */
+ms_status ms_linear_program_apart(ms_linear_program_work work, void *context, ms_error *err);
+
 /** @return NULL without memory. @param least, most bounds of each share, 0 <= least <= most */
 ms_linear_program *ms_linear_program_new(size_t n, int n_goals, double least, double most, ms_error *err);
 

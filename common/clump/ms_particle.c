@@ -119,10 +119,7 @@ static ms_status count_fine_union(ms_body *body, const ms_clump *clump, double h
     }
     status = ms_raster_alloc(&raster, &grid, MS_VOXEL_HALF, err);
     for (size_t s = 0; s < clump->n_spheres && status == MS_OK; s++) {
-        ms_ball ball = {.radius = clump->sphere[s].radius / h};
-        for (int a = 0; a < 3; a++) {
-            ball.centre[a] = (clump->sphere[s].centre[a] - grid.origin[a]) / h;
-        }
+        const ms_ball ball = ms_grid_ball(&grid, &clump->sphere[s]);
         status = ms_raster_add(&raster, &ball, 1, err);
     }
     for (size_t s = 0; s < clump->n_spheres && status == MS_OK; s++) {

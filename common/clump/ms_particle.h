@@ -24,8 +24,8 @@ typedef struct ms_particle {
  * @param      scale    metres in a unit of length of the clump
  * @return MS_OK; MS_ERR_ARG where a value is not above 0 and finite, or mass or inertia leave the range of doubles
  */
-ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, double density, double scale,
-                                ms_error *err);
+MS_API ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, double density, double scale,
+                                       ms_error *err);
 
 /**
  * What an engine finds that sums the spheres: each solid, of the mass that the clump says.
@@ -36,10 +36,10 @@ ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, doub
  *
  * Source: Yuan 2019, left-hand sides of eqs. 2 to 5.
  */
-ms_status ms_particle_from_spheres(ms_particle *particle, const ms_clump *clump, double scale, ms_error *err);
+MS_API ms_status ms_particle_from_spheres(ms_particle *particle, const ms_clump *clump, double scale, ms_error *err);
 
 /** Radius of gyration sqrt(trace of inertia / 2 mass), in the unit of the clump: how far off the centre its mass is. */
-double ms_particle_gyration(const ms_particle *particle);
+MS_API double ms_particle_gyration(const ms_particle *particle);
 
 /**
  * Volume, centroid and inertia of the union of the spheres, counted on voxels of 1/200 of the diameter of the ball of
@@ -52,7 +52,7 @@ double ms_particle_gyration(const ms_particle *particle);
  *
  * Source: the prototypical clump of Yuan 2019, section 4. Cost: one raster of 4 million voxels inside.
  */
-ms_status ms_particle_union(ms_body *body, const ms_clump *clump, size_t max_voxels, ms_error *err);
+MS_API ms_status ms_particle_union(ms_body *body, const ms_clump *clump, size_t max_voxels, ms_error *err);
 
 MS_C_END
 

@@ -21,7 +21,7 @@ typedef struct ms_template {
  * @param      particle what the clump stands for
  * @return MS_OK; MS_ERR_NOMEM; as ms_inertia_principal
  */
-ms_status ms_template_make(ms_template *made, const ms_clump *clump, const ms_particle *particle, ms_error *err);
+MS_API ms_status ms_template_make(ms_template *made, const ms_clump *clump, const ms_particle *particle, ms_error *err);
 
 /**
  * Carries spheres in the frame of a template back into that of the source, in place.
@@ -29,12 +29,12 @@ ms_status ms_template_make(ms_template *made, const ms_clump *clump, const ms_pa
  * @param particle of the source, as ms_template_make had it
  * @return MS_OK; as ms_inertia_principal, and the clump is as it was
  */
-ms_status ms_template_undo(ms_clump *clump, const ms_particle *particle, ms_error *err);
+MS_API ms_status ms_template_undo(ms_clump *clump, const ms_particle *particle, ms_error *err);
 
 /** Distance from the origin to the farthest point of a sphere. */
-double ms_template_reach(const ms_clump *clump);
+MS_API double ms_template_reach(const ms_clump *clump);
 
-void ms_template_free(ms_template *made);
+MS_API void ms_template_free(ms_template *made);
 
 MS_C_END
 

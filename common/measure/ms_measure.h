@@ -110,16 +110,16 @@ typedef struct ms_measure {
 } ms_measure;
 
 /** All of them, by ms_measure_code; a row with a NULL name ends them. */
-extern const ms_measure ms_measures[];
+MS_API extern const ms_measure ms_measures[];
 
 /** Nonzero if it is a field of ms_score: of_score gives it. Of the others of_score is NULL. */
-int ms_measure_is_of_score(const ms_measure *measure);
+MS_API int ms_measure_is_of_score(const ms_measure *measure);
 
 /** Nonzero if a value is as good as what was asked for. NAN never is. @param measure a GOAL */
-int ms_measure_is_reached(const ms_measure *measure, double value, double asked);
+MS_API int ms_measure_is_reached(const ms_measure *measure, double value, double asked);
 
 /** The GOAL of that name, or NULL with a message that lists them. */
-const ms_measure *ms_measure_find_goal(const char *name, ms_error *err);
+MS_API const ms_measure *ms_measure_find_goal(const char *name, ms_error *err);
 
 MS_C_END
 

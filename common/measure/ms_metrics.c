@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "ms_surface.h"
+#include "voxel/ms_raster.h"
 
 ms_score ms_metrics_score(const ms_tally *sum, size_t target_voxels)
 {
@@ -100,7 +101,7 @@ static ms_status count_union(ms_metrics *metrics, ms_score *curve, const ms_grid
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", clump->n_spheres);
     }
     for (size_t s = 0; s < clump->n_spheres; s++) {
-        ms_target_to_voxels(balls[s].centre, &balls[s].radius, grid, clump->sphere[s].centre, clump->sphere[s].radius);
+        balls[s] = ms_grid_ball(grid, &clump->sphere[s]);
     }
     ms_status status = ms_raster_alloc(&raster, grid, target->rule, err);
     if (status == MS_OK) {

@@ -27,11 +27,13 @@ typedef struct ms_score {
     MS_MEASURE_LIST(MS_SCORE_FIELD)
 } ms_score;
 
-/** From the sums over the union and the number of voxels of the target; all but the inertia. */
-ms_score ms_metrics_score(const ms_tally *sum, size_t target_voxels);
+struct ms_tally;
+
+/** From the sums over the union (ms_tally.h) and the number of voxels of the target; all but the inertia. */
+MS_API ms_score ms_metrics_score(const struct ms_tally *sum, size_t target_voxels);
 
 /** The same with the inertia; that is NAN where the union covers no voxel. @param grid that of the sums */
-ms_score ms_metrics_full_score(const ms_tally *sum, const ms_grid *grid, const ms_target *target);
+MS_API ms_score ms_metrics_full_score(const struct ms_tally *sum, const ms_grid *grid, const ms_target *target);
 
 /** How the inertia of one body differs from that of another, both of unit density. */
 typedef struct ms_inertia_error {
@@ -43,8 +45,8 @@ typedef struct ms_inertia_error {
 } ms_inertia_error;
 
 /** @return MS_OK; MS_ERR_SHAPE if a body has no volume; as ms_inertia_principal */
-ms_status ms_metrics_compare_inertia(ms_inertia_error *error, const ms_body *body, const ms_body *target,
-                                     ms_error *err);
+MS_API ms_status ms_metrics_compare_inertia(ms_inertia_error *error, const ms_body *body, const ms_body *target,
+                                            ms_error *err);
 
 /** All measures of a clump. Lengths are in the unit of the mesh. */
 typedef struct ms_metrics {
@@ -68,8 +70,8 @@ typedef struct ms_metrics {
  *
  * Cost: one raster of the union, and a search per sample of the surfaces (ms_surface.h).
  */
-ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
-                             size_t max_voxels, ms_error *err);
+MS_API ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target,
+                                    const ms_clump *clump, size_t max_voxels, ms_error *err);
 
 MS_C_END
 

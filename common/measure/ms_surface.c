@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/ms_vector.h"
+#include "mesh/ms_closest.h"
 
 /* Triangles are taken in chunks of this size, whatever the number of threads, so that sums
  * are always made in the same order. */

@@ -2,7 +2,7 @@
 #ifndef MS_CLOSEST_H
 #define MS_CLOSEST_H
 
-#include "ms_mesh.h"
+#include "mesh/ms_mesh.h"
 
 MS_C_BEGIN
 
@@ -15,7 +15,7 @@ typedef struct ms_closest ms_closest;
  * @return MS_OK; MS_ERR_ARG if the mesh is empty; MS_ERR_NOMEM
  * Cost: O(triangles log triangles).
  */
-ms_status ms_closest_build(ms_closest **out, const ms_mesh *mesh, ms_error *err);
+MS_API ms_status ms_closest_build(ms_closest **out, const ms_mesh *mesh, ms_error *err);
 
 /**
  * Distance from a point to the nearest face, edge or vertex, in the mesh's unit.
@@ -26,7 +26,7 @@ ms_status ms_closest_build(ms_closest **out, const ms_mesh *mesh, ms_error *err)
  * Source: nearest point of a triangle, Ericson, Real-Time Collision Detection (2005), 5.1.5.
  * Cost: O(log triangles) typical.
  */
-double ms_closest_distance(double nearest[3], const ms_closest *closest, const double point[3], double at_most);
+MS_API double ms_closest_distance(double nearest[3], const ms_closest *closest, const double point[3], double at_most);
 
 /**
  * Signed distance from a point to a closed, outward-wound mesh: negative inside. Where the
@@ -35,9 +35,9 @@ double ms_closest_distance(double nearest[3], const ms_closest *closest, const d
  *
  * Source: Baerentzen & Aanaes, IEEE TVCG 11 (2005) 243. Cost: about 1.5 times ms_closest_distance.
  */
-double ms_closest_signed_distance(const ms_closest *closest, const double point[3]);
+MS_API double ms_closest_signed_distance(const ms_closest *closest, const double point[3]);
 
-void ms_closest_free(ms_closest *closest);
+MS_API void ms_closest_free(ms_closest *closest);
 
 MS_C_END
 

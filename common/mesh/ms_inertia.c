@@ -203,13 +203,11 @@ static ms_status solve_eigensystem(ms_principal *principal, double matrix[9], do
     gsl_matrix_view matrix_view = gsl_matrix_view_array(matrix, 3, 3);
     gsl_matrix_view vectors = gsl_matrix_view_array(vector, 3, 3);
     gsl_vector_view values = gsl_vector_view_array(value, 3);
-    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(3);
-    if (!work) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for the principal axes");
-    }
-    int failed = gsl_eigen_symmv(&matrix_view.matrix, &values.vector, &vectors.matrix, work) != GSL_SUCCESS;
+    /* On the stack: gsl_eigen_symmv_alloc calls GSL's error handler where there is no memory. */
+    double diagonal[3], off_diagonal[3], cosine[3], sine[3];
+    gsl_eigen_symmv_workspace work = {3, diagonal, off_diagonal, cosine, sine};
+    int failed = gsl_eigen_symmv(&matrix_view.matrix, &values.vector, &vectors.matrix, &work) != GSL_SUCCESS;
     failed = failed || gsl_eigen_symmv_sort(&values.vector, &vectors.matrix, GSL_EIGEN_SORT_VAL_ASC) != GSL_SUCCESS;
-    gsl_eigen_symmv_free(work);
     if (failed) {
         return ms_fail(err, MS_ERR_ARG, "the principal axes of the inertia tensor could not be found");
     }

@@ -32,13 +32,14 @@ typedef struct ms_principal {
  * for the 3-D tetrahedron inertia tensor, J. Math. Stat. 1 (2005) 8; the same integrals as
  * Eberly, Polyhedral Mass Properties (2002). Cost: O(triangles), one pass.
  */
-ms_status ms_inertia_mesh(ms_body *body, const ms_mesh *mesh, ms_error *err);
+MS_API ms_status ms_inertia_mesh(ms_body *body, const ms_mesh *mesh, ms_error *err);
 
 /** Surface area of the mesh; 0 for an empty one. */
-double ms_mesh_area(const ms_mesh *mesh);
+MS_API double ms_mesh_area(const ms_mesh *mesh);
 
 /**
- * Principal moments and axes of body->inertia by GSL, by rules that leave nothing to chance:
+ * Principal moments and axes of body->inertia by GSL (nothing of it that could call its error handler), by rules
+ * that leave nothing to chance:
  * - Sign: the component of largest magnitude of the first two axes is positive (the first
  *   such where equal within 1e-9), the third axis is their cross product.
  * - Equal moments: where two agree within 1e-9 of the largest, any axes of their plane would
@@ -50,7 +51,7 @@ double ms_mesh_area(const ms_mesh *mesh);
  * @param      body      only its inertia is read; of its two triangles the mean
  * @return MS_OK; MS_ERR_ARG if an element is not finite
  */
-ms_status ms_inertia_principal(ms_principal *principal, const ms_body *body, ms_error *err);
+MS_API ms_status ms_inertia_principal(ms_principal *principal, const ms_body *body, ms_error *err);
 
 MS_C_END
 

@@ -37,10 +37,10 @@ typedef struct ms_mesh_report {
  * @param[out] mesh freed by ms_mesh_free; empty on failure
  * @return MS_OK; MS_ERR_ARG if a number is 0; MS_ERR_NOMEM
  */
-ms_status ms_mesh_alloc(ms_mesh *mesh, size_t n_vertices, size_t n_triangles, ms_error *err);
+MS_API ms_status ms_mesh_alloc(ms_mesh *mesh, size_t n_vertices, size_t n_triangles, ms_error *err);
 
 /** Axis-aligned box: lo[3], hi[3] in the mesh's unit. The mesh is not empty. */
-void ms_mesh_box(double lo[3], double hi[3], const ms_mesh *mesh);
+MS_API void ms_mesh_box(double lo[3], double hi[3], const ms_mesh *mesh);
 
 /**
  * Drops what bounds nothing and, where the mesh is closed, winds every shell so that it
@@ -65,10 +65,10 @@ void ms_mesh_box(double lo[3], double hi[3], const ms_mesh *mesh);
  *
  * Cost: O(triangles log triangles).
  */
-ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err);
+MS_API ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err);
 
 /** Frees the arrays and empties the struct; NULL is allowed. */
-void ms_mesh_free(ms_mesh *mesh);
+MS_API void ms_mesh_free(ms_mesh *mesh);
 
 MS_C_END
 

@@ -26,10 +26,10 @@ typedef struct ms_shape_kind {
     double (*volume)(const double *value); /* exact volume; NULL where there is no formula */
 } ms_shape_kind;
 
-extern const ms_shape_kind ms_shape_kinds[];
+MS_API extern const ms_shape_kind ms_shape_kinds[];
 
 /** The kind of that name, or NULL with a message that lists the names. */
-const ms_shape_kind *ms_shape_find(const char *name, ms_error *err);
+MS_API const ms_shape_kind *ms_shape_find(const char *name, ms_error *err);
 
 /**
  * Makes a mesh of a kind: closed, wound outward, its centre of mass at the origin, with the
@@ -44,7 +44,7 @@ const ms_shape_kind *ms_shape_find(const char *name, ms_error *err);
  * @param      value one per parameter of the kind, in the kind's order
  * @return MS_OK; MS_ERR_ARG if a value is out of range or two contradict; MS_ERR_NOMEM
  */
-ms_status ms_shape_make(ms_mesh *mesh, const ms_shape_kind *kind, const double *value, ms_error *err);
+MS_API ms_status ms_shape_make(ms_mesh *mesh, const ms_shape_kind *kind, const double *value, ms_error *err);
 
 MS_C_END
 

@@ -29,15 +29,16 @@ typedef struct ms_volume {
  * @param      max_voxels more are refused before they are unpacked; SIZE_MAX: any number
  * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_SHAPE without a label; MS_ERR_LIMIT; MS_ERR_NOMEM
  */
-ms_status ms_volume_read(ms_volume *volume, const char *path, size_t max_voxels, ms_error *err);
+MS_API ms_status ms_volume_read(ms_volume *volume, const char *path, size_t max_voxels, ms_error *err);
 
 /** The same from the bytes of a file that was read already; a data file beside it is read from the path's folder. */
-ms_status ms_volume_parse(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels, ms_error *err);
+MS_API ms_status ms_volume_parse(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+                                 ms_error *err);
 
 /** Nonzero if the path ends like a volume that ms_volume_read takes. */
-int ms_volume_is_volume_path(const char *path);
+MS_API int ms_volume_is_volume_path(const char *path);
 
-void ms_volume_free(ms_volume *volume);
+MS_API void ms_volume_free(ms_volume *volume);
 
 MS_C_END
 

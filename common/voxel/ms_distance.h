@@ -22,7 +22,7 @@ MS_C_BEGIN
  * Source: Meijster, Roerdink & Hesselink 2000 (lower envelopes of parabolas, axis by axis).
  * Cost: O(voxels), two sweeps over memory; all cores; the same bits at any number of threads.
  */
-ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms_error *err);
+MS_API ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms_error *err);
 
 MS_C_END
 

@@ -67,6 +67,34 @@ ms_status ms_grid_enlarge(ms_grid *out, const ms_grid *grid, const double lo[3],
     return MS_OK;
 }
 
+void ms_grid_at(double at[3], const ms_grid *grid, const double place[3])
+{
+    for (int a = 0; a < 3; a++) {
+        at[a] = (place[a] - grid->origin[a]) / grid->h;
+    }
+}
+
+void ms_grid_place(double place[3], const ms_grid *grid, const double at[3])
+{
+    for (int a = 0; a < 3; a++) {
+        place[a] = grid->origin[a] + grid->h * at[a];
+    }
+}
+
+ms_ball ms_grid_ball(const ms_grid *grid, const ms_sphere *sphere)
+{
+    ms_ball ball = {.radius = sphere->radius / grid->h};
+    ms_grid_at(ball.centre, grid, sphere->centre);
+    return ball;
+}
+
+ms_sphere ms_grid_sphere(const ms_grid *grid, const ms_ball *ball)
+{
+    ms_sphere sphere = {.radius = grid->h * ball->radius};
+    ms_grid_place(sphere.centre, grid, ball->centre);
+    return sphere;
+}
+
 size_t ms_grid_count(const ms_grid *grid)
 {
     size_t count = 0;

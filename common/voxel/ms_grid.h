@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "base/ms_error.h"
+#include "base/ms_sphere.h"
 
 MS_C_BEGIN
 
@@ -41,7 +42,7 @@ static inline size_t ms_grid_index(const ms_grid *grid, int i, int j, int k)
  * @param      n    extents, each from 1 to MS_GRID_MAX_EXTENT
  * @return MS_OK; MS_ERR_ARG; MS_ERR_LIMIT for an extent above the maximum; MS_ERR_NOMEM
  */
-ms_status ms_grid_alloc(ms_grid *grid, const int n[3], double h, const double origin[3], ms_error *err);
+MS_API ms_status ms_grid_alloc(ms_grid *grid, const int n[3], double h, const double origin[3], ms_error *err);
 
 /**
  * A copy on a larger lattice that also holds the box lo..hi (mesh frame); voxels keep their
@@ -50,16 +51,26 @@ ms_status ms_grid_alloc(ms_grid *grid, const int n[3], double h, const double or
  * @param[out] out  the caller frees it; empty on failure
  * @return as ms_grid_alloc
  */
-ms_status ms_grid_enlarge(ms_grid *out, const ms_grid *grid, const double lo[3], const double hi[3], size_t max_voxels,
-                          ms_error *err);
+MS_API ms_status ms_grid_enlarge(ms_grid *out, const ms_grid *grid, const double lo[3], const double hi[3],
+                                 size_t max_voxels, ms_error *err);
+
+/** Where a place in the mesh's frame is on the grid, in voxels. */
+MS_API void ms_grid_at(double at[3], const ms_grid *grid, const double place[3]);
+
+/** The place in the mesh's frame of a point of the grid. */
+MS_API void ms_grid_place(double place[3], const ms_grid *grid, const double at[3]);
+
+/** A sphere of the mesh's frame in voxels, and back. */
+MS_API ms_ball ms_grid_ball(const ms_grid *grid, const ms_sphere *sphere);
+MS_API ms_sphere ms_grid_sphere(const ms_grid *grid, const ms_ball *ball);
 
 /** Number of voxels inside the shape. Cost: one pass. */
-size_t ms_grid_count(const ms_grid *grid);
+MS_API size_t ms_grid_count(const ms_grid *grid);
 
 /** Writes a grid as VTK structured points (binary), 1 inside, for ParaView. @return MS_OK; MS_ERR_IO */
-ms_status ms_grid_write(const ms_grid *grid, const char *path, ms_error *err);
+MS_API ms_status ms_grid_write(const ms_grid *grid, const char *path, ms_error *err);
 
-void ms_grid_free(ms_grid *grid);
+MS_API void ms_grid_free(ms_grid *grid);
 
 MS_C_END
 

@@ -2,6 +2,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -325,6 +326,8 @@ static ms_status cover_balls(ms_raster *raster, size_t first_new, const neighbou
         raster->lo[a] = INT_MAX;
         raster->hi[a] = INT_MIN;
     }
+    omp_lock_t merging;
+    omp_init_lock(&merging);
 #pragma omp parallel reduction(| : out_of_memory)
     {
         worker w = {.raster = raster,
@@ -343,11 +346,13 @@ static ms_status cover_balls(ms_raster *raster, size_t first_new, const neighbou
             }
         }
         if (w.tally) {
-#pragma omp critical(ms_raster_merge)
+            omp_set_lock(&merging); /* a named critical section would be a symbol for all to see */
             merge_sums(raster, &w);
+            omp_unset_lock(&merging);
         }
         free(w.tally);
     }
+    omp_destroy_lock(&merging);
     if (raster->hi[0] < raster->lo[0]) {
         memset(raster->lo, 0, sizeof raster->lo);
         memset(raster->hi, 0, sizeof raster->hi);

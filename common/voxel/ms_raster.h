@@ -5,9 +5,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "ms_grid.h"
+#include "base/ms_sphere.h"
 #include "ms_tally.h"
-#include "ms_voxelize.h"
+#include "voxel/ms_grid.h"
+#include "voxel/ms_voxelize.h"
 
 MS_C_BEGIN
 
@@ -16,12 +17,6 @@ MS_C_BEGIN
 
 /* Indices are 16 bits wide, and the last says "none". */
 enum { MS_RASTER_MAX_BALLS = UINT16_MAX - 1 };
-
-/** A sphere in voxels: centre in voxel indices (fractions allowed), radius. */
-typedef struct ms_ball {
-    double centre[3];
-    double radius;
-} ms_ball;
 
 /**
  * Union of spheres on a grid. The first-cover index makes every prefix of the spheres a
@@ -45,7 +40,7 @@ typedef struct ms_raster {
  * @param      grid   the target; borrowed until ms_raster_free
  * @return MS_OK; MS_ERR_NOMEM. Two bytes a voxel.
  */
-ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule rule, ms_error *err);
+MS_API ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule rule, ms_error *err);
 
 /**
  * Adds spheres, in order. By the rule MS_VOXEL_HALF a voxel is covered once more than half
@@ -61,13 +56,13 @@ ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule 
  *         MS_ERR_LIMIT above MS_RASTER_MAX_BALLS; MS_ERR_NOMEM
  * Cost: O(voxels in the spheres' boxes); all cores, the same bits at any number of threads.
  */
-ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err);
+MS_API ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err);
 
-void ms_raster_free(ms_raster *raster);
+MS_API void ms_raster_free(ms_raster *raster);
 
 /** The sums over the union of spheres. @return, cost: as ms_raster_alloc and ms_raster_add */
-ms_status ms_raster_union(ms_tally *sum, const ms_grid *grid, ms_voxel_rule rule, const ms_ball *balls, size_t count,
-                          ms_error *err);
+MS_API ms_status ms_raster_union(ms_tally *sum, const ms_grid *grid, ms_voxel_rule rule, const ms_ball *balls,
+                                 size_t count, ms_error *err);
 
 MS_C_END
 

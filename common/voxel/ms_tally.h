@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "mesh/ms_inertia.h"
-#include "ms_grid.h"
+#include "voxel/ms_grid.h"
 
 MS_C_BEGIN
 
@@ -18,10 +18,10 @@ typedef struct ms_tally {
 } ms_tally;
 
 /** Adds the sums of one set to those of another. */
-void ms_tally_add(ms_tally *sum, const ms_tally *part);
+MS_API void ms_tally_add(ms_tally *sum, const ms_tally *part);
 
 /** Volume, centroid and inertia of the voxels as cubes of unit density; zeros if there are none. */
-void ms_tally_body(ms_body *body, const ms_tally *sum, const ms_grid *grid);
+MS_API void ms_tally_body(ms_body *body, const ms_tally *sum, const ms_grid *grid);
 
 MS_C_END
 

@@ -1,38 +1,28 @@
 #include "ms_target.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "mesh/ms_closest.h"
 #include "ms_distance.h"
+#include "ms_tally.h"
 
 double ms_target_bytes(const double n[3])
 {
     return MS_TARGET_BYTES_PER_VOXEL * n[0] * n[1] * n[2];
 }
 
+double ms_target_default_bytes(void)
+{
+    const double pages = (double)sysconf(_SC_PHYS_PAGES), size = (double)sysconf(_SC_PAGE_SIZE);
+    return 0.75 * (pages > 0 && size > 0 ? pages * size : 4e9);
+}
+
 double ms_target_equivalent_radius(const ms_target *target)
 {
     return cbrt(target->body.volume * 3 / (4 * acos(-1.0)));
-}
-
-void ms_target_to_voxels(double out_centre[3], double *out_radius, const ms_grid *grid, const double centre[3],
-                         double radius)
-{
-    for (int a = 0; a < 3; a++) {
-        out_centre[a] = (centre[a] - grid->origin[a]) / grid->h;
-    }
-    *out_radius = radius / grid->h;
-}
-
-void ms_target_from_voxels(double out_centre[3], double *out_radius, const ms_grid *grid, const double centre[3],
-                           double radius)
-{
-    for (int a = 0; a < 3; a++) {
-        out_centre[a] = grid->origin[a] + grid->h * centre[a];
-    }
-    *out_radius = grid->h * radius;
 }
 
 /* The sums over the target's own voxels. */
@@ -61,27 +51,32 @@ static ms_tally tally_grid(const ms_grid *grid)
     return sum;
 }
 
-/* The field and the sums that follow from the grid; the body where no mesh gave it. */
-static ms_status finish_target(ms_target *target, ms_error *err)
+/* What follows from the voxels; the body where no mesh gave it. */
+static void sum_up(ms_target *target)
 {
-    const size_t voxels = ms_grid_voxels(&target->grid);
     const ms_tally sum = tally_grid(&target->grid);
     target->voxels = (size_t)sum.inside;
     if (!(target->body.volume > 0)) {
         ms_tally_body(&target->body, &sum, &target->grid);
     }
+}
+
+ms_status ms_target_add_distance(ms_target *target, ms_error *err)
+{
+    const size_t voxels = ms_grid_voxels(&target->grid);
     target->distance = malloc(voxels * sizeof *target->distance);
-    if (!target->distance) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for the distance field of %zu voxels; use fewer cells", voxels);
+    ms_status status =
+        target->distance
+            ? ms_distance(target->distance, target->grid.inside, target->grid.n, err)
+            : ms_fail(err, MS_ERR_NOMEM, "no memory for the distance field of %zu voxels; use fewer cells", voxels);
+    if (status != MS_OK) {
+        ms_target_free(target);
     }
-    const double start = omp_get_wtime();
-    ms_status status = ms_distance(target->distance, target->grid.inside, target->grid.n, err);
-    target->distance_seconds = omp_get_wtime() - start;
     return status;
 }
 
-ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
-                              ms_error *err)
+ms_status ms_target_voxels_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
+                                     ms_error *err)
 {
     ms_status status = MS_OK;
     memset(target, 0, sizeof *target);
@@ -92,21 +87,24 @@ ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed
         status = ms_inertia_mesh(&target->body, mesh, err);
     }
     if (status == MS_OK) {
-        const double start = omp_get_wtime();
         status = closed ? ms_voxelize(&target->grid, mesh, h, rule, err)
                         : ms_voxelize_open(&target->grid, &target->disagree, mesh, h, err);
-        target->voxelize_seconds = omp_get_wtime() - start;
     }
     if (status == MS_OK) {
+        sum_up(target);
         status = ms_closest_build(&target->closest, mesh, err);
-    }
-    if (status == MS_OK) {
-        status = finish_target(target, err);
     }
     if (status != MS_OK) {
         ms_target_free(target);
     }
     return status;
+}
+
+ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
+                              ms_error *err)
+{
+    ms_status status = ms_target_voxels_from_mesh(target, mesh, closed, h, rule, err);
+    return status == MS_OK ? ms_target_add_distance(target, err) : status;
 }
 
 int ms_target_label_box(int lo[3], int hi[3], uint32_t *other, const ms_volume *volume, uint32_t label)
@@ -154,7 +152,7 @@ static void copy_label(ms_grid *grid, const ms_volume *volume, uint32_t label, c
     }
 }
 
-ms_status ms_target_from_volume(ms_target *target, const ms_volume *volume, uint32_t label, ms_error *err)
+ms_status ms_target_voxels_from_volume(ms_target *target, const ms_volume *volume, uint32_t label, ms_error *err)
 {
     int lo[3], hi[3], n[3];
     double origin[3];
@@ -175,12 +173,15 @@ ms_status ms_target_from_volume(ms_target *target, const ms_volume *volume, uint
     if (status == MS_OK) {
         target->closed = 1;
         copy_label(&target->grid, volume, label, lo, hi);
-        status = finish_target(target, err);
-    }
-    if (status != MS_OK) {
-        ms_target_free(target);
+        sum_up(target);
     }
     return status;
+}
+
+ms_status ms_target_from_volume(ms_target *target, const ms_volume *volume, uint32_t label, ms_error *err)
+{
+    ms_status status = ms_target_voxels_from_volume(target, volume, label, err);
+    return status == MS_OK ? ms_target_add_distance(target, err) : status;
 }
 
 void ms_target_free(ms_target *target)

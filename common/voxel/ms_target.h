@@ -2,34 +2,34 @@
 #ifndef MS_TARGET_H
 #define MS_TARGET_H
 
-#include "mesh/ms_closest.h"
 #include "mesh/ms_inertia.h"
 #include "mesh/ms_mesh.h"
 #include "ms_grid.h"
-#include "ms_raster.h"
 #include "ms_voxelize.h"
 #include "volume/ms_volume.h"
 
 MS_C_BEGIN
 
 typedef struct ms_target {
-    const ms_mesh *mesh; /* borrowed; NULL for a volume */
-    int closed;          /* the mesh bounds a body; 1 for a volume */
-    ms_closest *closest; /* nearest point on the mesh; NULL for a volume */
-    ms_voxel_rule rule;  /* for the shape and for any union of spheres on its grid */
-    ms_grid grid;        /* S, MSS eq. 5 */
-    float *distance;     /* E, MSS eq. 8, in voxels */
-    size_t voxels;       /* sum of S */
-    ms_body body;        /* exact for a closed mesh, else of the voxels */
-    size_t disagree;     /* voxels on which the axes did not agree (open mesh) */
-    double voxelize_seconds, distance_seconds;
+    const ms_mesh *mesh;        /* borrowed; NULL for a volume */
+    int closed;                 /* the mesh bounds a body; 1 for a volume */
+    struct ms_closest *closest; /* nearest point on the mesh (ms_closest.h); NULL for a volume */
+    ms_voxel_rule rule;         /* for the shape and for any union of spheres on its grid */
+    ms_grid grid;               /* S, MSS eq. 5 */
+    float *distance;            /* E, MSS eq. 8, in voxels */
+    size_t voxels;              /* sum of S */
+    ms_body body;               /* exact for a closed mesh, else of the voxels */
+    size_t disagree;            /* voxels on which the axes did not agree (open mesh) */
 } ms_target;
 
 /* S: 1, E: 4; a generator: E~ 4, first-cover index 2, flags 1. */
 enum { MS_TARGET_BYTES_PER_VOXEL = 12 };
 
 /** Bytes that the grid, the fields of the target and of a generator take at their peak. */
-double ms_target_bytes(const double n[3]);
+MS_API double ms_target_bytes(const double n[3]);
+
+/** Three quarters of the machine's memory: how much a grid may take if no one says otherwise. */
+MS_API double ms_target_default_bytes(void);
 
 /**
  * Voxelises a mesh and computes its distance field.
@@ -40,8 +40,8 @@ double ms_target_bytes(const double n[3]);
  * @param      h      lattice constant, in the mesh's unit
  * @return MS_OK; as ms_voxelize, ms_inertia_mesh
  */
-ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
-                              ms_error *err);
+MS_API ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
+                                     ms_error *err);
 
 /**
  * The box lo <= (i,j,k) < hi of the voxels of a label.
@@ -50,7 +50,7 @@ ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed
  * @param      label 0: any
  * @return 0 if no voxel has the label
  */
-int ms_target_label_box(int lo[3], int hi[3], uint32_t *other, const ms_volume *volume, uint32_t label);
+MS_API int ms_target_label_box(int lo[3], int hi[3], uint32_t *other, const ms_volume *volume, uint32_t label);
 
 /**
  * Takes the voxels of one label of a volume, with a hull of background, on the volume's own
@@ -59,18 +59,24 @@ int ms_target_label_box(int lo[3], int hi[3], uint32_t *other, const ms_volume *
  * @param label 0: every labelled voxel, if the volume has one label only
  * @return MS_OK; MS_ERR_SHAPE without such voxels, or for label 0 and several labels; MS_ERR_NOMEM
  */
-ms_status ms_target_from_volume(ms_target *target, const ms_volume *volume, uint32_t label, ms_error *err);
+MS_API ms_status ms_target_from_volume(ms_target *target, const ms_volume *volume, uint32_t label, ms_error *err);
+
+/**
+ * The two steps of which ms_target_from_mesh and ms_target_from_volume consist, for who times or needs one
+ * alone: everything but the distance field, and the distance field of a target that has its voxels.
+ *
+ * @return as the whole; on failure the target is empty
+ */
+MS_API ms_status ms_target_voxels_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h,
+                                            ms_voxel_rule rule, ms_error *err);
+MS_API ms_status ms_target_voxels_from_volume(ms_target *target, const ms_volume *volume, uint32_t label,
+                                              ms_error *err);
+MS_API ms_status ms_target_add_distance(ms_target *target, ms_error *err);
 
 /** Radius of the ball of the target's volume, in the mesh's unit. */
-double ms_target_equivalent_radius(const ms_target *target);
+MS_API double ms_target_equivalent_radius(const ms_target *target);
 
-/** A sphere in the mesh's frame, in voxels of the target's grid; and back. */
-void ms_target_to_voxels(double out_centre[3], double *out_radius, const ms_grid *grid, const double centre[3],
-                         double radius);
-void ms_target_from_voxels(double out_centre[3], double *out_radius, const ms_grid *grid, const double centre[3],
-                           double radius);
-
-void ms_target_free(ms_target *target);
+MS_API void ms_target_free(ms_target *target);
 
 MS_C_END
 

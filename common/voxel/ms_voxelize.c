@@ -5,6 +5,22 @@
 
 #include "ms_sweep.h"
 
+ms_status ms_voxelize_size(double *h, const ms_mesh *mesh, double cells, ms_error *err)
+{
+    double lo[3], hi[3];
+    *h = 0;
+    if (!(cells > 0)) {
+        return ms_fail(err, MS_ERR_ARG, "%g cells are not a number above 0", cells);
+    }
+    ms_mesh_box(lo, hi, mesh);
+    const double side = fmin(hi[0] - lo[0], fmin(hi[1] - lo[1], hi[2] - lo[2]));
+    if (!(side > 0)) {
+        return ms_fail(err, MS_ERR_SHAPE, "the mesh is flat, it encloses nothing");
+    }
+    *h = side / cells;
+    return MS_OK;
+}
+
 void ms_voxelize_extents(double n[3], const ms_mesh *mesh, double h)
 {
     double lo[3], hi[3];

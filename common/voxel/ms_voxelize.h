@@ -13,8 +13,14 @@ typedef enum ms_voxel_rule {
     MS_VOXEL_CENTRE /* its centre is covered */
 } ms_voxel_rule;
 
+/**
+ * The voxel size that gives that many voxels along the shortest side of the mesh's box.
+ * @return MS_OK; MS_ERR_ARG unless cells is above 0; MS_ERR_SHAPE for a flat mesh
+ */
+MS_API ms_status ms_voxelize_size(double *h, const ms_mesh *mesh, double cells, ms_error *err);
+
 /** The extents that ms_voxelize would use; doubles, since a bad h may ask for any number. */
-void ms_voxelize_extents(double n[3], const ms_mesh *mesh, double h);
+MS_API void ms_voxelize_extents(double n[3], const ms_mesh *mesh, double h);
 
 /**
  * Voxelises a closed mesh. The box of the mesh is centred in the grid, with MS_GRID_HULL
@@ -36,7 +42,7 @@ void ms_voxelize_extents(double n[3], const ms_mesh *mesh, double h);
  * Cost: O(triangles + rays through surface voxels + voxels), all cores; the same bits at
  * any number of threads.
  */
-ms_status ms_voxelize(ms_grid *grid, const ms_mesh *mesh, double h, ms_voxel_rule rule, ms_error *err);
+MS_API ms_status ms_voxelize(ms_grid *grid, const ms_mesh *mesh, double h, ms_voxel_rule rule, ms_error *err);
 
 /**
  * Voxelises a mesh with holes: the majority of the crossing parities along x, y and z at
@@ -45,7 +51,7 @@ ms_status ms_voxelize(ms_grid *grid, const ms_mesh *mesh, double h, ms_voxel_rul
  * @param[out] disagree voxels on which the three axes did not agree
  * @return as ms_voxelize
  */
-ms_status ms_voxelize_open(ms_grid *grid, size_t *disagree, const ms_mesh *mesh, double h, ms_error *err);
+MS_API ms_status ms_voxelize_open(ms_grid *grid, size_t *disagree, const ms_mesh *mesh, double h, ms_error *err);
 
 MS_C_END
 

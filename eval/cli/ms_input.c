@@ -5,22 +5,15 @@
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/ms_file.h"
 #include "base/ms_text.h"
 #include "mesh/formats/ms_mesh_read.h"
 
-static double machine_memory(void)
-{
-    const double pages = (double)sysconf(_SC_PHYS_PAGES), size = (double)sysconf(_SC_PAGE_SIZE);
-    return pages > 0 && size > 0 ? pages * size : 4e9;
-}
-
 void ms_input_defaults(ms_input_flags *flags)
 {
     memset(flags, 0, sizeof *flags);
-    flags->max_memory = 0.75 * machine_memory();
+    flags->max_memory = ms_target_default_bytes();
 }
 
 static ms_status parse_size(double *bytes, const char *text, ms_error *err)
@@ -172,17 +165,18 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
     return status;
 }
 
+enum { DEFAULT_CELLS = 100 };
+
 /* The lattice constant that the flags ask for. */
 static ms_status choose_voxel_size(double *h, const ms_input *input, const ms_input_flags *flags, ms_error *err)
 {
-    double lo[3], hi[3];
+    ms_error cause;
     if (flags->voxel_size > 0) {
         *h = flags->voxel_size;
         return MS_OK;
     }
     if (flags->deq > 0) {
         ms_body body;
-        ms_error cause;
         if (!input->report.closed) {
             return ms_fail(err, MS_ERR_ARG, "--deq needs the volume of a closed mesh; use --cells or --voxel-size");
         }
@@ -190,13 +184,8 @@ static ms_status choose_voxel_size(double *h, const ms_input *input, const ms_in
         *h = cbrt(6 * body.volume / acos(-1.0)) / flags->deq;
         return status;
     }
-    ms_mesh_box(lo, hi, &input->mesh);
-    const double side = fmin(hi[0] - lo[0], fmin(hi[1] - lo[1], hi[2] - lo[2]));
-    if (!(side > 0)) {
-        return ms_fail(err, MS_ERR_SHAPE, "%s: the mesh is flat, it encloses nothing", input->path);
-    }
-    *h = side / (flags->cells > 0 ? flags->cells : 100);
-    return MS_OK;
+    return name_file(err, ms_voxelize_size(h, &input->mesh, flags->cells > 0 ? flags->cells : DEFAULT_CELLS, &cause),
+                     input, &cause);
 }
 
 static ms_status check_memory(const double n[3], const ms_input_flags *flags, ms_error *err)
@@ -210,6 +199,16 @@ static ms_status check_memory(const double n[3], const ms_input_flags *flags, ms
     }
     fprintf(stderr, "grid: %.0fx%.0fx%.0f voxels, about %.3g MB\n", n[0], n[1], n[2], bytes / 1e6);
     return MS_OK;
+}
+
+/* Adds the distance field to the voxels, which were begun at `start`, and takes the times of both. */
+static ms_status finish_target(ms_input *input, double start, ms_error *cause)
+{
+    const double voxels = omp_get_wtime();
+    const ms_status status = ms_target_add_distance(&input->target, cause);
+    input->voxelize_seconds = voxels - start;
+    input->distance_seconds = omp_get_wtime() - voxels;
+    return status;
 }
 
 static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, ms_error *err)
@@ -229,7 +228,9 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
     ms_voxelize_extents(n, &input->mesh, h);
     status = check_memory(n, flags, err);
     if (status == MS_OK) {
-        status = ms_target_from_mesh(&input->target, &input->mesh, input->report.closed, h, flags->rule, &cause);
+        const double start = omp_get_wtime();
+        status = ms_target_voxels_from_mesh(&input->target, &input->mesh, input->report.closed, h, flags->rule, &cause);
+        status = status == MS_OK ? finish_target(input, start, &cause) : status;
         status = name_file(err, status, input, &cause);
     }
     if (status == MS_OK && !input->report.closed) {
@@ -251,7 +252,9 @@ static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags
         status = check_memory(n, flags, err);
     }
     if (status == MS_OK) {
-        status = ms_target_from_volume(&input->target, &input->volume, flags->label, &cause);
+        const double start = omp_get_wtime();
+        status = ms_target_voxels_from_volume(&input->target, &input->volume, flags->label, &cause);
+        status = status == MS_OK ? finish_target(input, start, &cause) : status;
         status = name_file(err, status, input, &cause);
         input->target.rule = flags->rule; /* for the union; the voxels of the shape are given */
     }

@@ -43,7 +43,7 @@ typedef struct ms_input {
     ms_volume volume; /* empty for a mesh */
     ms_target target; /* after ms_input_target */
     uint32_t label;   /* that was asked for; 0: none */
-    double read_seconds;
+    double read_seconds, voxelize_seconds, distance_seconds;
 } ms_input;
 
 /** Reads a mesh or a volume; mends a mesh. What was mended is said on stderr. */

@@ -50,7 +50,7 @@ json_t *ms_record_json(const ms_generator *generator, const ms_settings *setting
     const double cpu = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
                        1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
     json_t *seconds = json_pack("{s:f,s:f,s:f,s:f,s:f,s:f}", "read", input->read_seconds, "voxelize",
-                                input->target.voxelize_seconds, "distance", input->target.distance_seconds, "generate",
+                                input->voxelize_seconds, "distance", input->distance_seconds, "generate",
                                 r->generate_seconds, "score", r->score_seconds, "cpu", cpu);
     json_t *json = json_pack("{s:s,s:o,s:I,s:o,s:s,s:o,s:o,s:o,s:i,s:I}", "generator", generator->name, "options",
                              ms_record_settings_json(settings), "seed", (json_int_t)seed, "until", stop_json(stop),

@@ -62,7 +62,7 @@ static ms_status gather(info_facts *f, ms_input *input, const ms_input_flags *fl
         return status;
     }
     if (input->volume.label) {
-        status = ms_target_from_volume(&input->target, &input->volume, flags->label, err);
+        status = ms_target_voxels_from_volume(&input->target, &input->volume, flags->label, err);
         f->body = input->target.body;
         f->has_body = 1;
         for (int a = 0; a < 3 && status == MS_OK; a++) {

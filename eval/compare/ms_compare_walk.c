@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_version.h"
 #include "ms_compare.h"
 #include "ms_compare_charts.h"
 #include "ms_compare_sheet.h"
 #include "ms_trial.h"
-#include "ms_version.h"
 
 /* Where the comparison stands: shapes, resolutions, methods and numbers follow one another in a fixed order. */
 typedef struct compare_walk {
@@ -52,8 +52,8 @@ static void put_input(ms_compare_row *row, const ms_input *input)
 {
     row->number[MS_COLUMN_VOXEL] = input->target.grid.h;
     row->number[MS_COLUMN_READ] = input->read_seconds;
-    row->number[MS_COLUMN_VOXELIZE] = input->target.voxelize_seconds;
-    row->number[MS_COLUMN_DISTANCE] = input->target.distance_seconds;
+    row->number[MS_COLUMN_VOXELIZE] = input->voxelize_seconds;
+    row->number[MS_COLUMN_DISTANCE] = input->distance_seconds;
 }
 
 /* Nonzero if the next row was there before, which must have been made for the same. */

@@ -6,12 +6,12 @@
  */
 #include "ms_cluster.h"
 
-#include <gsl/gsl_rng.h>
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_random.h"
 #include "ms_power.h"
 
 /* Points side by side; partial sums over them; parts into which all points are cut, so that sums are
@@ -387,12 +387,11 @@ ms_status ms_cluster_start(double (*centre)[4], size_t given, size_t wanted, con
                            ms_cluster_spread spread, uint64_t seed, ms_error *err)
 {
     double *square = malloc(cluster->count * sizeof *square), *chance = malloc(cluster->count * sizeof *chance);
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_rng *random = ms_random_new((unsigned long)seed);
     ms_status status = MS_OK;
     if (!square || !chance || !random) {
         status = ms_fail(err, MS_ERR_NOMEM, "no memory to start %zu clusters", wanted);
     } else {
-        gsl_rng_set(random, (unsigned long)seed);
         for (size_t p = 0; p < cluster->count; p++) {
             square[p] = HUGE_VAL;
         }
@@ -412,9 +411,7 @@ ms_status ms_cluster_start(double (*centre)[4], size_t given, size_t wanted, con
     }
     free(square);
     free(chance);
-    if (random) {
-        gsl_rng_free(random);
-    }
+    ms_random_free(random);
     return status;
 }
 

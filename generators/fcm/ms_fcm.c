@@ -314,8 +314,7 @@ static ms_status sweep_fuzzifier(trials *t, const fcm *f, ms_error *err)
 
 static ms_status add_sphere(ms_clump *clump, const ms_ball *ball, const ms_run *run, ms_error *err)
 {
-    ms_sphere sphere;
-    ms_target_from_voxels(sphere.centre, &sphere.radius, &run->target->grid, ball->centre, ball->radius);
+    ms_sphere sphere = ms_grid_sphere(&run->target->grid, ball);
     sphere.radius = fmax(sphere.radius, run->stop.radius);
     return ms_clump_add(clump, &sphere, err);
 }

@@ -132,7 +132,7 @@ ms_status ms_nodes_of_target(ms_nodes *nodes, const ms_target *target, ms_error 
 {
     const ms_mesh *mesh = target->mesh;
     const size_t count = mesh ? mesh->n_vertices : list_border_nodes(NULL, &target->grid);
-    double(*at)[3] = malloc((count + 1) * sizeof *at), unused;
+    double(*at)[3] = malloc((count + 1) * sizeof *at);
     memset(nodes, 0, sizeof *nodes);
     if (!at) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu nodes", count);
@@ -141,7 +141,7 @@ ms_status ms_nodes_of_target(ms_nodes *nodes, const ms_target *target, ms_error 
         list_border_nodes(at, &target->grid);
     }
     for (size_t v = 0; mesh && v < count; v++) {
-        ms_target_to_voxels(at[v], &unused, &target->grid, mesh->vertex[v], 0);
+        ms_grid_at(at[v], &target->grid, mesh->vertex[v]);
     }
     const ms_status status = ms_nodes_build(nodes, (const double(*)[3])at, count, err);
     free(at);

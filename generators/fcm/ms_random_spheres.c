@@ -1,8 +1,9 @@
 #include "ms_random_spheres.h"
 
-#include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
+
+#include "base/ms_random.h"
 
 /* Centres drawn at a time; their radii are found in parallel. */
 enum { BATCH = 8192 };
@@ -38,20 +39,17 @@ static ms_status open_filling(filling *f, const ms_target *target, const ms_node
     *f = (filling){.target = target, .nodes = nodes};
     find_inside_box(f);
     f->covered = calloc(f->nodes->count, sizeof *f->covered);
-    f->random = gsl_rng_alloc(gsl_rng_mt19937);
+    f->random = ms_random_new((unsigned long)seed);
     if (!f->covered || !f->random) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory to fill a shape of %zu nodes", f->nodes->count);
     }
-    gsl_rng_set(f->random, (unsigned long)seed);
     return MS_OK;
 }
 
 static void close_filling(filling *f)
 {
     free(f->covered);
-    if (f->random) {
-        gsl_rng_free(f->random);
-    }
+    ms_random_free(f->random);
 }
 
 /* Draws a centre; 0 if it is outside. */

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/ms_closest.h"
 #include "ms_mss_field.h"
 #include "ms_mss_select.h"
 #include "ms_peaks.h"
@@ -57,12 +58,12 @@ static double mss_option(const mss *m, int which)
 static int confine_ball(ms_ball *ball, mss *m)
 {
     const ms_target *target = m->run->target;
-    double centre[3], radius, allowed = HUGE_VAL;
-    ms_target_from_voxels(centre, &radius, &target->grid, ball->centre, ball->radius);
+    const ms_sphere sphere = ms_grid_sphere(&target->grid, ball);
+    double radius = sphere.radius, allowed = HUGE_VAL;
     if (mss_option(m, CONFINE) != 0) {
-        allowed = -ms_closest_signed_distance(target->closest, centre);
+        allowed = -ms_closest_signed_distance(target->closest, sphere.centre);
     }
-    allowed = fmin(allowed, ms_planes_distance(m->run->settings, centre));
+    allowed = fmin(allowed, ms_planes_distance(m->run->settings, sphere.centre));
     if (allowed < radius) {
         radius = allowed;
         ball->radius = allowed / target->grid.h;
@@ -216,14 +217,13 @@ static size_t choose_spheres(ms_ball *chosen, size_t limit, mss *m)
 {
     const int automatic = mss_option(m, SPACING) == 0;
     ms_mss_select_rule rule = {.spacing = m->spacing,
-                               .least_radius = automatic ? m->spacing / 2 : 0,
-                               .one_set = mss_option(m, ORDER) == ORDER_GAIN,
-                               .may_wait = automatic && m->spacing > 1,
-                               .fit = fit_mean,
-                               .report = report,
-                               .context = m};
-    double unused;
-    ms_target_to_voxels(rule.centroid, &unused, &m->run->target->grid, m->run->target->body.centroid, 0);
+                                     .least_radius = automatic ? m->spacing / 2 : 0,
+                                     .one_set = mss_option(m, ORDER) == ORDER_GAIN,
+                                     .may_wait = automatic && m->spacing > 1,
+                                     .fit = fit_mean,
+                                     .report = report,
+                                     .context = m};
+    ms_grid_at(rule.centroid, &m->run->target->grid, m->run->target->body.centroid);
     return ms_mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball, m->field.raster.n_balls,
                          &rule);
 }

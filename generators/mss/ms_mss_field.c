@@ -127,6 +127,15 @@ static double find_gap(int at, int lo, int hi)
     return at < lo ? lo - at : at >= hi ? at - hi + 1 : 0;
 }
 
+static void box_join(voxel_box *b, const voxel_box *other)
+{
+    for (int a = 0; a < 3; a++) {
+        b->lo[a] = other->lo[a] < b->lo[a] ? other->lo[a] : b->lo[a];
+        b->hi[a] = other->hi[a] > b->hi[a] ? other->hi[a] : b->hi[a];
+    }
+}
+#pragma omp declare reduction(hull:voxel_box : box_join(&omp_out, &omp_in)) initializer(omp_priv = omp_orig)
+
 /*
  * The voxels whose E~ may change: those that are covered now, and those that had their
  * nearest background voxel among these, which then was within their old E~.
@@ -139,35 +148,25 @@ static voxel_box changed_box(const ms_mss_field *field)
     memcpy(covered.hi, field->raster.hi, sizeof covered.hi);
     const voxel_box reach = box_grow(&covered, (int)ceilf(field->deepest_union) + 1, grid->n);
     changed = covered;
-#pragma omp parallel
-    {
-        voxel_box mine = covered;
-#pragma omp for schedule(dynamic, 4)
-        for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
-            for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
-                const double dz = find_gap(k, covered.lo[2], covered.hi[2]),
-                             dy = find_gap(j, covered.lo[1], covered.hi[1]);
-                const float away = (float)sqrt(dz * dz + dy * dy) - 0.01f; /* E~ is known up to rounding */
-                const size_t start = ms_grid_index(grid, 0, j, k);
-                const float *e = field->e + start, *star = field->star + start;
-                int from = reach.lo[0], to = reach.hi[0];
-                while (from < to &&
-                       union_of(field, e[from], star[from]) < fmaxf(away, (float)(covered.lo[0] - from) - 0.01f)) {
-                    from++;
-                }
-                while (from < to &&
-                       union_of(field, e[to - 1], star[to - 1]) < fmaxf(away, (float)(to - covered.hi[0]) - 0.01f)) {
-                    to--;
-                }
-                if (from < to) {
-                    box_include(&mine, from, to, j, k);
-                }
+#pragma omp parallel for schedule(dynamic, 4) reduction(hull : changed)
+    for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
+        for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
+            const double dz = find_gap(k, covered.lo[2], covered.hi[2]), dy = find_gap(j, covered.lo[1], covered.hi[1]);
+            const float away = (float)sqrt(dz * dz + dy * dy) - 0.01f; /* E~ is known up to rounding */
+            const size_t start = ms_grid_index(grid, 0, j, k);
+            const float *e = field->e + start, *star = field->star + start;
+            int from = reach.lo[0], to = reach.hi[0];
+            while (from < to &&
+                   union_of(field, e[from], star[from]) < fmaxf(away, (float)(covered.lo[0] - from) - 0.01f)) {
+                from++;
             }
-        }
-#pragma omp critical(mss_changed_box)
-        for (int a = 0; a < 3; a++) {
-            changed.lo[a] = mine.lo[a] < changed.lo[a] ? mine.lo[a] : changed.lo[a];
-            changed.hi[a] = mine.hi[a] > changed.hi[a] ? mine.hi[a] : changed.hi[a];
+            while (from < to &&
+                   union_of(field, e[to - 1], star[to - 1]) < fmaxf(away, (float)(to - covered.hi[0]) - 0.01f)) {
+                to--;
+            }
+            if (from < to) {
+                box_include(&changed, from, to, j, k);
+            }
         }
     }
     return changed;

@@ -56,14 +56,14 @@ static void to_target(double out[3], const ms_grid *skeleton, const frame *f, si
 {
     const size_t nx = (size_t)skeleton->n[0], ny = (size_t)skeleton->n[1];
     const size_t at[3] = {voxel % nx, voxel / nx % ny, voxel / nx / ny};
-    double p[3] = {f->origin[0], f->origin[1], f->origin[2]}, unused;
+    double p[3] = {f->origin[0], f->origin[1], f->origin[2]};
     for (int a = 0; a < 3; a++) {
         const double q = skeleton->origin[a] + skeleton->h * (double)at[a];
         for (int c = 0; c < 3; c++) {
             p[c] += q * f->axis[a][c];
         }
     }
-    ms_target_to_voxels(out, &unused, grid, p, 0);
+    ms_grid_at(out, grid, p);
 }
 
 static ms_status check_candidates(const double n[3], const ms_target *target, const ms_setcover_lattice *lattice,
@@ -186,10 +186,9 @@ static void fit_candidate(ms_ball *ball, const ms_target *target, double step, i
 {
     const ms_grid *grid = &target->grid;
     if (is_by_mesh(target)) {
-        double centre[3], radius;
-        ms_target_from_voxels(centre, &radius, grid, ball->centre, 0);
-        radius = fit_to_mesh(centre, target->closest, step, move);
-        ms_target_to_voxels(ball->centre, &ball->radius, grid, centre, radius);
+        ms_sphere sphere = ms_grid_sphere(grid, ball);
+        sphere.radius = fit_to_mesh(sphere.centre, target->closest, step, move);
+        *ball = ms_grid_ball(grid, &sphere);
     } else {
         ball->radius = (double)target->distance[nearest_voxel(ball->centre, grid)] - 0.5;
     }

@@ -3,6 +3,7 @@
 #define MS_JUDGE_H
 
 #include "ms_generator.h"
+#include "voxel/ms_raster.h"
 
 MS_C_BEGIN
 

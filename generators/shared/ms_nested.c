@@ -5,8 +5,7 @@
 ms_status ms_nested_accept(ms_clump *clump, ms_stop_reason *reason, ms_tally *sum, const ms_run *run,
                            const ms_ball *ball, const ms_tally *adds, ms_error *err)
 {
-    ms_sphere sphere;
-    ms_target_from_voxels(sphere.centre, &sphere.radius, &run->target->grid, ball->centre, ball->radius);
+    const ms_sphere sphere = ms_grid_sphere(&run->target->grid, ball);
     const ms_status status = ms_clump_add(clump, &sphere, err);
     if (status == MS_OK) {
         ms_tally_add(sum, adds);

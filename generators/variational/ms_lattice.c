@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/ms_random.h"
 #include "base/ms_vector.h"
 
 /* Points of equal areas along a spiral. */
@@ -25,7 +26,7 @@ ms_status ms_lattice_alloc(ms_lattice *lattice, int points, ms_error *err)
                             .direction = malloc(n * sizeof *lattice->direction),
                             .turned = malloc(n * sizeof *lattice->turned),
                             .normal = malloc(n * sizeof *lattice->normal),
-                            .rng = gsl_rng_alloc(gsl_rng_mt19937)};
+                            .rng = ms_random_new(0)};
     if (!lattice->direction || !lattice->turned || !lattice->normal || !lattice->rng) {
         ms_lattice_free(lattice);
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %d points on each sphere", points);
@@ -59,8 +60,6 @@ void ms_lattice_free(ms_lattice *lattice)
     free(lattice->direction);
     free(lattice->turned);
     free(lattice->normal);
-    if (lattice->rng) {
-        gsl_rng_free(lattice->rng);
-    }
+    ms_random_free(lattice->rng);
     *lattice = (ms_lattice){0};
 }

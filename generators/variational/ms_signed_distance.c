@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/ms_closest.h"
 #include "voxel/ms_distance.h"
 
 void ms_signed_distance_free(ms_signed_distance *field)
@@ -80,8 +81,8 @@ static float compute_node(const ms_signed_distance *field, size_t node)
     const ms_grid *grid = &field->target->grid;
     const size_t nx = (size_t)field->n[0], ny = (size_t)field->n[1], step = (size_t)field->step;
     const double at[3] = {(double)(node % nx * step), (double)(node / nx % ny * step), (double)(node / nx / ny * step)};
-    double place[3], unused;
-    ms_target_from_voxels(place, &unused, grid, at, 0);
+    double place[3];
+    ms_grid_place(place, grid, at);
     return (float)(ms_closest_signed_distance(field->target->closest, place) / grid->h);
 }
 

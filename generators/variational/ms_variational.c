@@ -42,8 +42,7 @@ static ms_status to_clump(ms_clump *clump, const ms_ball *ball, size_t count, co
     const double least = fmax(run->stop.radius, 0);
     clump->n_spheres = 0;
     for (size_t b = 0; b < count; b++) {
-        ms_sphere sphere;
-        ms_target_from_voxels(sphere.centre, &sphere.radius, &run->target->grid, ball[b].centre, ball[b].radius);
+        ms_sphere sphere = ms_grid_sphere(&run->target->grid, &ball[b]);
         if (fabs(sphere.radius - least) < 1e-12 * least) {
             sphere.radius = least;
         }
@@ -65,8 +64,7 @@ static ms_status judge_clump(ms_stop_reason *reason, const ms_clump *clump, size
     const size_t n = clump->n_spheres;
     ms_ball *ball = malloc((n + 1) * sizeof *ball);
     for (size_t s = 0; ball && s < n; s++) {
-        ms_target_to_voxels(ball[s].centre, &ball[s].radius, &run->target->grid, clump->sphere[s].centre,
-                            clump->sphere[s].radius);
+        ball[s] = ms_grid_ball(&run->target->grid, &clump->sphere[s]);
     }
     const ms_status status = ball ? ms_judge_union(NULL, reason, run, ball, n, err)
                                   : ms_fail(err, MS_ERR_NOMEM, "no memory to score %zu spheres", n);
@@ -88,8 +86,7 @@ static ms_variational_settings read_settings(const ms_run *run)
                                                    .planes = run->settings},
                                         .mirror = {.across = {across[0], across[1], across[2]}},
                                         .refine = &run->settings->clump};
-    double unused;
-    ms_target_to_voxels(settings.mirror.at, &unused, &run->target->grid, run->target->body.centroid, 0);
+    ms_grid_at(settings.mirror.at, &run->target->grid, run->target->body.centroid);
     return settings;
 }
 

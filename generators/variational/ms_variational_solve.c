@@ -247,8 +247,7 @@ static ms_status start_from_given(solver *s, const ms_clump *given, ms_error *er
     const ms_status status = make_view(&s->coarse, s, ms_variational_start_step(target, s->wanted), err);
     for (size_t g = 0; g < given->n_spheres; g++) {
         ms_ball *ball = &s->ball[s->count];
-        ms_target_to_voxels(ball->centre, &ball->radius, &target->grid, given->sphere[g].centre,
-                            given->sphere[g].radius);
+        *ball = ms_grid_ball(&target->grid, &given->sphere[g]);
         const double reach = SNAP * ball->radius;
         int below = 0;
         for (int a = 0; a < 3; a++) {

@@ -25,8 +25,9 @@ static ms_status run_mss(const ms_mesh *mesh, double h, ms_error *err)
     ms_clump clump = {0};
     ms_stop_reason reason;
     const double before = peak_bytes(), start = omp_get_wtime();
-    ms_status status = ms_target_from_mesh(&target, mesh, 1, h, MS_VOXEL_HALF, err);
-    if (status != MS_OK) {
+    ms_status status = ms_target_voxels_from_mesh(&target, mesh, 1, h, MS_VOXEL_HALF, err);
+    const double voxelized = omp_get_wtime();
+    if (status != MS_OK || (status = ms_target_add_distance(&target, err)) != MS_OK) {
         return status;
     }
     const double made = omp_get_wtime();
@@ -41,8 +42,8 @@ static ms_status run_mss(const ms_mesh *mesh, double h, ms_error *err)
         printf("grain, %.1f million voxels, %zu spheres: %.1f bytes/voxel at peak\n", voxels / 1e6, clump.n_spheres,
                (peak_bytes() - before) / voxels);
         printf("shares: voxels %.0f %%, distance field %.0f %%, spheres %.0f %%; spheres / distance field %.1f\n",
-               100 * target.voxelize_seconds / (done - start), 100 * target.distance_seconds / (done - start),
-               100 * (done - made) / (done - start), (done - made) / target.distance_seconds);
+               100 * (voxelized - start) / (done - start), 100 * (made - voxelized) / (done - start),
+               100 * (done - made) / (done - start), (done - made) / (made - voxelized));
     }
     ms_clump_free(&clump);
     ms_option_settings_free(&settings);

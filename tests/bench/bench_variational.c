@@ -7,10 +7,12 @@
 #include "base/ms_vector.h"
 #include "bench_support.h"
 #include "measure/ms_metrics.h"
+#include "mesh/ms_closest.h"
 #include "ms_generator.h"
 #include "mss/ms_mss.h"
 #include "setcover/ms_setcover.h"
 #include "variational/ms_variational.h"
+#include "voxel/ms_raster.h"
 
 enum { POINTS = 1000 };
 

@@ -7,6 +7,7 @@
 #include "fcm/ms_random_spheres.h"
 #include "measure/ms_metrics.h"
 #include "shared/ms_bisect_count.h"
+#include "voxel/ms_raster.h"
 
 /* Options as "name=value name=value". */
 static ms_status try_fcm(ms_clump *clump, ms_stop_reason *reason, const ms_target *target, ms_stop stop,
@@ -199,8 +200,7 @@ static void spheres_come_by_what_they_add(void **state)
     ms_clump clump = run_fcm(&target, 30, "", 1);
     assert_int_equal(ms_raster_alloc(&raster, &target.grid, MS_VOXEL_CENTRE, &err), MS_OK);
     for (size_t s = 0; s < clump.n_spheres; s++) {
-        ms_ball ball;
-        ms_target_to_voxels(ball.centre, &ball.radius, &target.grid, clump.sphere[s].centre, clump.sphere[s].radius);
+        const ms_ball ball = ms_grid_ball(&target.grid, &clump.sphere[s]);
         assert_int_equal(ms_raster_add(&raster, &ball, 1, &err), MS_OK);
         assert_true(s == 0 || raster.tally[s].inside <= raster.tally[s - 1].inside);
     }

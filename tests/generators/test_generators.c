@@ -330,8 +330,9 @@ static void nothing_asked_is_an_error(void **state)
         ms_stop stop = {0};
         assert_int_equal(try_run(&o, *g, &f->rough, stop, &err), MS_ERR_ARG);
         assert_int_equal(o.clump.n_spheres, 0);
-        const ms_run bare = {.target = &f->rough, .stop = {.spheres = 3}};
-        assert_int_equal(ms_generator_run(&o.clump, &o.reason, *g, &bare, &err), MS_ERR_ARG); /* no settings */
+        const ms_settings others = {.options = NULL};
+        const ms_run mixed = {.target = &f->rough, .stop = {.spheres = 3}, .settings = &others};
+        assert_int_equal(ms_generator_run(&o.clump, &o.reason, *g, &mixed, &err), MS_ERR_ARG);
         stop.radius = 1e9; /* no sphere is as large */
         assert_int_equal(try_run(&o, *g, &f->rough, stop, &err), MS_ERR_SHAPE);
         assert_int_equal(o.clump.n_spheres, 0);

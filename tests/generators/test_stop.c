@@ -1,6 +1,7 @@
 /* The stop rule, and the comparison of inertia that it rests on. */
 #include "ms_stop.h"
 #include "support/clump_samples.h"
+#include "voxel/ms_tally.h"
 
 static void reasons_have_names(void **state)
 {

@@ -1,5 +1,6 @@
 /* Measures of clumps whose values are known by formula. */
 #include "support/clump_samples.h"
+#include "voxel/ms_raster.h"
 
 static const ms_voxel_rule both_rules[] = {MS_VOXEL_HALF, MS_VOXEL_CENTRE};
 

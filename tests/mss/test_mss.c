@@ -6,6 +6,7 @@
 
 #include "measure/ms_metrics.h"
 #include "mesh/formats/ms_mesh_read.h"
+#include "mesh/ms_closest.h"
 #include "ms_generator.h"
 #include "mss/ms_mss.h"
 #include "mss/ms_mss_field.h"

@@ -94,9 +94,7 @@ static void volumes_have_inscribed_spheres(void **state)
         ms_clump clump = run_setcover(&target, 30, align ? "skeleton-deq=20 align" : "skeleton-deq=20");
         assert_true(clump.sphere[0].radius > 28 && clump.sphere[0].radius < 30.5);
         for (size_t s = 0; s < clump.n_spheres; s++) {
-            ms_ball ball;
-            ms_target_to_voxels(ball.centre, &ball.radius, &target.grid, clump.sphere[s].centre,
-                                clump.sphere[s].radius);
+            const ms_ball ball = ms_grid_ball(&target.grid, &clump.sphere[s]);
             for (size_t v = 0; v < ms_grid_voxels(&target.grid); v++) {
                 const double x = (double)(v % (size_t)target.grid.n[0]) - ball.centre[0],
                              y = (double)(v / (size_t)target.grid.n[0] % (size_t)target.grid.n[1]) - ball.centre[1],

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/ms_vector.h"
+#include "mesh/ms_closest.h"
 #include "mss/ms_mss.h"
 #include "variational/ms_coverage_count.h"
 #include "variational/ms_pattern_search.h"
@@ -79,9 +80,9 @@ static void field_is_the_distance(void **state)
     ms_error err;
     make_shape(&mesh, "ball", "r=1 fineness=60");
     make_target(&target, &mesh, 30, MS_VOXEL_HALF);
-    double middle[3], radius;
-    const double origin[3] = {0, 0, 0};
-    ms_target_to_voxels(middle, &radius, &target.grid, origin, 1);
+    const ms_sphere unit = {.radius = 1};
+    const ms_ball ball = ms_grid_ball(&target.grid, &unit);
+    const double *middle = ball.centre, radius = ball.radius;
     for (int step = 1; step <= 3; step++) {
         assert_int_equal(ms_signed_distance_alloc(&field, &target, step, &err), MS_OK);
         for (int t = 0; t < 300; t++) {

@@ -7,7 +7,7 @@
 #include "ms_fields.h"
 #include "ms_formats.h"
 #include "ms_script.h"
-#include "ms_version.h"
+#include "base/ms_version.h"
 
 /* What the file says of each sphere. */
 typedef struct molecule {

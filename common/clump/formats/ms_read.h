@@ -15,7 +15,7 @@ MS_C_BEGIN
  * @param[out] particle zeros where the file does not know it
  * @return as ms_read_spheres; MS_ERR_ARG for a format that is not read
  */
-ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path, ms_error *err);
+MS_API ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path, ms_error *err);
 
 /**
  * Reads spheres from a text file: four numbers a line, x y z r, separated by commas,
@@ -33,7 +33,7 @@ ms_status ms_read_spheres(ms_clump *clump, const char *path, ms_error *err);
  * Reads the particle from a STEM.frame.json or the JSON of a clump.
  * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_NOMEM
  */
-ms_status ms_read_particle(ms_particle *particle, const char *path, ms_error *err);
+MS_API ms_status ms_read_particle(ms_particle *particle, const char *path, ms_error *err);
 
 MS_C_END
 

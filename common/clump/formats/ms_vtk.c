@@ -1,7 +1,7 @@
 /* Legacy VTK, for ParaView. */
 #include "ms_fields.h"
 #include "ms_formats.h"
-#include "ms_version.h"
+#include "base/ms_version.h"
 
 static void write_scalars(FILE *stream, const char *name)
 {

@@ -47,16 +47,16 @@ typedef struct ms_format {
     ms_part part[MS_FORMAT_MAX_PARTS]; /* ends with a NULL suffix */
 } ms_format;
 
-extern const ms_format ms_formats[];
+MS_API extern const ms_format ms_formats[];
 
 /** The format of that name, or NULL with a message that lists the names. */
-const ms_format *ms_write_format_find(const char *name, ms_error *err);
+MS_API const ms_format *ms_write_format_find(const char *name, ms_error *err);
 
 /** The format that the ending of a path names, csv for "-"; or NULL with a message. */
-const ms_format *ms_write_format_of_path(const char *path, ms_error *err);
+MS_API const ms_format *ms_write_format_of_path(const char *path, ms_error *err);
 
 /** Nonzero if its files stand in a folder of the path's name. */
-int ms_write_format_is_folder(const ms_format *format);
+MS_API int ms_write_format_is_folder(const ms_format *format);
 
 /**
  * Writes a clump, each file under a temporary name that is then renamed. Beside a template stands the way back to the
@@ -67,7 +67,7 @@ int ms_write_format_is_folder(const ms_format *format);
  * @return MS_OK; MS_ERR_ARG for an unknown ending, or where the format needs what is not known; MS_ERR_IO;
  *         MS_ERR_NOMEM
  */
-ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err);
+MS_API ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err);
 
 MS_C_END
 

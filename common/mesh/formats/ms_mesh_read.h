@@ -20,13 +20,13 @@ MS_C_BEGIN
  *
  * Cost: O(file size).
  */
-ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err);
+MS_API ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err);
 
 /** The same from the bytes of a file that was read already; the path tells the format and stands in messages. */
-ms_status ms_mesh_parse(ms_mesh *mesh, const ms_bytes *bytes, const char *path, ms_error *err);
+MS_API ms_status ms_mesh_parse(ms_mesh *mesh, const ms_bytes *bytes, const char *path, ms_error *err);
 
 /** Nonzero if the path ends like a mesh that ms_mesh_read takes. */
-int ms_mesh_read_is_mesh_path(const char *path);
+MS_API int ms_mesh_read_is_mesh_path(const char *path);
 
 MS_C_END
 

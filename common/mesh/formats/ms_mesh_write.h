@@ -14,7 +14,7 @@ MS_C_BEGIN
  * @return MS_OK; MS_ERR_ARG for an unknown ending or coordinates beyond single precision in
  *         STL; MS_ERR_LIMIT; MS_ERR_NOMEM; MS_ERR_IO
  */
-ms_status ms_mesh_write(const ms_mesh *mesh, const char *path, ms_error *err);
+MS_API ms_status ms_mesh_write(const ms_mesh *mesh, const char *path, ms_error *err);
 
 MS_C_END
 
