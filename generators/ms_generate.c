@@ -118,9 +118,9 @@ static ms_status set_options(ms_settings *settings, const ms_generator *generato
     return status;
 }
 
-static ms_status make_clump(ms_clump *clump, ms_metrics *metrics, const ms_generator *generator,
-                            const ms_settings *settings, const ms_target *target, const ms_generate_request *request,
-                            ms_error *err)
+static ms_status run_and_measure(ms_clump *clump, ms_metrics *metrics, const ms_generator *generator,
+                                 const ms_settings *settings, const ms_target *target,
+                                 const ms_generate_request *request, ms_error *err)
 {
     ms_stop_reason reason;
     const ms_run run = {.target = target, .stop = request->stop, .settings = settings, .seed = request->seed};
@@ -147,7 +147,7 @@ ms_status ms_generate_file(ms_clump *clump, ms_metrics *metrics, const char *pat
         status = read_shape(&s, path, &all, err);
     }
     if (status == MS_OK) {
-        status = make_clump(clump, metrics, generator, &settings, &s.target, &all, err);
+        status = run_and_measure(clump, metrics, generator, &settings, &s.target, &all, err);
     }
     ms_option_settings_free(&settings);
     free_shape(&s);

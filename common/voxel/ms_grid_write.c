@@ -2,8 +2,8 @@
 
 #include "base/ms_file.h"
 #include "base/ms_text.h"
-#include "ms_grid.h"
 #include "base/ms_version.h"
+#include "ms_grid.h"
 
 ms_status ms_grid_write(const ms_grid *grid, const char *path, ms_error *err)
 {

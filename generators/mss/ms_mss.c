@@ -217,12 +217,12 @@ static size_t choose_spheres(ms_ball *chosen, size_t limit, mss *m)
 {
     const int automatic = mss_option(m, SPACING) == 0;
     ms_mss_select_rule rule = {.spacing = m->spacing,
-                                     .least_radius = automatic ? m->spacing / 2 : 0,
-                                     .one_set = mss_option(m, ORDER) == ORDER_GAIN,
-                                     .may_wait = automatic && m->spacing > 1,
-                                     .fit = fit_mean,
-                                     .report = report,
-                                     .context = m};
+                               .least_radius = automatic ? m->spacing / 2 : 0,
+                               .one_set = mss_option(m, ORDER) == ORDER_GAIN,
+                               .may_wait = automatic && m->spacing > 1,
+                               .fit = fit_mean,
+                               .report = report,
+                               .context = m};
     ms_grid_at(rule.centroid, &m->run->target->grid, m->run->target->body.centroid);
     return ms_mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball, m->field.raster.n_balls,
                          &rule);

@@ -3,9 +3,9 @@
 
 #include <string.h>
 
+#include "base/ms_version.h"
 #include "ms_fields.h"
 #include "ms_formats.h"
-#include "base/ms_version.h"
 
 /* Reads n numbers; returns 0 if the value is no list that begins with as many. */
 static int take_number_list(double *out, size_t n, const json_t *list)

@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "base/ms_text.h"
+#include "base/ms_version.h"
 #include "ms_fields.h"
 #include "ms_formats.h"
 #include "ms_script.h"
-#include "base/ms_version.h"
 
 /* What the file says of each sphere. */
 typedef struct molecule {

@@ -1,7 +1,7 @@
 /* Legacy VTK, for ParaView. */
+#include "base/ms_version.h"
 #include "ms_fields.h"
 #include "ms_formats.h"
-#include "base/ms_version.h"
 
 static void write_scalars(FILE *stream, const char *name)
 {
