@@ -27,7 +27,7 @@ MS_API ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const cha
  * @param[out] clump the caller frees it; empty on failure
  * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line; MS_ERR_LIMIT; MS_ERR_NOMEM
  */
-ms_status ms_read_spheres(ms_clump *clump, const char *path, ms_error *err);
+MS_API ms_status ms_read_spheres(ms_clump *clump, const char *path, ms_error *err);
 
 /**
  * Reads the particle from a STEM.frame.json or the JSON of a clump.
