@@ -14,8 +14,8 @@ FLOORS = ["common", "generators", "eval"]  # a floor knows those before it alone
 TABLE = "generators/ms_generator_table.c"  # knows the methods, which know the interface: a room of its own
 # What users of the library call first; it knows the table: another room of its own.
 LIBRARY = ("generators/mskit.h", "generators/ms_generate.h", "generators/ms_generate.c")
-# Installed apart from the public ones (mskit/dev), where a bare name of a public one is not found.
 MADE = "base/ms_version.h"  # by the build, in another folder
+# Installed apart from the public ones (mskit/dev), where a bare name of a public one is not found.
 DEV = ("mesh/ms_closest.h", "voxel/ms_distance.h", "voxel/ms_raster.h", "voxel/ms_tally.h")
 
 ROOMS = {
@@ -177,7 +177,8 @@ class Rooms(unittest.TestCase):
     def test_own_room_by_bare_name_others_by_room(self):
         for path, name, header in self.includes:
             full = header.split("/", 1)[1]
-            apart = path.split("/", 1)[1] in DEV and full not in DEV or full == MADE
+            place = path.split("/", 1)[1]
+            apart = place in DEV and full not in DEV or MADE in (place, full)
             own = os.path.dirname(path) == os.path.dirname(header) and not apart
             self.assertEqual(name, os.path.basename(header) if own else full, path)
 
