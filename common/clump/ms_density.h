@@ -41,8 +41,8 @@ typedef struct ms_density_report {
  *         simplex method finds no end; MS_ERR_NOMEM
  *
  * GLPK runs in a thread that lives as long as the call: whatever befalls it, what the caller holds of GLPK, its
- * problems, error hook and terminal settings, is left alone; where GLPK would print and abort, a status comes back. It must
- * have been built with thread-local storage (glp_config("TLS")), as Debian's is; without it MS_ERR_LIMIT.
+ * problems, error hook and terminal settings, is left alone; where GLPK would print and abort, a status comes back. It
+ * must have been built with thread-local storage (glp_config("TLS")), as Debian's is; without it MS_ERR_LIMIT.
  *
  * Source: Yuan 2019, section 4, eqs. 2 to 5, 7, 8; GLPK's simplex method. Cost: 1000 spheres in hundredths of a second.
  */

@@ -45,12 +45,17 @@ MS_MEASURE_LIST(GETTERS)
                            .label = label_,                                                                           \
                            .source = source_,                                                                         \
                            .help = help_,                                                                             \
-                           .in_compare = (compare_) ? (compare_) : #name_,                                            \
-                           .in_stability = (stability_) ? (stability_) : #name_,                                      \
+                           .in_compare = compare_,                                                                    \
+                           .in_stability = stability_,                                                                \
                            .of_score = OF_SCORE_##kind_(name_),                                                       \
                            .of_metrics = metrics_##name_},
 
 const ms_measure ms_measures[] = {MS_MEASURE_LIST(ROW){0}};
+
+const char *ms_measure_column(const ms_measure *measure, const char *published)
+{
+    return published ? published : measure->name;
+}
 
 int ms_measure_is_of_score(const ms_measure *measure)
 {

@@ -104,13 +104,16 @@ typedef struct ms_measure {
     ms_measure_better better;
     int digits, curve;
     const char *unit, *axis, *label, *source, *help;
-    const char *in_compare, *in_stability; /* never NULL: `name` where no other was published */
+    const char *in_compare, *in_stability; /* NULL where it is `name`: ms_measure_column */
     double (*of_score)(const struct ms_score *score);
     double (*of_metrics)(const struct ms_metrics *metrics);
 } ms_measure;
 
 /** All of them, by ms_measure_code; a row with a NULL name ends them. */
 MS_API extern const ms_measure ms_measures[];
+
+/** The name of its column: `published`, which is in_compare or in_stability, or its own where that is NULL. */
+MS_API const char *ms_measure_column(const ms_measure *measure, const char *published);
 
 /** Nonzero if it is a field of ms_score: of_score gives it. Of the others of_score is NULL. */
 MS_API int ms_measure_is_of_score(const ms_measure *measure);

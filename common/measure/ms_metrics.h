@@ -22,7 +22,7 @@ MS_C_BEGIN
 #define MS_METRICS_FIELD_COUNT(name) size_t name;
 #define MS_METRICS_FIELD(kind, CODE, name, ...) MS_METRICS_FIELD_##kind(name)
 
-/** Measures of S (target) and U (union) on the grid: eta, dice, ... The inertia is NAN unless ms_metrics_compute set it. */
+/** Measures of S (target) and U (union) on the grid: eta, dice, ... Inertia is NAN unless ms_metrics_compute set it. */
 typedef struct ms_score {
     MS_MEASURE_LIST(MS_SCORE_FIELD)
 } ms_score;

@@ -254,6 +254,9 @@ static void sort_crossings(plane_work *w, size_t rays)
 static void cover_rays(plane_work *w, const sweep *s)
 {
     const size_t across = (size_t)s->grid->n[s->b] * (size_t)s->rays, row_length = (size_t)s->grid->n[s->a] + 1;
+    if (w->count == 0) {
+        return; /* before the first crossing there is no array of them to point into */
+    }
     sort_crossings(w, across * (size_t)s->rays);
     for (size_t ray = 0; ray < across * (size_t)s->rays; ray++) {
         int32_t *row = w->lines + ray % across / (size_t)s->rays * row_length;

@@ -113,9 +113,9 @@ int ms_flags_parse(int *first_word, const ms_command *command, int generator_opt
             return EXIT_USAGE;
         }
         const char *flag = found == 0 ? t.longs[at].name : name_of_letter(command, found);
-        if (handler(context, flag, optarg, &err) != MS_OK) {
-            ms_flags_wrong_usage(command, err.text);
-            return EXIT_USAGE;
+        const ms_status status = handler(context, flag, optarg, &err);
+        if (status != MS_OK) {
+            return ms_flags_refuse(command, status, &err);
         }
     }
     *first_word = optind;
@@ -132,6 +132,11 @@ int ms_flags_wrong_usage(const ms_command *command, const char *message)
 {
     fprintf(stderr, "mskit %s: %s\nusage: mskit %s %s\n", command->name, message, command->name, command->usage);
     return EXIT_USAGE;
+}
+
+int ms_flags_refuse(const ms_command *command, ms_status status, const ms_error *err)
+{
+    return status == MS_ERR_NOMEM ? ms_flags_fail(command, err) : ms_flags_wrong_usage(command, err->text);
 }
 
 ms_status ms_flags_number(double *value, const char *name, const char *text, double lo, double hi, ms_error *err)

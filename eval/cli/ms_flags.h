@@ -53,6 +53,9 @@ int ms_flags_fail(const ms_command *command, const ms_error *err);
 /** The same with the usage of the command. @return EXIT_USAGE */
 int ms_flags_wrong_usage(const ms_command *command, const char *message);
 
+/** Refuses what the flags say: wrong usage, unless just memory was lacking. @return EXIT_USAGE or EXIT_FAILED */
+int ms_flags_refuse(const ms_command *command, ms_status status, const ms_error *err);
+
 /** A number that the user wrote. @return MS_OK; MS_ERR_ARG if it is none from lo to hi */
 ms_status ms_flags_number(double *value, const char *name, const char *text, double lo, double hi, ms_error *err);
 

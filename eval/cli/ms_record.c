@@ -3,6 +3,7 @@
 #include <omp.h>
 #include <sys/resource.h>
 
+#include "ms_json_object.h"
 #include "ms_report.h"
 
 json_t *ms_record_settings_json(const ms_settings *settings)
@@ -12,14 +13,14 @@ json_t *ms_record_settings_json(const ms_settings *settings)
         char text[64];
         if (settings->options[o].type != MS_OPTION_PLANE) {
             ms_option_settings_text(text, sizeof text, settings, o);
-            json_object_set_new(json, settings->options[o].name, json_string(text));
+            ms_json_object_set(&json, settings->options[o].name, json_string(text));
             continue;
         }
         for (size_t p = 0; p < settings->n_planes; p++) {
             const double *q = settings->plane[p];
-            json_array_append_new(planes, json_pack("[f,f,f,f]", q[0], q[1], q[2], q[3]));
+            ms_json_object_append(&planes, json_pack("[f,f,f,f]", q[0], q[1], q[2], q[3]));
         }
-        json_object_set(json, settings->options[o].name, planes);
+        ms_json_object_set(&json, settings->options[o].name, json_incref(planes));
     }
     json_decref(planes);
     return json;
@@ -29,15 +30,15 @@ static json_t *stop_json(const ms_stop *stop)
 {
     json_t *json = json_object();
     if (stop->spheres) {
-        json_object_set_new(json, "spheres", json_integer((json_int_t)stop->spheres));
+        ms_json_object_set(&json, "spheres", json_integer((json_int_t)stop->spheres));
     }
     for (const ms_measure *m = ms_measures; m->name; m++) {
         if (ms_stop_asked(stop, m) > 0) {
-            json_object_set_new(json, m->name, json_real(ms_stop_asked(stop, m)));
+            ms_json_object_set(&json, m->name, json_real(ms_stop_asked(stop, m)));
         }
     }
     if (stop->radius > 0) {
-        json_object_set_new(json, "radius", json_real(stop->radius));
+        ms_json_object_set(&json, "radius", json_real(stop->radius));
     }
     return json;
 }
@@ -57,8 +58,8 @@ json_t *ms_record_json(const ms_generator *generator, const ms_settings *setting
                              "stopped_by", ms_stop_name(r->reason), "input", ms_report_input_json(input), "scores",
                              ms_report_metrics_json(&r->metrics), "seconds", seconds, "threads", omp_get_max_threads(),
                              "peak_memory_kb", (json_int_t)usage.ru_maxrss);
-    if (json && r->mass.corrected) {
-        json_object_set_new(json, "masses", ms_mass_json(&r->mass));
+    if (r->mass.corrected) {
+        ms_json_object_set(&json, "masses", ms_mass_json(&r->mass));
     }
     return json;
 }

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ms_json_object.h"
+
 /* A largest distance, with its root mean square, which is the row behind it; nothing where it does not apply. */
 static void print_distance(FILE *stream, const ms_measure *measure, const ms_metrics *m, double h)
 {
@@ -145,11 +147,11 @@ json_t *ms_report_input_json(const ms_input *input)
                              checksum, "rule", input->target.rule == MS_VOXEL_HALF ? "half" : "centre", "grid",
                              grid->n[0], grid->n[1], grid->n[2], "voxel_size", grid->h, "grid_origin",
                              pack_vector(grid->origin), "voxels", (json_int_t)input->target.voxels);
-    if (input->mesh.n_triangles && json) {
-        json_object_set_new(json, "triangles", json_integer((json_int_t)input->mesh.n_triangles));
-        json_object_set_new(json, "closed", json_boolean(input->report.closed));
-    } else if (json) {
-        json_object_set_new(json, "label", input->label ? json_integer(input->label) : json_null());
+    if (input->mesh.n_triangles) {
+        ms_json_object_set(&json, "triangles", json_integer((json_int_t)input->mesh.n_triangles));
+        ms_json_object_set(&json, "closed", json_boolean(input->report.closed));
+    } else {
+        ms_json_object_set(&json, "label", input->label ? json_integer(input->label) : json_null());
     }
     return json;
 }

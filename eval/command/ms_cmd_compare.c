@@ -164,8 +164,8 @@ static int run_compare(const ms_command *command, int argc, char **argv)
     if (code == MS_FLAGS_GO_ON) {
         a.comparison.shape = argv + first;
         a.comparison.n_shapes = (size_t)(argc - first);
-        code = resolve_compare(&a.comparison, &err) == MS_OK ? execute_compare(command, &a)
-                                                             : ms_flags_wrong_usage(command, err.text);
+        const ms_status status = resolve_compare(&a.comparison, &err);
+        code = status == MS_OK ? execute_compare(command, &a) : ms_flags_refuse(command, status, &err);
     }
     ms_compare_methods_free(&a.comparison.methods);
     return code;

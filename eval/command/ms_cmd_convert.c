@@ -111,8 +111,9 @@ static int run_convert(const ms_command *command, int argc, char **argv)
         return ms_flags_wrong_usage(command, "takes one clump file");
     }
     a.clump = argv[first];
-    if (resolve_convert(&a, &err) != MS_OK) {
-        code = ms_flags_wrong_usage(command, err.text);
+    const ms_status status = resolve_convert(&a, &err);
+    if (status != MS_OK) {
+        code = ms_flags_refuse(command, status, &err);
     } else {
         code = execute_convert(&a, &err) == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
     }

@@ -309,8 +309,8 @@ static int run_generate(const ms_command *command, int argc, char **argv)
         return ms_flags_wrong_usage(command, "takes one shape");
     }
     a.shape = argv[first];
-    code =
-        resolve_generate(&a, &err) == MS_OK ? execute_generate(command, &a) : ms_flags_wrong_usage(command, err.text);
+    const ms_status status = resolve_generate(&a, &err);
+    code = status == MS_OK ? execute_generate(command, &a) : ms_flags_refuse(command, status, &err);
     ms_outputs_free(&a.outputs);
     ms_recipe_free(&a.recipe);
     return code;

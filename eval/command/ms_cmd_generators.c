@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/ms_json_object.h"
 #include "cli/ms_report.h"
 #include "ms_commands.h"
 #include "ms_generator.h"
@@ -39,8 +40,8 @@ static int run_generators(const ms_command *command, int argc, char **argv)
     json_t *list = json ? json_array() : NULL;
     for (const ms_generator *const *g = ms_generators; *g; g++) {
         if (json) {
-            json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:b}", "name", (*g)->name, "summary", (*g)->summary,
-                                                  "source", (*g)->source, "nested", (*g)->nested));
+            ms_json_object_append(&list, json_pack("{s:s,s:s,s:s,s:b}", "name", (*g)->name, "summary", (*g)->summary,
+                                                   "source", (*g)->source, "nested", (*g)->nested));
         } else {
             printf("%-12s %s\n%-12s %s\n", (*g)->name, (*g)->summary, "", (*g)->source);
         }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/ms_input.h"
+#include "cli/ms_json_object.h"
 #include "cli/ms_report.h"
 #include "ms_commands.h"
 
@@ -145,15 +146,13 @@ static json_t *facts_json(const info_facts *f)
         (json_int_t)r->bodies, "cavities", (json_int_t)r->cavities, "turned", (json_int_t)r->flipped,
         "dropped_degenerate", (json_int_t)r->dropped_degenerate, "dropped_duplicate", (json_int_t)r->dropped_duplicate);
     if (f->input->mesh.n_triangles) {
-        json_object_update(json, mesh);
+        ms_json_object_merge(&json, mesh);
     } else {
-        json_object_set_new(json, "voxels", json_integer((json_int_t)f->input->target.voxels));
+        ms_json_object_set(&json, "voxels", json_integer((json_int_t)f->input->target.voxels));
+        json_decref(mesh);
     }
-    json_decref(mesh);
     if (f->has_body) {
-        json_t *body = ms_report_body_json(&f->body, &f->principal);
-        json_object_update(json, body);
-        json_decref(body);
+        ms_json_object_merge(&json, ms_report_body_json(&f->body, &f->principal));
     }
     return json;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/ms_file.h"
+#include "cli/ms_json_object.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_record.h"
 #include "cli/ms_report.h"
@@ -212,8 +213,8 @@ static ms_status plan_outputs(ms_outputs *outputs, const scene_arguments *a, con
 static char *record_of(const scene_arguments *a, const ms_scene_shape *shape)
 {
     json_t *json = ms_scene_record_json(&a->recipe, (size_t)a->max_spheres, a->min_radius);
-    json_object_set_new(json, "scores", ms_scene_scores_json(shape));
-    json_object_set(json, "input", shape->input);
+    ms_json_object_set(&json, "scores", ms_scene_scores_json(shape));
+    ms_json_object_set(&json, "input", json_incref(shape->input));
     char *record = json ? json_dumps(json, JSON_COMPACT) : NULL;
     json_decref(json);
     return record;
@@ -241,7 +242,7 @@ static ms_status report_scene(const scene_arguments *a, const ms_scene *scene, m
         return MS_OK;
     }
     json_t *json = ms_scene_record_json(&a->recipe, (size_t)a->max_spheres, a->min_radius);
-    ms_scene_add_json(json, scene, &a->goal);
+    ms_scene_add_json(&json, scene, &a->goal);
     return ms_report_print(stdout, json, err);
 }
 
@@ -327,8 +328,8 @@ static int run_scene(const ms_command *command, int argc, char **argv)
     }
     a.source = argv[first];
     a.format = a.format ? a.format : ms_write_format_find("csv", &err);
-    code = ms_recipe_resolve(&a.recipe, &err) == MS_OK ? read_and_work(command, &a)
-                                                       : ms_flags_wrong_usage(command, err.text);
+    const ms_status status = ms_recipe_resolve(&a.recipe, &err);
+    code = status == MS_OK ? read_and_work(command, &a) : ms_flags_refuse(command, status, &err);
     ms_recipe_free(&a.recipe);
     return code;
 }

@@ -317,8 +317,8 @@ static int run_stability(const ms_command *command, int argc, char **argv)
     if (code == MS_FLAGS_GO_ON) {
         a.shape = argv + first;
         a.n_shapes = argc - first;
-        code = resolve_stability(&a, &err) == MS_OK ? execute_stability(command, &a)
-                                                    : ms_flags_wrong_usage(command, err.text);
+        const ms_status status = resolve_stability(&a, &err);
+        code = status == MS_OK ? execute_stability(command, &a) : ms_flags_refuse(command, status, &err);
     }
     ms_compare_methods_free(&a.methods);
     return code;

@@ -5,13 +5,17 @@
 
 #include "base/ms_text.h"
 
-#define COLUMN_NAME(code, name) [MS_COLUMN_##code] = name,
+#define COLUMN_NAME(code, name) [MS_COLUMN_##code] = (name),
 static const char *const NAMES[] = {MS_COLUMN_LIST_BEFORE(COLUMN_NAME) MS_COLUMN_LIST_BEHIND(COLUMN_NAME)};
 #undef COLUMN_NAME
 
 static const char *name_column(int column)
 {
-    return NAMES[column] ? NAMES[column] : ms_measures[column - MS_COLUMN_MEASURES].in_compare;
+    if (NAMES[column]) {
+        return NAMES[column];
+    }
+    const ms_measure *measure = &ms_measures[column - MS_COLUMN_MEASURES];
+    return ms_measure_column(measure, measure->in_compare);
 }
 
 ms_compare_row ms_compare_empty(void)

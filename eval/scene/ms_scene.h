@@ -91,7 +91,7 @@ json_t *ms_scene_record_json(const ms_recipe *recipe, size_t max_spheres, double
 json_t *ms_scene_scores_json(const ms_scene_shape *shape);
 
 /** Adds what ms_scene_print says, and the curves, to an object. */
-void ms_scene_add_json(json_t *json, const ms_scene *scene, const ms_goal *goal);
+void ms_scene_add_json(json_t **json, const ms_scene *scene, const ms_goal *goal);
 
 void ms_scene_free(ms_scene *scene);
 

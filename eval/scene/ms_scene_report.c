@@ -1,6 +1,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/ms_json_object.h"
 #include "cli/ms_record.h"
 #include "cli/ms_report.h"
 #include "ms_scene.h"
@@ -95,8 +96,8 @@ static json_t *goal_json(const ms_goal *goal)
                                         [MS_GOAL_KNEE] = "knee",
                                         [MS_GOAL_TOLERANCE] = "tolerance"};
     json_t *json = json_pack("{s:o}", NAMES[goal->kind], ms_report_number(goal->value));
-    if (json && goal->kind == MS_GOAL_TOLERANCE) {
-        json_object_set_new(json, "measure", json_string(goal->measure->name));
+    if (goal->kind == MS_GOAL_TOLERANCE) {
+        ms_json_object_set(&json, "measure", json_string(goal->measure->name));
     }
     return json;
 }
@@ -105,7 +106,7 @@ static json_t *shape_json(const ms_scene_shape *shape)
 {
     json_t *curve = json_array();
     for (size_t n = 0; n < shape->most; n++) {
-        json_array_append_new(curve, json_real(shape->dice[n]));
+        ms_json_object_append(&curve, json_real(shape->dice[n]));
     }
     return json_pack("{s:I,s:o,s:o,s:f,s:o,s:O,s:o}", "particles", (json_int_t)shape->row->particles, "tolerance",
                      ms_report_number(shape->row->tolerance), "gain", ms_report_number(ms_scene_gain(shape)),
@@ -113,26 +114,26 @@ static json_t *shape_json(const ms_scene_shape *shape)
                      ms_scene_scores_json(shape), "input", shape->input, "curve", curve);
 }
 
-void ms_scene_add_json(json_t *json, const ms_scene *scene, const ms_goal *goal)
+void ms_scene_add_json(json_t **json, const ms_scene *scene, const ms_goal *goal)
 {
     const ms_allocation *sum = &scene->sum, *even = &scene->even;
     const ms_scene_shape *smallest = ms_scene_smallest(scene);
     const int together = goal->kind == MS_GOAL_BUDGET || goal->kind == MS_GOAL_MEAN;
     json_t *shapes = json_array();
     for (size_t s = 0; s < scene->count; s++) {
-        json_array_append_new(shapes, shape_json(&scene->shape[s]));
+        ms_json_object_append(&shapes, shape_json(&scene->shape[s]));
     }
-    json_object_set_new(json, "goal", goal_json(goal));
-    json_object_set_new(json, "particles", json_integer((json_int_t)sum->particles));
-    json_object_set_new(json, "spheres", json_integer((json_int_t)sum->spheres));
-    json_object_set_new(json, "mean_dice", json_real(sum->error));
-    json_object_set_new(json, "least_gain", json_real(scene->least_gain));
-    json_object_set_new(json, "slack", together ? json_real(sum->slack) : json_null());
-    json_object_set_new(json, "even",
-                        json_pack("{s:I,s:I,s:f}", "each", (json_int_t)scene->even_each, "spheres",
-                                  (json_int_t)even->spheres, "mean_dice", even->error));
-    json_object_set_new(json, "smallest",
-                        json_pack("{s:f,s:o}", "radius", ms_clump_smallest_radius(ms_scene_clump(smallest)), "shape",
-                                  ms_report_text(smallest->row->path)));
-    json_object_set_new(json, "shapes", shapes);
+    ms_json_object_set(json, "goal", goal_json(goal));
+    ms_json_object_set(json, "particles", json_integer((json_int_t)sum->particles));
+    ms_json_object_set(json, "spheres", json_integer((json_int_t)sum->spheres));
+    ms_json_object_set(json, "mean_dice", json_real(sum->error));
+    ms_json_object_set(json, "least_gain", json_real(scene->least_gain));
+    ms_json_object_set(json, "slack", together ? json_real(sum->slack) : json_null());
+    ms_json_object_set(json, "even",
+                       json_pack("{s:I,s:I,s:f}", "each", (json_int_t)scene->even_each, "spheres",
+                                 (json_int_t)even->spheres, "mean_dice", even->error));
+    ms_json_object_set(json, "smallest",
+                       json_pack("{s:f,s:o}", "radius", ms_clump_smallest_radius(ms_scene_clump(smallest)), "shape",
+                                 ms_report_text(smallest->row->path)));
+    ms_json_object_set(json, "shapes", shapes);
 }

@@ -37,7 +37,7 @@ ms_status ms_perturb_motion_random_turn(ms_motion *motion, uint64_t seed, ms_err
 /** Moves the vertices. */
 void ms_perturb_motion_apply(ms_mesh *mesh, const ms_motion *motion);
 
-/** Moves the centres of the spheres back: what ms_perturb_motion_apply did is undone, exactly where turn and sums are exact. */
+/** Moves the centres of the spheres back, undoing ms_perturb_motion_apply: exactly where turn and sums are exact. */
 void ms_perturb_motion_undo(ms_clump *clump, const ms_motion *motion);
 
 /** A copy of its own. @param[out] out the caller frees it; empty on failure @return MS_OK; MS_ERR_ARG; MS_ERR_NOMEM */

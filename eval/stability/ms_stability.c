@@ -169,7 +169,7 @@ void ms_stability_header(FILE *stream)
     fputs("shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,status,n,stopped_by",
           stream);
     for (size_t m = 0; m < count; m++) {
-        fprintf(stream, ",%s", listed[m]->in_stability);
+        fprintf(stream, ",%s", ms_measure_column(listed[m], listed[m]->in_stability));
     }
     fputs(",n_until,seconds,spheres_fnv1a,cause\n", stream);
 }

@@ -5,8 +5,8 @@
 #include "ms_stability.h"
 
 /**
- * For each method, numbered as in the runs: NUMBER-METHOD-all, D of the changed shape over D of the unchanged one, and of
- * each change that has an axis NUMBER-METHOD-KIND, the ratio of the two over the level, a line for each shape. A
+ * For each method, numbered as in the runs: NUMBER-METHOD-all, D of the changed shape over D of the unchanged one, and
+ * of each change that has an axis NUMBER-METHOD-KIND, the ratio of the two over the level, a line for each shape. A
  * chart without points is left out.
  *
  * @param folder exists

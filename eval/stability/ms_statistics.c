@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/ms_json_object.h"
 #include "cli/ms_report.h"
 
 ms_statistics ms_statistics_of(double *values, size_t count)
@@ -221,8 +222,8 @@ static json_t *group_json(const ms_statistics_group *g)
 json_t *ms_statistics_json(const ms_statistics_group *groups, size_t count)
 {
     json_t *json = json_array();
-    for (size_t g = 0; g < count && json; g++) {
-        json_array_append_new(json, group_json(&groups[g]));
+    for (size_t g = 0; g < count; g++) {
+        ms_json_object_append(&json, group_json(&groups[g]));
     }
     return json;
 }

@@ -9,11 +9,13 @@
 #define MS_POWER_ROUND 6755399441055744.0
 
 /**
- * x to the power p, to 1e-8 of itself; where that is below 2^-1000, this. Exact for x = 1. Arithmetic alone, without a branch
- * or a call, and hence the same bits from every compiler.
+ * x to the power p, to 1e-8 of itself; where that is below 2^-1000, this. Exact for x = 1. Arithmetic alone, without a
+ * branch or a call, and hence the same bits from every compiler.
  *
  * @param x above 1e-300, at most 1
  * @param p at least 0
+ *
+ * Why not pow(): 8 to 11 ns each by this and 16 to 22 by glibc's pow, 4096 at a time; and libms differ in bits.
  *
  * Logarithm by the series of artanh, exponential by that of Taylor.
  */

@@ -54,6 +54,8 @@ struct ms_cover {
     size_t n_heap, n_entries;
 };
 
+/* Not __builtin_popcountll, which gcc turns into a call for a plain x86-64: 2.7 ns by it, 1.1 to 1.6 by this;
+ * clang: both 0.7 to 1.0. */
 static inline size_t popcount(uint64_t x)
 {
     x -= x >> 1 & 0x5555555555555555u;

@@ -1,4 +1,4 @@
-/** Cholesky for the four unknowns of a sphere. Private to variational. */
+/** Cholesky for the four unknowns of a sphere. Private to variational. By hand: 21 to 26 ns, GSL's takes 192 to 261. */
 #ifndef MS_CHOLESKY_H
 #define MS_CHOLESKY_H
 

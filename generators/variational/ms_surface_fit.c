@@ -8,19 +8,23 @@
 #include "ms_cholesky.h"
 #include "ms_lattice.h"
 
-/* Ridge added to the normal equations, as part of the sum of weights. */
+/* D below: femur with 70 spheres and bunny with 30, 60 cells, mean of two seeds; 0.0210 and 0.0409 as they are. */
+
+/* Ridge added to the normal equations, as part of the sum of weights. 1e-5: 0.0213, 0.0409; 1e-2: 0.0209, 0.0407. */
 static const double RIDGE = 1e-3;
 
-/* No step is longer than this part of the radius. */
+/* No step is longer than this part of the radius. 0.1: 0.0209, 0.0409; 1: 0.0209, 0.0409: not sensitive. */
 static const double LONGEST_STEP = 0.25;
 
-/* Part of the last step that is made again: chains of spheres settle sooner. */
+/* Part of the last step that is made again: chains of spheres settle sooner. 0: 0.0208, 0.0408; 0.8: 0.0210, 0.0408: no
+ * gain was seen on these two. */
 static const double MOMENTUM = 0.5;
 
-/* Weight of places that stick out farther than is allowed. */
+/* Weight of places that stick out farther than is allowed. Inscribed, as is 0.0518, 0.0830; 1: 0.0544, 0.0886; 30:
+ * 0.0512, 0.0837. */
 static const double STIFF = 1000;
 
-/* Distances below this, in voxels, weigh the same. */
+/* Distances below this, in voxels, weigh the same. 0.05: 0.0208, 0.0408; 1: 0.0216, 0.0412. */
 static const double NEAR = 0.25;
 
 /* The steps that the spheres want to make. */

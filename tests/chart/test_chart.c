@@ -53,7 +53,7 @@ static void pareto_against_brute_force(void **state)
 static void pareto_without_numbers(void **state)
 {
     (void)state;
-    const ms_chart_point point[] = {{NAN, 0, ""}, {2.385, 1.7, "a"}, {0, HUGE_VAL, ""}, {-HUGE_VAL, 0, ""}};
+    const ms_chart_point point[] = {{(double)NAN, 0, ""}, {2.385, 1.7, "a"}, {0, HUGE_VAL, ""}, {-HUGE_VAL, 0, ""}};
     ms_chart_point front[4];
     assert_int_equal(ms_chart_pareto(front, point, 4), 1);
     assert_string_equal(front[0].label, "a");
@@ -79,7 +79,7 @@ static void what_the_files_hold(void **state)
     (void)state;
     char text[8192];
     ms_error err;
-    const ms_chart_point first[] = {{1, 0, "a"}, {10, 0.25, "i\"t"}, {0, 0.5, "gone"}, {NAN, 1, "gone"}};
+    const ms_chart_point first[] = {{1, 0, "a"}, {10, 0.25, "i\"t"}, {0, 0.5, "gone"}, {(double)NAN, 1, "gone"}};
     const ms_chart_point none[] = {{-1, 1, "gone"}};
     const ms_chart_series series[] = {{"nothing", MS_CHART_CURVE, 1, none}, {"o'ne\n", MS_CHART_CURVE, 4, first}};
     const ms_chart chart = {.title = "t",

@@ -14,7 +14,8 @@ static void rows_are_complete(void **state)
     int count = 0;
     for (const ms_measure *m = ms_measures; m->name; m++, count++) {
         assert_true(m->name[0] && m->label[0] && m->source[0] && strlen(m->help) > 2);
-        assert_true(m->in_compare[0] && m->in_stability[0] && m->of_metrics);
+        assert_true(ms_measure_column(m, m->in_compare)[0] && ms_measure_column(m, m->in_stability)[0] &&
+                    m->of_metrics);
         assert_int_equal(ms_measure_is_of_score(m),
                          m->kind == MS_MEASURE_KIND_GOAL || m->kind == MS_MEASURE_KIND_UNION);
         assert_true(!m->curve || ms_measure_is_of_score(m)); /* a curve is made of scores */

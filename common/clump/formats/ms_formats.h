@@ -1,4 +1,4 @@
-/** The readers and writers that stand in the table of formats (ms_write.c), a file for each engine. Private to the table;
+/** Readers and writers in the table of formats (ms_write.c), a file for each engine. Private to the table;
  * tests and fuzzers read from memory with them. */
 #ifndef MS_FORMATS_H
 #define MS_FORMATS_H

@@ -1,5 +1,5 @@
-/** What the scripts share that load a template and drop it on a plane: a start for the user's own, run by the tests of the
- * engines. Private to the writers of formats. */
+/** What the scripts share that load a template and drop it on a plane: a start for the user's own, run by the tests of
+ * the engines. Private to the writers of formats. */
 #ifndef MS_SCRIPT_H
 #define MS_SCRIPT_H
 
