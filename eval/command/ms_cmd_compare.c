@@ -83,10 +83,10 @@ static ms_status take_compare_flag(void *context, const char *name, const char *
         return status;
     }
     if (strcmp(name, "generator") == 0) {
-        return ms_compare_methods_add(&c->methods, value, err);
+        return ms_methods_add(&c->methods, value, err);
     }
     if (strcmp(name, "clump") == 0) {
-        return ms_compare_methods_add_clump(&c->methods, value, err);
+        return ms_methods_add_clump(&c->methods, value, err);
     }
     if (strcmp(name, "spheres") == 0) {
         return take_numbers(&c->asked, name, value, MS_CLUMP_MAX_SPHERES, err);
@@ -145,10 +145,10 @@ static ms_status resolve_compare(ms_comparison *c, ms_error *err)
     if (c->cells.count == 0) {
         insert_number(&c->cells, 100);
     }
-    if (ms_compare_methods_clumps(&c->methods) > 0 && c->n_shapes > 1) {
+    if (ms_methods_clumps(&c->methods) > 0 && c->n_shapes > 1) {
         return ms_fail(err, MS_ERR_ARG, "--clump belongs to one shape; compare the others by themselves");
     }
-    return ms_compare_methods_check(&c->methods, err);
+    return ms_methods_check(&c->methods, err);
 }
 
 static int run_compare(const ms_command *command, int argc, char **argv)
@@ -167,7 +167,7 @@ static int run_compare(const ms_command *command, int argc, char **argv)
         const ms_status status = resolve_compare(&a.comparison, &err);
         code = status == MS_OK ? execute_compare(command, &a) : ms_flags_refuse(command, status, &err);
     }
-    ms_compare_methods_free(&a.comparison.methods);
+    ms_methods_free(&a.comparison.methods);
     return code;
 }
 

@@ -6,9 +6,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cli/ms_methods.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_report.h"
-#include "compare/ms_compare_methods.h"
 #include "ms_commands.h"
 #include "stability/ms_hard_shapes.h"
 #include "stability/ms_stability.h"
@@ -69,7 +69,7 @@ static ms_status take_stability_flag(void *context, const char *name, const char
         return status;
     }
     if (strcmp(name, "generator") == 0) {
-        return ms_compare_methods_add(&a->methods, value, err);
+        return ms_methods_add(&a->methods, value, err);
     }
     if (strcmp(name, "spheres") == 0) {
         return ms_flags_whole(&a->spheres, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
@@ -104,7 +104,7 @@ static ms_status resolve_stability(stability_arguments *a, ms_error *err)
     for (int c = 0; ms_changes[c].name; c++) {
         a->wanted[c] |= !any || c == 0;
     }
-    ms_status status = ms_compare_methods_check(&a->methods, err);
+    ms_status status = ms_methods_check(&a->methods, err);
     for (size_t m = 0; m < a->methods.count && status == MS_OK; m++) {
         const ms_settings *settings = &a->methods.method[m].settings;
         if (settings->n_planes || settings->clump.n_spheres) {
@@ -320,7 +320,7 @@ static int run_stability(const ms_command *command, int argc, char **argv)
         const ms_status status = resolve_stability(&a, &err);
         code = status == MS_OK ? execute_stability(command, &a) : ms_flags_refuse(command, status, &err);
     }
-    ms_compare_methods_free(&a.methods);
+    ms_methods_free(&a.methods);
     return code;
 }
 

@@ -2,7 +2,7 @@
 #ifndef MS_COMPARE_SHEET_H
 #define MS_COMPARE_SHEET_H
 
-#include "ms_compare_methods.h"
+#include "cli/ms_methods.h"
 #include "voxel/ms_target.h"
 
 /** What is on a sheet; all borrowed. */

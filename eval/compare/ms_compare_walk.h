@@ -4,7 +4,7 @@
 
 #include "chart/ms_csv.h"
 #include "cli/ms_input.h"
-#include "ms_compare_methods.h"
+#include "cli/ms_methods.h"
 
 enum { MS_NUMBERS_MAX = 256 };
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "cli/ms_input.h"
-#include "compare/ms_compare_methods.h"
+#include "cli/ms_methods.h"
 #include "measure/ms_metrics.h"
 #include "ms_change.h"
 

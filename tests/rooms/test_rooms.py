@@ -50,15 +50,11 @@ ROOMS = {
                      "common/mesh/formats", "common/shape", "common/voxel", "generators", "generators/table",
                      "eval/chart", "eval/cli", "eval/compare", "eval/scene", "eval/stability"],
     "eval/compare": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
-                     "common/voxel", "generators", "generators/table", "eval/chart", "eval/cli"],
+                     "common/voxel", "generators", "eval/chart", "eval/cli"],
     "eval/scene": ["common/base", "common/clump", "common/measure", "generators", "eval/cli"],
     "eval/stability": ["common/base", "common/clump", "common/measure", "common/mesh", "common/shape", "common/voxel",
-                       "generators", "eval/chart", "eval/cli", "eval/compare"],
+                       "generators", "eval/chart", "eval/cli"],
 }
-
-# The same names in more than one file. A command's file is a program of its own, with words that all of them use.
-SAME_TYPES = {"arguments"}
-SAME_FUNCTIONS = {"accept"}
 
 
 def room_of(path):
@@ -201,9 +197,9 @@ class Rooms(unittest.TestCase):
             if floor_of(path) != "eval":
                 for name in re.findall(r"^static (?!const)[\w *]*?\b(\w+)\([^;{}]*\)\s*\{", code, re.M):
                     functions.setdefault(name, []).append(path)
-        for names, allowed in ((types, SAME_TYPES), (functions, SAME_FUNCTIONS)):
+        for names in (types, functions):
             self.assertGreater(len(names), 50)
-            self.assertEqual({name: paths for name, paths in names.items() if len(paths) > 1 and name not in allowed}, {})
+            self.assertEqual({name: paths for name, paths in names.items() if len(paths) > 1}, {})
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-#include "ms_compare_methods.h"
+#include "ms_methods.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -67,7 +67,7 @@ static ms_status set_options(ms_method *m, ms_error *err)
     return status;
 }
 
-ms_status ms_compare_methods_add(ms_methods *methods, const char *text, ms_error *err)
+ms_status ms_methods_add(ms_methods *methods, const char *text, ms_error *err)
 {
     ms_method *m = NULL;
     const size_t length = strcspn(text, ":");
@@ -79,7 +79,7 @@ ms_status ms_compare_methods_add(ms_methods *methods, const char *text, ms_error
     return status == MS_OK ? set_options(m, err) : status;
 }
 
-ms_status ms_compare_methods_add_clump(ms_methods *methods, const char *text, ms_error *err)
+ms_status ms_methods_add_clump(ms_methods *methods, const char *text, ms_error *err)
 {
     ms_method *m = NULL;
     ms_particle unused;
@@ -91,16 +91,16 @@ ms_status ms_compare_methods_add_clump(ms_methods *methods, const char *text, ms
     return status == MS_OK ? ms_read_clump(&m->clump, &unused, m->options, err) : status;
 }
 
-ms_status ms_compare_methods_add_all(ms_methods *methods, ms_error *err)
+ms_status ms_methods_add_all(ms_methods *methods, ms_error *err)
 {
     ms_status status = MS_OK;
     for (const ms_generator *const *g = ms_generators; *g && status == MS_OK; g++) {
-        status = ms_compare_methods_add(methods, (*g)->name, err);
+        status = ms_methods_add(methods, (*g)->name, err);
     }
     return status;
 }
 
-size_t ms_compare_methods_clumps(const ms_methods *methods)
+size_t ms_methods_clumps(const ms_methods *methods)
 {
     size_t found = 0;
     for (size_t m = 0; m < methods->count; m++) {
@@ -109,11 +109,11 @@ size_t ms_compare_methods_clumps(const ms_methods *methods)
     return found;
 }
 
-ms_status ms_compare_methods_check(ms_methods *methods, ms_error *err)
+ms_status ms_methods_check(ms_methods *methods, ms_error *err)
 {
     ms_status status = MS_OK;
-    if (methods->count == ms_compare_methods_clumps(methods)) {
-        status = ms_compare_methods_add_all(methods, err);
+    if (methods->count == ms_methods_clumps(methods)) {
+        status = ms_methods_add_all(methods, err);
     }
     for (size_t m = 0; m < methods->count && status == MS_OK; m++) {
         for (size_t k = 0; k < m && status == MS_OK; k++) {
@@ -127,7 +127,7 @@ ms_status ms_compare_methods_check(ms_methods *methods, ms_error *err)
     return status;
 }
 
-void ms_compare_methods_free(ms_methods *methods)
+void ms_methods_free(ms_methods *methods)
 {
     for (size_t m = 0; m < methods->count; m++) {
         free(methods->method[m].name);

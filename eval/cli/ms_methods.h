@@ -1,6 +1,6 @@
 /** The methods that a research command is given: generators with options, and clumps of other tools. */
-#ifndef MS_COMPARE_METHODS_H
-#define MS_COMPARE_METHODS_H
+#ifndef MS_METHODS_H
+#define MS_METHODS_H
 
 #include "ms_generator.h"
 
@@ -26,20 +26,20 @@ typedef struct ms_methods {
  * the value, as in plane=0,0,1,0.
  * @return MS_OK; MS_ERR_ARG; MS_ERR_LIMIT; MS_ERR_NOMEM; as ms_option_settings_set
  */
-ms_status ms_compare_methods_add(ms_methods *methods, const char *text, ms_error *err);
+ms_status ms_methods_add(ms_methods *methods, const char *text, ms_error *err);
 
 /** Adds a clump from "NAME=FILE", which is read at once. @return MS_OK; MS_ERR_ARG; as ms_read_clump */
-ms_status ms_compare_methods_add_clump(ms_methods *methods, const char *text, ms_error *err);
+ms_status ms_methods_add_clump(ms_methods *methods, const char *text, ms_error *err);
 
 /** Adds every generator, by default options. */
-ms_status ms_compare_methods_add_all(ms_methods *methods, ms_error *err);
+ms_status ms_methods_add_all(ms_methods *methods, ms_error *err);
 
 /** Does each stand there once? Adds every generator if there is none yet. @return MS_OK; MS_ERR_ARG */
-ms_status ms_compare_methods_check(ms_methods *methods, ms_error *err);
+ms_status ms_methods_check(ms_methods *methods, ms_error *err);
 
 /** Number of clumps among them. */
-size_t ms_compare_methods_clumps(const ms_methods *methods);
+size_t ms_methods_clumps(const ms_methods *methods);
 
-void ms_compare_methods_free(ms_methods *methods);
+void ms_methods_free(ms_methods *methods);
 
 #endif
