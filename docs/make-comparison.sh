@@ -10,7 +10,6 @@ set -eu
 here="$(cd "$(dirname "$0")" && pwd)"
 MSKIT="${MSKIT:-$here/../build/eval/mskit}"
 OUT="${OUT:-comparison}"
-export OMP_WAIT_POLICY="${OMP_WAIT_POLICY:-passive}"
 mkdir -p "$OUT"
 if [ $# -eq 0 ]; then
     shapes="$OUT/shapes"

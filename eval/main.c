@@ -1,12 +1,14 @@
 /* mskit: which command. */
 #include <fcntl.h>
 #include <gsl/gsl_errno.h>
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/ms_version.h"
+#include "cli/ms_input.h"
 #include "command/ms_commands.h"
 
 static const ms_command *const COMMANDS[] = {
@@ -67,19 +69,43 @@ static void occupy_streams(void)
     }
 }
 
-#ifdef __linux__
-/* Threads that spin while they wait lose when others want the cores, too: ten times the time where two runs share
- * them. OpenMP reads its policy when it is loaded, before main, and what is listed here runs before that. */
-static void wait_passively(void)
+/*
+ * Threads that spin while they wait lose where others want the cores, too: two runs side by side took 30 times as long.
+ * OpenMP reads its policy when it is loaded, before any code of ours, so the program starts itself once more with the
+ * policy set. Where that fails it goes on as it is.
+ */
+static void wait_passively(char **argv)
 {
-    setenv("OMP_WAIT_POLICY", "passive", 0);
+    char program[4096];
+    if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) {
+        return;
+    }
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1); /* by its name, for ps and kill */
+    if (length > 0 && setenv("OMP_WAIT_POLICY", "passive", 1) == 0) {
+        program[length] = '\0';
+        execv(program, argv);
+    }
 }
-__attribute__((section(".preinit_array"), used)) static void (*const before_openmp)(void) = wait_passively;
-#endif
+
+/* The bound of --threads holds for the environment, too: more have no stack to run on. */
+static int check_threads(void)
+{
+    if (omp_get_max_threads() <= MS_INPUT_MAX_THREADS) {
+        return 1;
+    }
+    if (getenv("OMP_NUM_THREADS")) {
+        fprintf(stderr, "mskit: OMP_NUM_THREADS asks for %d threads; set it to a number from 1 to %d\n",
+                omp_get_max_threads(), MS_INPUT_MAX_THREADS);
+        return 0;
+    }
+    omp_set_num_threads(MS_INPUT_MAX_THREADS); /* a machine of more cores */
+    return 1;
+}
 
 int main(int argc, char **argv)
 {
     int code = EXIT_DONE;
+    wait_passively(argv);
     gsl_set_error_handler_off(); /* its default is to abort */
     occupy_streams();
     if (argc < 2) {
@@ -91,7 +117,7 @@ int main(int argc, char **argv)
     } else if (strcmp(argv[1], "--version") == 0) {
         puts("mskit " MS_VERSION);
     } else {
-        code = run_command(argc, argv);
+        code = check_threads() ? run_command(argc, argv) : EXIT_USAGE;
     }
     if ((fflush(stdout) != 0 || ferror(stdout)) && code == EXIT_DONE) {
         fputs("mskit: standard output cannot be written\n", stderr);

@@ -26,8 +26,10 @@ void ms_voxelize_extents(double n[3], const ms_mesh *mesh, double h)
     double lo[3], hi[3];
     ms_mesh_box(lo, hi, mesh);
     for (int a = 0; a < 3; a++) {
-        /* A side that is a whole number of voxels but for rounding gets just that number. */
-        n[a] = fmax(1, ceil((hi[a] - lo[a]) / h - 1e-6)) + 2 * MS_GRID_HULL;
+        /* The whole number nearest to the side: with the box in the middle its faces then lie less than a quarter of
+         * a voxel from the faces of voxels. Half a voxel away, where one more would do, a hair would decide whether a
+         * whole layer is inside. A side just between two numbers takes the lower one, whatever its rounding. */
+        n[a] = fmax(1, ceil((hi[a] - lo[a]) / h - 0.5 - 1e-6)) + 2 * MS_GRID_HULL;
     }
 }
 

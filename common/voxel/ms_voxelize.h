@@ -24,7 +24,9 @@ MS_API void ms_voxelize_extents(double n[3], const ms_mesh *mesh, double h);
 
 /**
  * Voxelises a closed mesh. The box of the mesh is centred in the grid, with MS_GRID_HULL
- * layers of background around it (eq. 6), so that a symmetric mesh gives a symmetric grid.
+ * layers of background around it (eq. 6), so that a symmetric mesh gives a symmetric grid. Along
+ * each axis the box takes the whole number of voxels that is nearest to its length: its faces lie
+ * less than a quarter of a voxel from faces of voxels, and rounding cannot add or take a layer.
  *
  * Rays run along x, 4x4 of them through each voxel (one through the centre by the centre
  * rule), and add up what they cover exactly. Coordinates across the rays are rounded to

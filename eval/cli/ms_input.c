@@ -73,7 +73,7 @@ ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, con
         status = ms_flags_whole(&number, name, value, 1, UINT32_MAX, err);
         flags->label = status == MS_OK ? (uint32_t)number : 0;
     } else if (strcmp(name, "threads") == 0) {
-        status = ms_flags_whole(&number, name, value, 1, 1024, err);
+        status = ms_flags_whole(&number, name, value, 1, MS_INPUT_MAX_THREADS, err);
         flags->threads = status == MS_OK ? (int)number : 0;
     } else {
         *taken = 0;

@@ -7,6 +7,8 @@
 #include "volume/ms_volume.h"
 #include "voxel/ms_target.h"
 
+enum { MS_INPUT_MAX_THREADS = 1024 };
+
 /** Flags about the shape and its grid, common to several commands; see MS_INPUT_FLAGS. */
 typedef struct ms_input_flags {
     double cells, deq, voxel_size; /* 0: not given */

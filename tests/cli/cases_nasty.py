@@ -1,5 +1,6 @@
 """Names and environments that break careless programs."""
 import os
+import re
 import stat
 import subprocess
 
@@ -65,6 +66,23 @@ class Environment(Case):
                          env={**os.environ, "OMP_NUM_THREADS": "1"}).json
         self.assertEqual(run["threads"], 1)
         self.assertEqual(self.read("a.csv"), self.read("b.csv"))
+
+    def test_too_many_threads_in_the_environment(self):
+        """The bound of -j; without it the run time ends by a signal."""
+        self.assert_refused("info", "box.obj", code=2, says=("OMP_NUM_THREADS", "1024"),
+                            env={**os.environ, "OMP_NUM_THREADS": "100000"})
+
+    def test_threads_sleep_while_they_wait(self):
+        """As users start it, without OMP_WAIT_POLICY: what the run time says last is how the program runs."""
+        env = {key: value for key, value in os.environ.items() if key not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
+        env["OMP_DISPLAY_ENV"] = "verbose"
+        said = re.findall(r"GOMP_SPINCOUNT = '(\d+)'", self.mskit("--version", env=env).err)
+        if not said:
+            self.skipTest("this OpenMP has no GOMP_SPINCOUNT; libgomp has")
+        self.assertEqual(said[-1], "0")
+        said = re.findall(r"GOMP_SPINCOUNT = '(\d+)'",
+                          self.mskit("--version", env={**env, "OMP_WAIT_POLICY": "active"}).err)
+        self.assertGreater(int(said[-1]), 0, "what the user sets stands")
 
     def test_flags_behind_words_whatever_posix_says(self):
         self.mskit("generate", "box.obj", *RUN, "-o", "b.csv", env={**os.environ, "POSIXLY_CORRECT": "1"})

@@ -42,7 +42,7 @@ ROOMS = {
                          "generators/variational"],
     "generators/variational": ["common/base", "common/clump", "common/mesh", "common/voxel", "generators",
                                "generators/shared"],
-    "eval": ["common/base", "eval/command"],
+    "eval": ["common/base", "eval/cli", "eval/command"],
     "eval/chart": ["common/base", "common/clump", "common/mesh", "common/voxel"],
     "eval/cli": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
                  "common/mesh/formats", "common/volume", "common/voxel", "generators", "generators/table"],

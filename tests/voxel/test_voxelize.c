@@ -127,6 +127,44 @@ static void rounding_adds_no_voxel(void **state)
     ms_mesh_free(&cube);
 }
 
+/* A side that is a hair longer or shorter than a number of voxels must not gain or lose a layer, whatever its axis. */
+static void a_hair_adds_no_layer(void **state)
+{
+    (void)state;
+    static const double hair[] = {1e-5, 1e-6, 3e-3, -1e-6, -1e-5, -3e-3};
+    for (size_t m = 0; m < 3 * sizeof hair / sizeof *hair; m++) {
+        double side[3] = {1, 1, 1};
+        side[m % 3] += hair[m / 3];
+        for (int r = 0; r < 2; r++) {
+            ms_mesh box = cuboid(0, side[0], 0, side[1], 0, side[2]);
+            ms_grid grid = voxels_of(&box, 0.01, both_rules[r]);
+            assert_int_equal(ms_grid_count(&grid), 100 * 100 * 100);
+            expect_hull(&grid);
+            expect_mirrored(&grid);
+            ms_grid_free(&grid);
+            ms_mesh_free(&box);
+        }
+    }
+}
+
+/* However long a side is, the layers are as many as the nearest whole number of voxels. */
+static void layers_are_the_nearest_number(void **state)
+{
+    (void)state;
+    for (int step = 1; step < 40; step++) {
+        const double side = 6 + 0.05 * step + 0.003;
+        for (int axis = 0; axis < 3; axis++) {
+            double hi[3] = {5, 5, 5};
+            hi[axis] = side;
+            ms_mesh box = cuboid(0, hi[0], 0, hi[1], 0, hi[2]);
+            ms_grid grid = voxels_of(&box, 1, MS_VOXEL_HALF);
+            assert_int_equal(ms_grid_count(&grid), 25 * (int)rint(side));
+            ms_grid_free(&grid);
+            ms_mesh_free(&box);
+        }
+    }
+}
+
 static void faces_may_stand_anywhere_in_a_voxel(void **state)
 {
     (void)state;
@@ -313,6 +351,8 @@ int main(void)
         cmocka_unit_test(what_is_thinner_than_half_a_voxel_is_refused),
         cmocka_unit_test(a_cube_of_whole_voxels_is_exact),
         cmocka_unit_test(rounding_adds_no_voxel),
+        cmocka_unit_test(a_hair_adds_no_layer),
+        cmocka_unit_test(layers_are_the_nearest_number),
         cmocka_unit_test(faces_may_stand_anywhere_in_a_voxel),
         cmocka_unit_test(an_octahedron_on_the_lattice_is_exact),
         cmocka_unit_test(a_mesh_snapped_to_the_lattice_stays_symmetric),
