@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ms_grid.h"
+
 /* Strided passes take neighbouring lines together, as many as fill a cache line, so that
  * every byte fetched is used. In the work space they stay interleaved: no transposition. */
 enum { BLOCK = 16 };
@@ -200,7 +202,7 @@ ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms
     const size_t stride = (size_t)n[0] * (size_t)n[1];
     uint32_t *squared = (uint32_t *)(void *)distance;
     int out_of_memory = 0;
-#pragma omp parallel reduction(| : out_of_memory)
+#pragma omp parallel reduction(| : out_of_memory) if (stride * (size_t)n[2] >= MS_GRID_THREADS_FROM)
     {
         lines w = {0};
         const int ready = lines_alloc(&w, (size_t)(n[1] > n[2] ? n[1] : n[2]));

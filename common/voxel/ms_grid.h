@@ -10,6 +10,10 @@
 
 MS_C_BEGIN
 
+/* A pass over fewer voxels is over before a second thread has woken: with two, MSS on 4,000, 13,000, 36,000 and 76,000
+ * voxels takes 2.2, 1.3, 1.1 and 1.1 times as long, a distance transform 2.4, 1.2, 0.9 and 0.9 times. */
+enum { MS_GRID_THREADS_FROM = 1 << 15 };
+
 /* Layers of background around the shape (MSS eq. 6). */
 enum { MS_GRID_HULL = 2 };
 

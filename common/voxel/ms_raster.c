@@ -328,7 +328,7 @@ static ms_status cover_balls(ms_raster *raster, size_t first_new, const neighbou
     }
     omp_lock_t merging;
     omp_init_lock(&merging);
-#pragma omp parallel reduction(| : out_of_memory)
+#pragma omp parallel reduction(| : out_of_memory) if (ms_grid_voxels(raster->grid) >= MS_GRID_THREADS_FROM)
     {
         worker w = {.raster = raster,
                     .from = first_new,

@@ -54,7 +54,7 @@ ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const 
         ms_planes_cut(field->own_e, target, settings);
     }
     field->e = settings->n_planes ? field->own_e : target->distance;
-#pragma omp parallel for reduction(max : deepest)
+#pragma omp parallel for reduction(max : deepest) if (voxels >= MS_GRID_THREADS_FROM)
     for (size_t v = 0; v < voxels; v++) {
         field->star[v] = 2 * field->e[v];
         deepest = field->e[v] > deepest ? field->e[v] : deepest;
@@ -86,7 +86,7 @@ static float union_of(const ms_mss_field *field, float e, float star)
 static void copy_covered(uint8_t *covered, const ms_mss_field *field, const voxel_box *part)
 {
     const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
-#pragma omp parallel for
+#pragma omp parallel for if (plane * (size_t)(part->hi[2] - part->lo[2]) >= MS_GRID_THREADS_FROM)
     for (int k = part->lo[2]; k < part->hi[2]; k++) {
         for (int j = part->lo[1]; j < part->hi[1]; j++) {
             const uint16_t *from = field->raster.first + ms_grid_index(&field->target->grid, part->lo[0], j, k);
@@ -113,7 +113,7 @@ static ms_status update_whole(ms_mss_field *field, ms_error *err)
     ms_status status = ms_distance(field->star, covered, all.hi, err);
     free(covered);
     float deepest = 0;
-#pragma omp parallel for reduction(max : deepest)
+#pragma omp parallel for reduction(max : deepest) if (voxels >= MS_GRID_THREADS_FROM)
     for (size_t v = 0; v < voxels; v++) {
         deepest = field->star[v] > deepest ? field->star[v] : deepest;
         field->star[v] = star_of(field, field->e[v], field->star[v]);
@@ -148,7 +148,8 @@ static voxel_box changed_box(const ms_mss_field *field)
     memcpy(covered.hi, field->raster.hi, sizeof covered.hi);
     const voxel_box reach = box_grow(&covered, (int)ceilf(field->deepest_union) + 1, grid->n);
     changed = covered;
-#pragma omp parallel for schedule(dynamic, 4) reduction(hull : changed)
+#pragma omp parallel for schedule(dynamic, 4) reduction(hull \
+                                                        : changed) if (ms_grid_voxels(grid) >= MS_GRID_THREADS_FROM)
     for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
         for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
             const double dz = find_gap(k, covered.lo[2], covered.hi[2]), dy = find_gap(j, covered.lo[1], covered.hi[1]);
@@ -209,7 +210,8 @@ static int write_star(ms_mss_field *field, const float *distance, const voxel_bo
     const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
     float deepest = field->deepest_union;
     int exact = 1;
-#pragma omp parallel for reduction(& : exact) reduction(max : deepest)
+#pragma omp parallel for reduction(& : exact) reduction(max : deepest) \
+    if (plane * (size_t)(part->hi[2] - part->lo[2]) >= MS_GRID_THREADS_FROM)
     for (int k = changed->lo[2]; k < changed->hi[2]; k++) {
         for (int j = changed->lo[1]; j < changed->hi[1]; j++) {
             const float *from = distance + plane * (size_t)(k - part->lo[2]) + row * (size_t)(j - part->lo[1]);

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "voxel/ms_grid.h"
+
 /* Slopes below this difference are parallel: fields hold roots of whole numbers in float. */
 static const double PARALLEL = 1e-5;
 
@@ -88,13 +90,14 @@ ms_status ms_peaks_find(size_t **voxel, size_t *count, const float *field, const
         to[a] = hi[a] > n[a] - 1 ? n[a] - 1 : hi[a];
     }
     const int planes = to[2] > from[2] ? to[2] - from[2] : 0;
+    const size_t voxels = (size_t)n[0] * (size_t)n[1] * (size_t)planes;
     peak_list *plane = calloc((size_t)planes + 1, sizeof *plane);
     *voxel = NULL;
     *count = 0;
     if (!plane) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %d planes", planes);
     }
-#pragma omp parallel for schedule(dynamic, 4) reduction(& : complete)
+#pragma omp parallel for schedule(dynamic, 4) reduction(& : complete) if (voxels >= MS_GRID_THREADS_FROM)
     for (int k = 0; k < planes; k++) {
         complete &= find_in_plane(&plane[k], field, n, from, to, from[2] + k);
     }

@@ -30,7 +30,7 @@ double ms_planes_beyond(const ms_settings *settings, const double from[3], const
 void ms_planes_cut(float *e, const ms_target *target, const ms_settings *settings)
 {
     const ms_grid *grid = &target->grid;
-#pragma omp parallel for
+#pragma omp parallel for if (ms_grid_voxels(grid) >= MS_GRID_THREADS_FROM)
     for (int k = 0; k < grid->n[2]; k++) {
         for (int j = 0; j < grid->n[1]; j++) {
             const size_t start = ms_grid_index(grid, 0, j, k);
