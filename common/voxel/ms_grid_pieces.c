@@ -64,7 +64,7 @@ static ms_status add_span(span_list *list, int from, int to, ms_error *err)
     return MS_OK;
 }
 
-static ms_status add_row(span_list *list, const uint8_t *inside, int n, ms_error *err)
+static ms_status add_row_spans(span_list *list, const uint8_t *inside, int n, ms_error *err)
 {
     ms_status status = MS_OK;
     for (int i = 0; i < n && status == MS_OK; i++) {
@@ -88,7 +88,7 @@ static ms_status list_spans(span_list *list, const ms_grid *grid, ms_error *err)
     for (size_t row = 0; row < rows && status == MS_OK; row++) {
         const size_t j = row % ny, k = row / ny;
         list->first[row] = list->n;
-        status = add_row(list, grid->inside + (size_t)grid->n[0] * row, grid->n[0], err);
+        status = add_row_spans(list, grid->inside + (size_t)grid->n[0] * row, grid->n[0], err);
         if (status == MS_OK && j > 0) {
             join_rows(list, row, row - 1);
         }

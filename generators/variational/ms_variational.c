@@ -27,7 +27,7 @@ static const ms_option OPTIONS[] = {
     [PLANES] = {"plane", MS_OPTION_PLANE, 0, 0, 0, NULL, NULL,
                 "a,b,c,d: no sphere crosses the plane a x + b y + c z = d; may be repeated"},
     [REFINE] = {"refine", MS_OPTION_CLUMP, 0, 0, 0, NULL, NULL,
-                "spheres to start from, of any method: a file as mskit score reads it"},
+                "spheres to start from, of any method: a clump in any format that mskit score reads"},
     {0},
 };
 

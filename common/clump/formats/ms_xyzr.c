@@ -109,7 +109,7 @@ static ms_status add_mass(table *t, const ms_clump *clump, double mass, ms_error
 }
 
 /* Spheres of several clumps are no clump. */
-static ms_status check_clump(table *t, ms_text *text, ms_error *err)
+static ms_status check_clump_id(table *t, ms_text *text, ms_error *err)
 {
     ms_word id;
     if (!ms_text_word(&id, text)) {
@@ -139,7 +139,7 @@ static ms_status read_sphere(ms_clump *clump, table *t, ms_text *text, ms_error 
     const ms_sphere sphere = {.centre = {v[0], v[1], v[2]}, .radius = v[3]};
     status = ms_clump_add(clump, &sphere, err);
     if (status == MS_OK && t->columns.clump) {
-        status = check_clump(t, text, err);
+        status = check_clump_id(t, text, err);
     }
     return status == MS_OK && mass ? add_mass(t, clump, v[4], err) : status;
 }
@@ -183,7 +183,7 @@ static ms_status read_comments(table *t, ms_text text, ms_error *err)
 }
 
 /* The line at which the text stands, up to its comment. */
-static ms_word line_of(const ms_text *text)
+static ms_word peek_line(const ms_text *text)
 {
     ms_text ahead = *text;
     ms_word line = ms_text_rest(&ahead);
@@ -192,12 +192,12 @@ static ms_word line_of(const ms_text *text)
     return line;
 }
 
-static ms_status parse_lines(ms_clump *clump, table *t, ms_bytes *bytes, ms_text text, ms_error *err)
+static ms_status read_spheres(ms_clump *clump, table *t, ms_bytes *bytes, ms_text text, ms_error *err)
 {
     int header_allowed = 1;
     while (ms_text_seek(&text)) {
         ms_word name[MS_COLUMNS_MOST];
-        const ms_word line = line_of(&text);
+        const ms_word line = peek_line(&text);
         const size_t n = header_allowed ? ms_columns_split(name, &line, 0) : 0; /* before its marks are blanked */
         const int first_is_empty = is_mark(*text.at);
         const char *flaw = separate_line(bytes, &text);
@@ -229,7 +229,7 @@ static ms_status parse_spheres(ms_clump *clump, table *t, ms_bytes *bytes, const
     ms_status status = read_comments(t, text, err);
     text.comment = '#';
     if (status == MS_OK) {
-        status = parse_lines(clump, t, bytes, text, err);
+        status = read_spheres(clump, t, bytes, text, err);
     }
     if (status == MS_OK && clump->n_spheres == 0) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: no spheres; give one line x,y,z,r for each", name);
