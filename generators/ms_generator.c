@@ -30,8 +30,7 @@ static ms_status check_coverage(const ms_clump *clump, const char *name, const m
     int64_t covered = 0;
     ms_status status = ms_raster_alloc(&raster, grid, run->target->rule, err);
     for (size_t s = 0; s < clump->n_spheres && covered == 0 && status == MS_OK; s++) {
-        ms_ball ball;
-        ms_target_to_voxels(ball.centre, &ball.radius, grid, clump->sphere[s].centre, clump->sphere[s].radius);
+        const ms_ball ball = ms_grid_ball(grid, &clump->sphere[s]);
         largest = fmax(largest, ball.radius);
         status = ms_raster_add(&raster, &ball, 1, err);
         covered = status == MS_OK ? raster.tally[s].inside : 0;

@@ -79,7 +79,7 @@ MS_API ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const
                                   const ms_run *run, ms_error *err);
 
 /** For generators: tells the run's listener, if there is one, a sentence. */
-void ms_generator_remark(const ms_run *run, const char *format, ...) MS_PRINTF(2, 3);
+MS_API void ms_generator_remark(const ms_run *run, const char *format, ...) MS_PRINTF(2, 3);
 
 MS_C_END
 

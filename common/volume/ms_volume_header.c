@@ -1,4 +1,5 @@
 /* What the headers of volume files share. */
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -46,19 +47,25 @@ static int leads_out(const ms_word *file)
     return 0;
 }
 
-/* Does a symbolic link lead out of a folder, whose path ends with a slash or is empty? A file that is missing does
- * not. */
-static int is_linked_out(const char *path, size_t folder_length)
+/* Refuses a symbolic link that leads out of the folder, which is the first characters of the path; a file that is
+ * missing leads nowhere. */
+static ms_status check_links(const char *path, size_t folder_length, const ms_word *file, const ms_text *header,
+                             ms_error *err)
 {
     char *folder = folder_length > 0 ? strndup(path, folder_length) : strdup(".");
-    char *home = folder ? realpath(folder, NULL) : NULL, *file = realpath(path, NULL);
+    errno = 0;
+    char *home = folder ? realpath(folder, NULL) : NULL, *real = folder ? realpath(path, NULL) : NULL;
     const size_t length = home ? strlen(home) : 0;
-    const int is_root = length == 1;
-    const int out = file && !(home && strncmp(file, home, length) == 0 && (is_root || file[length] == '/'));
+    ms_status status = MS_OK;
+    if (!folder || errno == ENOMEM) {
+        status = ms_fail(err, MS_ERR_NOMEM, "%s: no memory to read its data file", header->name);
+    } else if (home && real && !(strncmp(real, home, length) == 0 && (length == 1 || real[length] == '/'))) {
+        status = fail_outside(file, header, err);
+    }
     free(folder);
     free(home);
-    free(file);
-    return out;
+    free(real);
+    return status;
 }
 
 ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_text *header, ms_error *err)
@@ -77,11 +84,12 @@ ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_t
     memcpy(path, header->name, folder);
     memcpy(path + folder, file->start, file->length);
     path[folder + file->length] = '\0';
-    if (is_linked_out(path, folder)) {
+    ms_status status = check_links(path, folder, file, header, err);
+    if (status) {
         free(path);
-        return fail_outside(file, header, err);
+        return status;
     }
-    ms_status status = ms_file_read(bytes, path, &inner);
+    status = ms_file_read(bytes, path, &inner);
     if (status) {
         ms_fail(err, status, "%s: line %zu: names a data file that cannot be used: %s", header->name, header->line,
                 inner.text);

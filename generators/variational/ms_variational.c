@@ -114,8 +114,7 @@ static int reaches_shape(const ms_sphere *sphere, const ms_grid *grid)
 {
     const double half_diagonal = sqrt(3) / 2;
     int lo[3], hi[3];
-    ms_ball ball;
-    ms_target_to_voxels(ball.centre, &ball.radius, grid, sphere->centre, sphere->radius);
+    const ms_ball ball = ms_grid_ball(grid, sphere);
     const double reach = fmax(ball.radius, half_diagonal);
     for (int a = 0; a < 3; a++) {
         lo[a] = (int)fmin(fmax(ceil(ball.centre[a] - reach), 0), grid->n[a]);
