@@ -1,6 +1,47 @@
 #include "ms_generator.h"
 
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
+
+#include "voxel/ms_raster.h"
+
+void ms_generator_remark(const ms_run *run, const char *format, ...)
+{
+    char sentence[512];
+    va_list args;
+    if (!run->remark) {
+        return;
+    }
+    va_start(args, format);
+    vsnprintf(sentence, sizeof sentence, format, args);
+    va_end(args);
+    run->remark(run->remark_context, sentence);
+}
+
+/* Spheres of less than half a voxel may hold its centre, by which methods choose, and yet be nothing by the rule that
+ * scores them. Ends at the first sphere that covers a voxel of the shape. */
+static ms_status check_coverage(const ms_clump *clump, const char *name, const ms_run *run, ms_error *err)
+{
+    const ms_grid *grid = &run->target->grid;
+    ms_raster raster;
+    double largest = 0;
+    int64_t covered = 0;
+    ms_status status = ms_raster_alloc(&raster, grid, run->target->rule, err);
+    for (size_t s = 0; s < clump->n_spheres && covered == 0 && status == MS_OK; s++) {
+        const ms_ball ball = ms_grid_ball(grid, &clump->sphere[s]);
+        largest = fmax(largest, ball.radius);
+        status = ms_raster_add(&raster, &ball, 1, err);
+        covered = status == MS_OK ? raster.tally[s].inside : 0;
+    }
+    ms_raster_free(&raster);
+    return status != MS_OK || covered > 0
+               ? status
+               : ms_fail(err, MS_ERR_SHAPE,
+                         "%s: its %zu spheres, of %.2g voxels at most, cover no voxel of the shape; use more cells",
+                         name, clump->n_spheres, largest);
+}
 
 ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator, const ms_run *run,
                            ms_error *err)
@@ -31,6 +72,9 @@ ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_gen
     if (status == MS_OK && clump->n_spheres == 0) {
         status = ms_fail(err, MS_ERR_SHAPE, "%s placed no sphere (%s); use more cells or a smaller least radius",
                          generator->name, ms_stop_name(*reason));
+    }
+    if (status == MS_OK) {
+        status = check_coverage(clump, generator->name, run, err);
     }
     if (status != MS_OK) {
         ms_clump_free(clump);

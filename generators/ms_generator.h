@@ -14,6 +14,9 @@ MS_C_BEGIN
 /** Is told, often, how far a run has come: `spheres` so far, D of the last step (NAN if unknown). */
 typedef void (*ms_progress)(void *context, size_t spheres, double dice);
 
+/** Is told in one sentence what about the input, though allowed, makes the result worse than it could be, and the cure. */
+typedef void (*ms_remark)(void *context, const char *sentence);
+
 /** All that a generator is given. Everything is borrowed. */
 typedef struct ms_run {
     const ms_target *target;
@@ -22,6 +25,8 @@ typedef struct ms_run {
     uint64_t seed;               /* for generators that draw random numbers */
     ms_progress progress;        /* NULL: nobody listens */
     void *progress_context;
+    ms_remark remark; /* NULL: nobody listens */
+    void *remark_context;
 } ms_run;
 
 /**
@@ -67,10 +72,14 @@ MS_API const ms_generator *ms_generator_find(const char *name, ms_error *err);
  * Runs a generator: checks what every generator would have to check, then calls it.
  *
  * @return MS_OK with at least one sphere; MS_ERR_ARG if nothing ends the run (no stop rule);
- *         MS_ERR_SHAPE if no sphere could be placed (the message names what ended the run)
+ *         MS_ERR_SHAPE if no sphere could be placed (the message names what ended the run), or if the spheres cover no
+ *         voxel of the shape, so that nothing is known of them
  */
 MS_API ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
                                   const ms_run *run, ms_error *err);
+
+/** For generators: tells the run's listener, if there is one, a sentence. */
+MS_API void ms_generator_remark(const ms_run *run, const char *format, ...) MS_PRINTF(2, 3);
 
 MS_C_END
 

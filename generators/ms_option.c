@@ -161,7 +161,8 @@ static ms_status add_plane(ms_settings *settings, const ms_option *option, const
 static ms_status read_clump(ms_settings *settings, const char *path, ms_error *err)
 {
     ms_clump clump;
-    const ms_status status = ms_read_spheres(&clump, path, err);
+    ms_particle unused;
+    const ms_status status = ms_read_clump(&clump, &unused, path, err);
     if (status == MS_OK) {
         ms_clump_free(&settings->clump);
         settings->clump = clump;

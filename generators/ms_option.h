@@ -15,7 +15,7 @@ typedef enum ms_option_type {
     MS_OPTION_REAL,
     MS_OPTION_CHOICE, /* one of the words in `choices`; the value is its rank */
     MS_OPTION_PLANE,  /* a,b,c,d; may be given more than once; collected in ms_settings */
-    MS_OPTION_CLUMP   /* a file of spheres (ms_read_spheres), read into ms_settings; once per generator */
+    MS_OPTION_CLUMP   /* a file of spheres (ms_read_clump), read into ms_settings; once per generator */
 } ms_option_type;
 
 /** One option. A table of them ends with a NULL name. */
@@ -45,7 +45,7 @@ MS_API ms_status ms_option_settings_init(ms_settings *settings, const ms_option 
  *
  * @param text as the user wrote it; NULL or "" switches a FLAG on
  * @return MS_OK; MS_ERR_ARG for an unknown name (the message lists the names) or a bad value
- *         (the message gives type and range); as ms_read_spheres; MS_ERR_NOMEM
+ *         (the message gives type and range); as ms_read_clump; MS_ERR_NOMEM
  */
 MS_API ms_status ms_option_settings_set(ms_settings *settings, const char *name, const char *text, ms_error *err);
 

@@ -9,6 +9,12 @@
 /* Spacings that programs have written with six digits still count as equal. */
 #define CUBE_TOLERANCE 1e-5
 
+/* Inertia goes with the fifth power of a length, which must neither overflow nor vanish. */
+static const double SMALLEST = 1e-50, LARGEST = 1e50;
+
+/* Of the origin, in voxels: of doubles farther out the last digits no longer tell places within a voxel apart. */
+static const double FARTHEST = 1e12;
+
 ms_status ms_volume_data_size(size_t *size, const ms_volume_header *header, const char *path, ms_error *err)
 {
     const int64_t *n = header->n;
@@ -41,12 +47,11 @@ static ms_status check_geometry(const ms_volume_header *header, const char *path
     for (int axis = 0; axis < 3; axis++) {
         double spacing = header->spacing[axis];
         /* The negations also catch nan. */
-        if (!(spacing > 0.0) || !isfinite(spacing) || !isfinite(header->origin[axis])) {
-            return ms_fail(
-                err, MS_ERR_FORMAT,
-                "%s: along axis %d it has the spacing %g and the origin %g; both must be finite and the spacing "
-                "positive",
-                path, axis, spacing, header->origin[axis]);
+        if (!(spacing >= SMALLEST && spacing <= LARGEST) || !(fabs(header->origin[axis]) <= FARTHEST * spacing)) {
+            return ms_fail(err, MS_ERR_FORMAT,
+                           "%s: along axis %d it has the spacing %g and the origin %g; spacings must be from %g to %g "
+                           "and origins within %g voxels; choose another unit or origin",
+                           path, axis, spacing, header->origin[axis], SMALLEST, LARGEST, FARTHEST);
         }
         if (!(fabs(spacing - header->spacing[0]) <= CUBE_TOLERANCE * header->spacing[0])) {
             return ms_fail(err, MS_ERR_FORMAT,

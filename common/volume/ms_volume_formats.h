@@ -69,7 +69,10 @@ ms_status ms_volume_inflate(ms_bytes *out, const uint8_t *data, size_t size, siz
 /** The name of the one data file of a header, borrowed; lists and patterns of files are refused. */
 ms_status ms_volume_data_file(ms_word *file, ms_text *value, ms_error *err);
 
-/** Reads the data file that the present line of a header names, in the folder of the header. */
+/**
+ * Reads the data file that the present line of a header names, in the folder of the header or below. A path that leads
+ * elsewhere, from the root, by "..", or by a symbolic link, is refused.
+ */
 ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_text *header, ms_error *err);
 
 /** The value of one field of a text header, to be scanned on its own. */

@@ -1,4 +1,5 @@
 /* What the headers of volume files share. */
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,20 +25,71 @@ ms_status ms_volume_data_file(ms_word *file, ms_text *value, ms_error *err)
     return MS_OK;
 }
 
+/* A header from elsewhere must not make any file of this machine a volume. */
+static ms_status fail_outside(const ms_word *file, const ms_text *header, ms_error *err)
+{
+    return ms_text_fail(err, header, "the data file '%s' is not in the folder of the header; put both in one folder",
+                        ms_text_quote(file).text);
+}
+
+/* Does a path with folders lead up, or begin at the root? */
+static int leads_out(const ms_word *file)
+{
+    const char *at = file->start, *end = at + file->length;
+    while (at < end) {
+        const char *slash = memchr(at, '/', (size_t)(end - at));
+        const size_t length = (size_t)((slash ? slash : end) - at);
+        if ((length == 0 && at == file->start) || (length == 2 && memcmp(at, "..", 2) == 0)) {
+            return 1;
+        }
+        at += length + 1;
+    }
+    return 0;
+}
+
+/* Refuses a symbolic link that leads out of the folder, which is the first characters of the path; a file that is
+ * missing leads nowhere. */
+static ms_status check_links(const char *path, size_t folder_length, const ms_word *file, const ms_text *header,
+                             ms_error *err)
+{
+    char *folder = folder_length > 0 ? strndup(path, folder_length) : strdup(".");
+    errno = 0;
+    char *home = folder ? realpath(folder, NULL) : NULL, *real = folder ? realpath(path, NULL) : NULL;
+    const size_t length = home ? strlen(home) : 0;
+    ms_status status = MS_OK;
+    if (!folder || errno == ENOMEM) {
+        status = ms_fail(err, MS_ERR_NOMEM, "%s: no memory to read its data file", header->name);
+    } else if (home && real && !(strncmp(real, home, length) == 0 && (length == 1 || real[length] == '/'))) {
+        status = fail_outside(file, header, err);
+    }
+    free(folder);
+    free(home);
+    free(real);
+    return status;
+}
+
 ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_text *header, ms_error *err)
 {
     ms_error inner = {{0}};
     const char *slash = strrchr(header->name, '/');
-    size_t folder = slash && file->start[0] != '/' ? (size_t)(slash + 1 - header->name) : 0;
-    char *path = malloc(folder + file->length + 1);
+    size_t folder = slash ? (size_t)(slash + 1 - header->name) : 0;
     *bytes = (ms_bytes){0};
+    if (leads_out(file)) {
+        return fail_outside(file, header, err);
+    }
+    char *path = malloc(folder + file->length + 1);
     if (!path) {
         return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to read its data file", header->name);
     }
     memcpy(path, header->name, folder);
     memcpy(path + folder, file->start, file->length);
     path[folder + file->length] = '\0';
-    ms_status status = ms_file_read(bytes, path, &inner);
+    ms_status status = check_links(path, folder, file, header, err);
+    if (status) {
+        free(path);
+        return status;
+    }
+    status = ms_file_read(bytes, path, &inner);
     if (status) {
         ms_fail(err, status, "%s: line %zu: names a data file that cannot be used: %s", header->name, header->line,
                 inner.text);

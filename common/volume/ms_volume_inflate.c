@@ -1,5 +1,6 @@
 /* Unpacks zlib and gzip streams whose unpacked size is known and not believed. */
 #include <stdlib.h>
+#include <string.h>
 
 #define ZLIB_CONST
 #include <zlib.h>
@@ -41,6 +42,30 @@ static int inflate_step(z_stream *stream, ms_bytes *out, size_t room, const uint
     return code;
 }
 
+/* What zlib says of the byte where it stops. */
+static ms_status fail_inflate(int code, const z_stream *stream, size_t used, size_t size, const char *path,
+                              ms_error *err)
+{
+    if (code == Z_MEM_ERROR) {
+        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to unpack it", path);
+    }
+    const char *why = code == Z_DATA_ERROR && stream->msg ? stream->msg : "";
+    const int sum = strcmp(why, "incorrect data check") == 0 || strcmp(why, "incorrect length check") == 0;
+    return ms_fail(err, MS_ERR_FORMAT, "%s: its packed data %s at byte %zu of %zu; fetch or save it again", path,
+                   sum                   ? "do not match the checksum that ends"
+                   : code == Z_BUF_ERROR ? "are cut"
+                                         : "are damaged",
+                   used, size);
+}
+
+/* A gzip file may hold several members one after the other, which together are the data (RFC 1952, 2.2). */
+static int next_member(z_stream *stream, const uint8_t *data, size_t size, size_t used)
+{
+    static const uint8_t GZIP[] = {0x1f, 0x8b};
+    return data[0] == GZIP[0] && size - used >= sizeof GZIP && memcmp(data + used, GZIP, sizeof GZIP) == 0 &&
+           inflateReset(stream) == Z_OK;
+}
+
 static ms_status inflate_all(ms_bytes *out, z_stream *stream, const uint8_t *data, size_t size, size_t expected,
                              const char *path, ms_error *err)
 {
@@ -54,8 +79,10 @@ static ms_status inflate_all(ms_bytes *out, z_stream *stream, const uint8_t *dat
         }
         code = inflate_step(stream, out, room, data, size, &used);
         if (code != Z_OK && code != Z_STREAM_END) {
-            return ms_fail(err, MS_ERR_FORMAT, "%s: its packed data are %s at byte %zu of %zu; fetch or save it again",
-                           path, used == size ? "cut" : "damaged", used, size);
+            return fail_inflate(code, stream, used, size, path, err);
+        }
+        if (code == Z_STREAM_END && next_member(stream, data, size, used)) {
+            code = Z_OK;
         }
     }
     if (out->size != expected || used != size) {

@@ -174,6 +174,10 @@ ms_status ms_target_voxels_from_volume(ms_target *target, const ms_volume *volum
         target->closed = 1;
         copy_label(&target->grid, volume, label, lo, hi);
         sum_up(target);
+        status = ms_grid_pieces(&target->pieces, &target->largest_piece, &target->grid, err);
+    }
+    if (status != MS_OK) {
+        ms_target_free(target);
     }
     return status;
 }

@@ -20,6 +20,8 @@ typedef struct ms_target {
     size_t voxels;              /* sum of S */
     ms_body body;               /* exact for a closed mesh, else of the voxels */
     size_t disagree;            /* voxels on which the axes did not agree (open mesh) */
+    size_t pieces;              /* of a volume, ms_grid_pieces; 0 for a mesh */
+    size_t largest_piece;       /* its voxels */
 } ms_target;
 
 /* S: 1, E: 4; a generator: E~ 4, first-cover index 2, flags 1. */

@@ -240,6 +240,18 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
     return status;
 }
 
+/* A label that stands for a phase, or for what is left of several grains, is no grain. */
+static void say_pieces(const ms_input *input)
+{
+    const ms_target *target = &input->target;
+    if (target->pieces > 1) {
+        fprintf(stderr,
+                "%s: the label is in %zu pieces that touch nowhere, the largest of %zu of %zu voxels; they are treated "
+                "as one particle\n",
+                input->path, target->pieces, target->largest_piece, target->voxels);
+    }
+}
+
 static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags, ms_error *err)
 {
     int lo[3], hi[3];
@@ -257,6 +269,7 @@ static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags
         status = status == MS_OK ? finish_target(input, start, &cause) : status;
         status = name_file(err, status, input, &cause);
         input->target.rule = flags->rule; /* for the union; the voxels of the shape are given */
+        say_pieces(input);
     }
     return status;
 }

@@ -25,6 +25,19 @@ void ms_progress_show(ms_run *run, ms_progress_line *line)
     run->progress_context = line;
 }
 
+static void say_remark(void *context, const char *sentence)
+{
+    const ms_progress_line *line = context;
+    ms_progress_clear(line);
+    fprintf(stderr, "%s: %s\n", line->name, sentence);
+}
+
+void ms_progress_say_remarks(ms_run *run, ms_progress_line *line)
+{
+    run->remark = say_remark;
+    run->remark_context = line;
+}
+
 void ms_progress_clear(const ms_progress_line *line)
 {
     if (line->shown > 0) {

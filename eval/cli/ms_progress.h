@@ -13,6 +13,9 @@ typedef struct ms_progress_line {
 /** Has the run tell the line how far it is, if standard error is a terminal. The line is borrowed. */
 void ms_progress_show(ms_run *run, ms_progress_line *line);
 
+/** Has the run's remarks printed on standard error, behind the name of the line. The line is borrowed. */
+void ms_progress_say_remarks(ms_run *run, ms_progress_line *line);
+
 /** Wipes what was shown. */
 void ms_progress_clear(const ms_progress_line *line);
 

@@ -154,7 +154,8 @@ static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_
 {
     const char *name = a->recipe.generator->name;
     ms_progress_line line = {.name = name};
-    const ms_run run = make_run(a, input, &line);
+    ms_run run = make_run(a, input, &line);
+    ms_progress_say_remarks(&run, &line);
     const double start = omp_get_wtime();
     ms_status status = ms_generator_run(&r->clump, &r->reason, a->recipe.generator, &run, err);
     const double generated = omp_get_wtime();

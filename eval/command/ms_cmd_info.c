@@ -98,6 +98,15 @@ static void print_mesh(const info_facts *f)
     }
 }
 
+static void print_voxels(const ms_target *target)
+{
+    printf("  %-22s %zu\n  %-22s %zu", "voxels", target->voxels, "pieces", target->pieces);
+    if (target->pieces > 1) {
+        printf(" that touch nowhere, the largest of %zu voxels", target->largest_piece);
+    }
+    putchar('\n');
+}
+
 static void print_facts(const info_facts *f)
 {
     static const char *const ROWS[] = {"inertia tensor", "", ""}, *const AXES[] = {"principal axes", "", ""};
@@ -105,7 +114,7 @@ static void print_facts(const info_facts *f)
     if (f->input->mesh.n_triangles) {
         print_mesh(f);
     } else {
-        printf("  %-22s %zu\n", "voxels", f->input->target.voxels);
+        print_voxels(&f->input->target);
     }
     const double size[3] = {f->hi[0] - f->lo[0], f->hi[1] - f->lo[1], f->hi[2] - f->lo[2]};
     print_vector("box from", f->lo);
@@ -149,6 +158,8 @@ static json_t *facts_json(const info_facts *f)
         ms_json_object_merge(&json, mesh);
     } else {
         ms_json_object_set(&json, "voxels", json_integer((json_int_t)f->input->target.voxels));
+        ms_json_object_set(&json, "pieces", json_integer((json_int_t)f->input->target.pieces));
+        ms_json_object_set(&json, "largest_piece", json_integer((json_int_t)f->input->target.largest_piece));
         json_decref(mesh);
     }
     if (f->has_body) {

@@ -130,8 +130,10 @@ static ms_status make_templates(ms_scene_shape *shape, const char *title, const 
     run.stop.spheres = how->max_spheres;
     run.stop.radius = how->min_radius;
     ms_progress_show(&run, &line);
+    ms_progress_say_remarks(&run, &line);
     shape->input = ms_report_input_json(input);
     ms_status status = ms_generator_run(&clump, &reason, recipe->generator, &run, &cause);
+    run.remark = NULL; /* once for a shape */
     if (status == MS_OK) {
         status = make_curve(shape, &clump, &run, recipe->generator, ms_input_max_voxels(how->input), &cause);
         ms_clump_free(&clump);

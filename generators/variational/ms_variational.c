@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/ms_vector.h"
 #include "ms_variational_solve.h"
 #include "shared/ms_bisect_count.h"
 #include "shared/ms_judge.h"
@@ -26,7 +27,7 @@ static const ms_option OPTIONS[] = {
     [PLANES] = {"plane", MS_OPTION_PLANE, 0, 0, 0, NULL, NULL,
                 "a,b,c,d: no sphere crosses the plane a x + b y + c z = d; may be repeated"},
     [REFINE] = {"refine", MS_OPTION_CLUMP, 0, 0, 0, NULL, NULL,
-                "spheres to start from, of any method: a file as mskit score reads it"},
+                "spheres to start from, of any method: a clump in any format that mskit score reads"},
     {0},
 };
 
@@ -108,6 +109,54 @@ static ms_status generate_for(void *context, ms_clump *clump, ms_stop_reason *re
     return status;
 }
 
+/* Does a sphere reach a voxel of the shape? One of less than a voxel does if its centre lies in one. */
+static int reaches_shape(const ms_sphere *sphere, const ms_grid *grid)
+{
+    const double half_diagonal = sqrt(3) / 2;
+    int lo[3], hi[3];
+    const ms_ball ball = ms_grid_ball(grid, sphere);
+    const double reach = fmax(ball.radius, half_diagonal);
+    for (int a = 0; a < 3; a++) {
+        lo[a] = (int)fmin(fmax(ceil(ball.centre[a] - reach), 0), grid->n[a]);
+        hi[a] = (int)fmax(fmin(floor(ball.centre[a] + reach), grid->n[a] - 1), -1);
+    }
+    for (int k = lo[2]; k <= hi[2]; k++) {
+        for (int j = lo[1]; j <= hi[1]; j++) {
+            for (int i = lo[0]; i <= hi[0]; i++) {
+                const double voxel[3] = {i, j, k};
+                if (grid->inside[ms_grid_index(grid, i, j, k)] &&
+                    ms_squared_distance(ball.centre, voxel) <= reach * reach) {
+                    return 1;
+                }
+            }
+        }
+    }
+    return 0;
+}
+
+/* The given spheres that reach the shape; none given is none kept. */
+static ms_status keep_given(ms_clump *kept, const ms_run *run, ms_error *err)
+{
+    const ms_clump *given = &run->settings->clump;
+    ms_status status = MS_OK;
+    for (size_t s = 0; s < given->n_spheres && status == MS_OK; s++) {
+        if (reaches_shape(&given->sphere[s], &run->target->grid)) {
+            status = ms_clump_add(kept, &given->sphere[s], err);
+        }
+    }
+    const size_t outside = given->n_spheres - kept->n_spheres;
+    if (status != MS_OK || outside == 0) {
+        return status;
+    }
+    if (kept->n_spheres == 0) {
+        return ms_fail(err, MS_ERR_ARG, "refine: none of its %zu spheres reaches the shape; check units and frame",
+                       given->n_spheres);
+    }
+    ms_generator_remark(run, "%zu of the %zu spheres of refine lie outside the shape and are left out", outside,
+                        given->n_spheres);
+    return MS_OK;
+}
+
 static ms_status generate_by_variational(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
 {
     if (run->settings->n_planes > 0 && run->settings->value[SYMMETRY] != 0) {
@@ -115,8 +164,16 @@ static ms_status generate_by_variational(ms_clump *clump, ms_stop_reason *reason
     }
     const size_t most = run->stop.spheres > 0 ? run->stop.spheres : MS_CLUMP_MAX_SPHERES;
     ms_run each = *run;
-    return ms_stop_has_measure(&run->stop) ? ms_bisect_count(clump, reason, most, generate_for, &each, err)
-                                           : generate_for(&each, clump, reason, most, err);
+    ms_settings settings = *run->settings;
+    settings.clump = (ms_clump){0};
+    each.settings = &settings;
+    ms_status status = keep_given(&settings.clump, run, err);
+    if (status == MS_OK) {
+        status = ms_stop_has_measure(&run->stop) ? ms_bisect_count(clump, reason, most, generate_for, &each, err)
+                                                 : generate_for(&each, clump, reason, most, err);
+    }
+    ms_clump_free(&settings.clump);
+    return status;
 }
 
 const ms_generator ms_generator_variational = {

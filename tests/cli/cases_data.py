@@ -1,4 +1,6 @@
 """mskit info on every file of the shared data: what MANIFEST.md there says of it."""
+import os
+
 from support import Case, shared_file
 
 # File, volume, area, box and Wadell's sphericity as MANIFEST.md gives them, made by another program.
@@ -43,7 +45,33 @@ LOADED = (
 )
 
 
+# Inputs of data/cases that passed without a word, and words that the message needs; right answers as MANIFEST.md there.
+CASES_REFUSED = (
+    ("comp_badsum.mha", ("info", "comp_badsum.mha"), ("checksum",)),
+    ("sp_tiny.mha", ("info", "sp_tiny.mha"), ("spacing", "1e-300")),
+    ("up.mhd", ("info", "up.mhd"), ("line 5", "passwd", "folder")),
+    ("h06_diameter_header.csv", ("score", "h06_diameter_header.csv", "--target", "h00_dimer.obj", "--cells", "20"),
+     ("line 1", "'diameter'")),
+    ("c_cols.json", ("score", "c_cols.json", "--target", "h00_dimer.obj", "--cells", "20"), ("columns", "x, y, z, r")),
+)
+
+
 class Data(Case):
+    def test_cases_are_refused(self):
+        for name, command, says in CASES_REFUSED:
+            folder = os.path.dirname(shared_file("cases", name))
+            args = [os.path.join(folder, word) if os.path.exists(os.path.join(folder, word)) else word
+                    for word in command]
+            with self.subTest(file=name):
+                self.assert_refused(*args, code=1, says=(name, *says))
+
+    def test_cases_that_are_read(self):
+        info = self.mskit("info", shared_file("cases", "gz2.nrrd"), "--json").json
+        self.assertEqual((info["voxels"], info["pieces"]), (140, 1))
+        path = shared_file("cases", "g04_three_phase.npy")
+        self.assertEqual(self.mskit("info", path, "--label", "2", "--json").json["pieces"], 2)
+        self.assertRegex(self.mskit("info", path, "--label", "2").out, "pieces +2 ")
+
     def test_meshes(self):
         for name, volume, area, box, sphericity in MESHES:
             path = shared_file(name)

@@ -233,6 +233,36 @@ class Options(Generate):
                             says=("confine", "closed mesh"))
 
 
+class Remarks(Generate):
+    """What a method says of its input goes to standard error, once, and changes no result."""
+
+    def test_spheres_outside_the_shape(self):
+        flags = ("-g", "variational", *GRID, "-n", "3", "-j", "1")
+        self.write("in.json", json.dumps({"spheres": [[0, 0, 0, 0.4]]}))
+        self.write("mixed.csv", "0,0,0,0.4\n50,0,0,0.4\n")
+        self.write("out.csv", "50,0,0,0.4\n60,0,0,0.4\n")
+        self.mskit("generate", self.grain, *flags, "--refine", "in.json", "-o", "in.csv")
+        result = self.mskit("generate", self.grain, *flags, "--refine", "mixed.csv", "-o", "c.csv", "--curve", "k.csv")
+        self.assertEqual(result.err.count("variational: 1 of the 2 spheres of refine lie outside the shape"), 1, result)
+        self.assertEqual(self.read("c.csv"), self.read("in.csv"))
+        self.assert_refused("generate", self.grain, *flags, "--refine", "out.csv", "-o", "d.csv", code=1,
+                            says=("refine", "none of its 2 spheres reaches the shape"))
+
+    def test_long_edges(self):
+        self.write("box.obj", box_obj((0, 0, 0), (1, 1, 1)))
+        for name, says in (("box.obj", True), (self.shape("cube"), False)):
+            result = self.mskit("generate", name, "-g", "fcm", "--cells", "20", "-n", "20", "-j", "1", "-o", "c.csv")
+            self.assertEqual("fcm: the edges of the mesh are long" in result.err, says, result)
+
+    def test_spheres_that_cover_nothing(self):
+        """A wall of 0.6 voxels; between its faces no sphere covers more than half a voxel."""
+        name = self.shape("hollow", "r=0.97", "fineness=12")
+        self.assert_refused("generate", name, "-g", "setcover", "--cells", "40", "-n", "10", "-o", "c.csv", code=1,
+                            says=("setcover", "cover no voxel of the shape", "more cells"))
+        self.assertGreater(self.generate(name, "-g", "setcover", "--cells", "200", "-n", "10", "-o",
+                                         "c.csv")["scores"]["coverage"], 0)
+
+
 class Repeat(Generate):
     def test_threads_do_not_change_a_bit(self):
         for ending in ("csv", "vtk"):

@@ -52,6 +52,19 @@ class Volume(Case):
             self.assert_close(info["inertia"][axis][axis], VOXELS[2] * sum(others) / 12, 1e-12, "moment of a cuboid")
         self.assertIsNone(info["area"])
 
+    def test_a_label_in_pieces(self):
+        """A grain is one piece: what touches nowhere is said, with the size of the largest piece."""
+        self.write("both.npy", npy([min(label, 1) for label in labels()], SIZE[::-1]))
+        info = self.mskit("info", "both.npy", "--json").json
+        self.assertEqual((info["pieces"], info["largest_piece"], info["voxels"]), (2, VOXELS[2], VOXELS[1] + VOXELS[2]))
+        self.assertRegex(self.mskit("info", "both.npy").out, f"pieces +2 .*largest of {VOXELS[2]} voxels")
+        self.write("c.csv", "10,10,8,3\n")
+        for command in (("generate", "both.npy", "-n", "3", "-o", "-"), ("score", "c.csv", "--target", "both.npy")):
+            self.assert_says(self.mskit(*command), "both.npy: the label is in 2 pieces", f"largest of {VOXELS[2]} of")
+        info = self.mskit("info", "one.npy", "--json").json
+        self.assertEqual((info["pieces"], info["largest_piece"]), (1, VOXELS[2]))
+        self.assertNotIn("pieces", self.mskit("generate", "one.npy", "-n", "3", "-o", "-").err)
+
     def test_fortran_order(self):
         """[x][y][z] with x fastest is the same volume."""
         self.write("fortran.npy", npy(labels(), SIZE, fortran=True))

@@ -136,6 +136,14 @@ static void spheres_are_read_from_what_tools_write(void **state)
         "spheres of a stone, by hand\n1,-2.5,300,0.25\n4,5,6,7\n",
         "\xEF\xBB\xBFx,y,z,r\r\n1,-2.5,300,0.25\r\n4,5,6,7\r\n",
         "x,y,z,r\r1,-2.5,300,0.25\r4,5,6,7\r", /* ends of line of old */
+        "x,y,z,rad\n1,-2.5,300,0.25\n4,5,6,7\n",
+        "X,Y,Z,R\n1,-2.5,300,0.25\n4,5,6,7\n",
+        "\"x\",\"y\",\"z\",\"r\"\n1,-2.5,300,0.25\n4,5,6,7\n",
+        "x [m],y [m],z [m],Radius[m]\n1,-2.5,300,0.25\n4,5,6,7\n",
+        "x y z radius (mm)\n1 -2.5 300 0.25\n4 5 6 7\n",
+        "#format x_y_z_r_clumpId\n1 -2.5 300 0.25 7\n4 5 6 7 7\n",
+        "x,y,z,r,clumpId\n1,-2.5,300,0.25,stone\n4,5,6,7,stone\n",
+        "#format x_y_z_r\n1 -2.5 300 0.25 7\n4 5 6 7 8\n",
         "x,y,z,r,,,\n1,-2.5,300,0.25,,,\n,,,,,,\n4,5,6,7,,,\n;;;\n",
     };
     for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
@@ -157,6 +165,19 @@ static const struct {
     {"id,x,y,z,r\n1,2,3,4,5\n", "line 1"},
     {"r x y z\n1 2 3 4\n", "line 1"},
     {"y,x,z,r\n1,2,3,4\n", "line 1"},
+    {"x (m),z (m),y (m),r (m)\n1,2,3,4\n", "line 1: x, y, z stand in other columns"},
+    {"x,y,z,diameter\n1,2,3,4\n", "line 1: the fourth column is called 'diameter' and not r, rad or radius"},
+    {"x;y;z;D;r\n1;2;3;4;2\n", "line 1: the fourth column is called 'D'"},
+    {"x y z density r\n1 2 3 4 5\n", "line 1: the fourth column is called 'density'"},
+    {"x,y,z,,r\n1,2,3,4,5\n", "line 1: the fourth column is called ''"},
+    {"\nX Y Z Diameter [mm]\n1 2 3 4\n", "line 2: the fourth column is called 'Diameter'"},
+    {"cx,cy,cz,2r\n1,2,3,4\n", "line 1: the fourth column is called '2r'"},
+    {"x,y,z,radius of gyration\n1,2,3,4\n", "line 1: the fourth column is called 'radius of gyration'"},
+    {"#version = 1\nx,y,z,rel_d,rel_sa\n1,2,3,4,5\n", "line 2: the fourth column is called 'rel_d'"}, /* MFiX */
+    {"# x,y,z,diameter\n1,2,3,4\n", "line 1: the fourth column is called 'diameter'"},
+    {"# a bed\n\n# r x y z\n1 2 3 4\n", "line 3: x, y, z stand in other columns"},
+    {"#format id_x_y_z_r_matId\n1 2 3 4 5 6\n", "line 1: x, y, z stand in other columns"}, /* YADE's textExt */
+    {"#format x_y_z_r_clumpId\n1 2 3 4 7\n1 2 3 4 8\n", "line 3: this sphere is of clump 8, those before of clump 7"},
     {"", "no spheres"},
     {"x,y,z,r\n", "no spheres"},
     {"# nothing\n\n", "no spheres"},

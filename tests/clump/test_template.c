@@ -363,7 +363,20 @@ static void bad_files_are_refused(void **state)
     expect_refused(folder, "a.json", "{\"spheres\": [[0,0,1]]}", "sphere 1 is no list of 4");
     expect_refused(folder, "a.json", "{\"spheres\": [[0,0,0,-1]]}", "radii above 0");
     expect_refused(folder, "a.json", "{\"spheres\": [[0,0,0,\"1\"]]}", "sphere 1 is no list of 4");
-    expect_refused(folder, "a.json", "{\"columns\": [0,0,0,0,\"mass\"], \"spheres\": [[0,0,0,1]]}", "list of 5");
+    expect_refused(folder, "a.json", "{\"columns\": [\"x\",\"y\",\"z\",\"r\",\"mass\"], \"spheres\": [[0,0,0,1]]}",
+                   "list of 5");
+    expect_refused(folder, "a.json", "{\"columns\": [\"r\",\"x\",\"y\",\"z\"], \"spheres\": [[1,0,0,1]]}",
+                   "x, y, z stand in other columns");
+    expect_refused(folder, "a.json", "{\"columns\": [\"x\",\"y\",\"z\",\"d\"], \"spheres\": [[0,0,0,1]]}",
+                   "called 'd'");
+    expect_refused(folder, "a.json", "{\"columns\": [0,0,0,0], \"spheres\": [[0,0,0,1]]}", "called ''");
+    expect_refused(folder, "a.json", "{\"columns\": [\"x\"], \"spheres\": [[0,0,0,1]]}", "no list that begins with x");
+    expect_refused(folder, "a.json", "{\"columns\": \"xyzr\", \"spheres\": [[0,0,0,1]]}", "no list that begins with x");
+    expect_refused(folder, "a.yade", "0 0 0 1 7\n1 0 0 1 7\n2 0 0 1 8\n", "line 3: this sphere is of clump 8");
+    expect_refused(folder, "a.yade", "# x y z r clumpId\n0 0 0 1 0\n1 0 0 1 1\n", "those before of clump 0");
+    expect_refused(folder, "a.txt", "#format x_y_z_r_clumpId\n# of a bed\n0\t0\t0\t1\t3\n1\t0\t0\t1\t4\n",
+                   "of clump 4");
+    expect_refused(folder, "a.csv", "x,y,z,r,clumpId\n0,0,0,1,3\n1,0,0,1,4\n", "of clump 4");
     expect_refused(folder, "a.json", "{\"spheres\": [[0,0,0,1]], \"particle\": {\"mass\": 1}}", "not all of scale");
     expect_refused(folder, "a.lammps", "", "number of atoms");
     expect_refused(folder, "a.lammps", "t\n\n0 atoms\n", "line 3");

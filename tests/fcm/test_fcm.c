@@ -8,6 +8,7 @@
 #include "measure/ms_metrics.h"
 #include "shared/ms_bisect_count.h"
 #include "voxel/ms_raster.h"
+#include "support/body_samples.h"
 
 /* Options as "name=value name=value". */
 static ms_status try_fcm(ms_clump *clump, ms_stop_reason *reason, const ms_target *target, ms_stop stop,
@@ -357,6 +358,62 @@ static void the_least_number_is_found(void **state)
     }
 }
 
+static void keep_remark(void *context, const char *sentence)
+{
+    char *kept = context;
+    snprintf(kept, 512, "%s", sentence);
+}
+
+/* What a run of n spheres says of a mesh, "" for nothing. */
+static void remark_on(char remark[512], const ms_target *target, size_t n)
+{
+    ms_settings settings;
+    ms_clump clump;
+    ms_stop_reason reason;
+    ms_error err;
+    ms_run run = {.target = target, .settings = &settings, .remark = keep_remark, .remark_context = remark};
+    run.stop.spheres = n;
+    remark[0] = '\0';
+    assert_int_equal(ms_option_settings_init(&settings, ms_generator_fcm.options, &err), MS_OK);
+    assert_int_equal(ms_option_settings_set(&settings, "filling", "2000", &err), MS_OK);
+    assert_int_equal(ms_generator_run(&clump, &reason, &ms_generator_fcm, &run, &err), MS_OK);
+    ms_clump_free(&clump);
+    ms_option_settings_free(&settings);
+}
+
+/* Cubes of k edges a side: the longest edge is sqrt(2) / k, d_eq (6 / pi)^(1/3); it is long from 1.5 / n^(1/3) d_eq
+ * on. */
+static void long_edges_are_remarked(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *fineness;
+        size_t n;
+        const char *says;
+    } cases[] = {{NULL, 2, "1.1 times"},
+                 {NULL, 100, "below 0.32 d_eq for 100 spheres"},
+                 {"fineness=2", 10, ""},
+                 {"fineness=2", 100, "0.57 times the diameter"},
+                 {"fineness=6", 100, ""}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        ms_mesh mesh;
+        ms_target target;
+        char remark[512];
+        if (cases[c].fineness) {
+            make_shape(&mesh, "cube", cases[c].fineness);
+        } else {
+            mesh = unit_cube(); /* 8 nodes */
+        }
+        make_target(&target, &mesh, 20, MS_VOXEL_HALF);
+        remark_on(remark, &target, cases[c].n);
+        if (cases[c].says[0] ? !strstr(remark, cases[c].says) : remark[0] != '\0') {
+            fail_msg("case %zu: \"%s\"", c, remark);
+        }
+        ms_target_free(&target);
+        ms_mesh_free(&mesh);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -365,6 +422,7 @@ int main(void)
         cmocka_unit_test(spheres_come_by_what_they_add),   cmocka_unit_test(the_stone_of_the_paper),
         cmocka_unit_test(the_volume_ends_the_run),         cmocka_unit_test(the_seed_decides),
         cmocka_unit_test(bad_options_are_refused),         cmocka_unit_test(the_least_number_is_found),
+        cmocka_unit_test(long_edges_are_remarked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -341,6 +341,37 @@ static void nothing_asked_is_an_error(void **state)
     }
 }
 
+/* Walls of 0.6 and 0.9 voxels: spheres between them may hold centres of voxels and yet cover none of them by more than
+ * half. Such a clump is no result. */
+static void spheres_that_cover_nothing_are_no_clump(void **state)
+{
+    (void)state;
+    ms_mesh mesh;
+    make_shape(&mesh, "hollow", "r=0.97 fineness=12");
+    int refused = 0;
+    for (double cells = 40; cells <= 60; cells += 20) {
+        ms_target target;
+        make_target(&target, &mesh, cells, MS_VOXEL_HALF);
+        for (const ms_generator *const *g = checked; *g; g++) {
+            outcome o;
+            ms_error err = {{0}};
+            const ms_stop stop = {.spheres = 10};
+            const ms_status status = try_run(&o, *g, &target, stop, &err);
+            if (status == MS_OK) {
+                assert_true(score_of(&o.clump, &target).coverage > 0);
+            } else {
+                assert_int_equal(status, MS_ERR_SHAPE);
+                assert_int_equal(o.clump.n_spheres, 0);
+                refused += strstr(err.text, "cover no voxel of the shape; use more cells") != NULL;
+            }
+            ms_clump_free(&o.clump);
+        }
+        ms_target_free(&target);
+    }
+    assert_true(refused > 0);
+    ms_mesh_free(&mesh);
+}
+
 /* A few voxels, one voxel; a volume without a mesh. */
 static void small_targets_work(void **state)
 {
@@ -365,12 +396,19 @@ static void small_targets_work(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_generator_is_complete), cmocka_unit_test(options_are_documented),
-        cmocka_unit_test(asked_number_is_given),       cmocka_unit_test(spheres_are_sane),
-        cmocka_unit_test(prefixes_are_clumps),         cmocka_unit_test(threads_do_not_matter),
-        cmocka_unit_test(frame_follows_the_mesh),      cmocka_unit_test(measures_end_the_run),
-        cmocka_unit_test(inertia_ends_the_run),        cmocka_unit_test(least_radius_is_kept),
-        cmocka_unit_test(nothing_asked_is_an_error),   cmocka_unit_test(small_targets_work),
+        cmocka_unit_test(every_generator_is_complete),
+        cmocka_unit_test(options_are_documented),
+        cmocka_unit_test(asked_number_is_given),
+        cmocka_unit_test(spheres_are_sane),
+        cmocka_unit_test(prefixes_are_clumps),
+        cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(frame_follows_the_mesh),
+        cmocka_unit_test(measures_end_the_run),
+        cmocka_unit_test(inertia_ends_the_run),
+        cmocka_unit_test(least_radius_is_kept),
+        cmocka_unit_test(nothing_asked_is_an_error),
+        cmocka_unit_test(small_targets_work),
+        cmocka_unit_test(spheres_that_cover_nothing_are_no_clump),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,4 +1,5 @@
 /* Volume files by their paths: the shared volumes, the broken inputs, and data files beside a header. */
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "support/volume_samples.h"
@@ -72,6 +73,61 @@ static void data_beside_a_header_are_read(void **state)
     rmdir(folder);
 }
 
+/* Writes a header with that data file and reads it. */
+static ms_status read_with(const char *folder, const char *data_file, ms_error *err)
+{
+    char text[512], path[128];
+    ms_volume volume;
+    snprintf(text, sizeof text, "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 3 4\nencoding: raw\ndata file: %s\n",
+             data_file);
+    write_file(path, folder, "a.nhdr", text, strlen(text));
+    const ms_status status = ms_volume_read(&volume, path, SIZE_MAX, err);
+    ms_volume_free(&volume);
+    unlink(path);
+    return status;
+}
+
+/* In a folder with the folders `in` and `out`, each with the voxels, and links from `in`. */
+static void data_files_stay_in_the_folder_of_the_header(void **state)
+{
+    char folder[64], in[96], sub[96], out[96], raw[128], here[128], below[128], link[128], twin[128], all[128];
+    sample voxels = {.size = 0};
+    ms_error err = {{0}};
+    (void)state;
+    make_folder(folder);
+    put_voxels(&voxels, 'u', 1, 0, 100);
+    snprintf(in, sizeof in, "%s/in", folder);
+    snprintf(sub, sizeof sub, "%s/in/sub", folder);
+    snprintf(out, sizeof out, "%s/inner", folder); /* begins as `in` does */
+    assert_true(mkdir(in, 0700) == 0 && mkdir(sub, 0700) == 0 && mkdir(out, 0700) == 0);
+    write_file(here, in, "v.raw", voxels.data, voxels.size);
+    write_file(below, sub, "..v.raw", voxels.data, voxels.size);
+    write_file(raw, out, "v.raw", voxels.data, voxels.size);
+    snprintf(link, sizeof link, "%s/link.raw", in);
+    snprintf(twin, sizeof twin, "%s/twin.raw", in);
+    snprintf(all, sizeof all, "%s/all", in);
+    assert_true(symlink("../inner/v.raw", link) == 0 && symlink("v.raw", twin) == 0 && symlink("../inner", all) == 0);
+    const char *const allowed[] = {"v.raw", "./v.raw", "sub/..v.raw", "twin.raw", "sub//..v.raw"};
+    const char *const refused[] = {"../inner/v.raw", raw, here, "sub/../v.raw", "..", "link.raw", "all/v.raw"};
+    for (size_t f = 0; f < sizeof allowed / sizeof *allowed; f++) {
+        if (read_with(in, allowed[f], &err) != MS_OK) {
+            fail_msg("%s: %s", allowed[f], err.text);
+        }
+    }
+    for (size_t f = 0; f < sizeof refused / sizeof *refused; f++) {
+        if (read_with(in, refused[f], &err) != MS_ERR_FORMAT) {
+            fail_msg("%s is read", refused[f]);
+        }
+        expect_message(&err, "a.nhdr: line 6: the data file '");
+        expect_message(&err, "is not in the folder of the header");
+    }
+    const char *const files[] = {here, below, raw, link, twin, all};
+    for (size_t f = 0; f < sizeof files / sizeof *files; f++) {
+        assert_int_equal(unlink(files[f]), 0);
+    }
+    assert_true(rmdir(sub) == 0 && rmdir(in) == 0 && rmdir(out) == 0 && rmdir(folder) == 0);
+}
+
 static void shared_volumes_are_the_same(void **state)
 {
     static const char *const endings[] = {"npy", "mhd", "nrrd"};
@@ -125,9 +181,8 @@ static void broken_shared_volumes_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_no_volume_file_is_refused),
-        cmocka_unit_test(data_beside_a_header_are_read),
-        cmocka_unit_test(shared_volumes_are_the_same),
+        cmocka_unit_test(what_is_no_volume_file_is_refused),           cmocka_unit_test(data_beside_a_header_are_read),
+        cmocka_unit_test(data_files_stay_in_the_folder_of_the_header), cmocka_unit_test(shared_volumes_are_the_same),
         cmocka_unit_test(broken_shared_volumes_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

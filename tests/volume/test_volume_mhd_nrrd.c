@@ -103,6 +103,8 @@ static void malformed_mhd_is_refused_with_its_line(void **state)
         {MHD "ElementDataFile = LIST\na.raw\n", "line 4: a volume in one file per slice is not read"},
         {MHD "ElementDataFile = a%03d.raw 1 4 1\n", "line 4: a volume in one file per slice is not read"},
         {MHD "ElementDataFile = \n", "line 4: no data file is named"},
+        {MHD "ElementType = MET_UCHAR\nElementDataFile = ../a.raw\n",
+         "line 5: the data file '../a.raw' is not in the folder"},
         {MHD "ElementDataFile = LOCAL\n", "line 4: the header lacks ElementType"},
         {"NDims = 3\n" MHD_END, "the header lacks DimSize"},
         {MHD "ElementType = MET_UCHAR\n", "the header ends without ElementDataFile"},
@@ -118,6 +120,11 @@ static void malformed_mhd_is_refused_with_its_line(void **state)
          "its 1 packed bytes cannot hold the 8000000000"},
         {MHD "ElementSpacing = 1 1 2\n" MHD_END "123456789012345678901234", "its voxels are 1 x 1 x 2 and not cubes"},
         {MHD "ElementSpacing = 0 0 0\n" MHD_END "123456789012345678901234", "along axis 0 it has the spacing 0"},
+        {MHD "ElementSpacing = 1e-300 1e-300 1e-300\n" MHD_END "123456789012345678901234",
+         "spacing 1e-300 and the origin 0; spacings must be from 1e-50 to 1e+50"},
+        {MHD "ElementSpacing = 1e51 1e51 1e51\n" MHD_END "123456789012345678901234", "it has the spacing 1e+51"},
+        {MHD "Offset = 0 0 1e17\n" MHD_END "123456789012345678901234",
+         "along axis 2 it has the spacing 1 and the origin"},
         {MHD "ElementSpacing = 1 nan 1\n" MHD_END "123456789012345678901234", "along axis 1 it has the spacing"},
         {MHD "Offset = 0 inf 1\n" MHD_END "123456789012345678901234", "the spacing 1 and the origin inf"},
     };
@@ -179,6 +186,69 @@ static void every_encoding_of_nrrd_is_read(void **state)
     put_text(&last, NRRD "type: uchar\nencoding: raw\nbyte skip: -1\n\nwhatever stands before");
     put_voxels(&last, 'u', 1, 0, 100);
     expect_volume(ms_volume_parse_nrrd, &last, "sample", 100);
+}
+
+/* The voxels as uint16 in two gzip members, as joining two files of slices gives them. */
+static void put_two_members(sample *to)
+{
+    sample voxels = {.size = 0};
+    put_voxels(&voxels, 'u', 2, 0, 100);
+    for (int half = 0; half < 2; half++) {
+        const size_t from = half ? 20 : 0, end = half ? voxels.size : 20;
+        z_stream stream = {0};
+        assert_int_equal(deflateInit2(&stream, 9, Z_DEFLATED, 31, 8, Z_DEFAULT_STRATEGY), Z_OK);
+        stream.next_in = voxels.data + from;
+        stream.avail_in = (uInt)(end - from);
+        stream.next_out = to->data + to->size;
+        stream.avail_out = (uInt)(sizeof to->data - to->size);
+        assert_int_equal(deflate(&stream, Z_FINISH), Z_STREAM_END);
+        to->size += stream.total_out;
+        deflateEnd(&stream);
+    }
+}
+
+static void members_of_gzip_follow_each_other(void **state)
+{
+    sample made = {.size = 0};
+    (void)state;
+    put_text(&made, NRRD "type: ushort\nendian: little\nencoding: gzip\n\n");
+    put_two_members(&made);
+    expect_volume(ms_volume_parse_nrrd, &made, "sample", 100);
+    made.size -= 3;
+    expect_volume_refused(ms_volume_parse_nrrd, &made, MS_ERR_FORMAT, "its packed data are cut at byte");
+    made.size += 3;
+    put_two_members(&made); /* the same voxels once more */
+    expect_volume_refused(ms_volume_parse_nrrd, &made, MS_ERR_FORMAT, "hold more bytes than the 48");
+    made.size -= 1;
+    put_text(&made, "\x1f");
+    expect_volume_refused(ms_volume_parse_nrrd, &made, MS_ERR_FORMAT, "hold more bytes than the 48");
+}
+
+/* Of zlib the sum ends the stream, of gzip the sum and the length: 4 bytes each. */
+static void a_wrong_checksum_is_named(void **state)
+{
+    static const struct {
+        const char *header;
+        volume_parser *parse;
+        int window_bits;
+        size_t from_end;
+    } cases[] = {
+        {MHD "CompressedData = True\nElementType = MET_USHORT\nElementDataFile = LOCAL\n", ms_volume_parse_mhd, 15, 1},
+        {NRRD "type: ushort\nendian: little\nencoding: gzip\n\n", ms_volume_parse_nrrd, 31, 5},
+        {NRRD "type: ushort\nendian: little\nencoding: gzip\n\n", ms_volume_parse_nrrd, 31, 1},
+    };
+    (void)state;
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        sample made = {.size = 0};
+        put_text(&made, cases[c].header);
+        put_packed(&made, cases[c].window_bits);
+        expect_volume(cases[c].parse, &made, "sample", 100);
+        made.data[made.size - cases[c].from_end] ^= 1;
+        expect_volume_refused(cases[c].parse, &made, MS_ERR_FORMAT, "do not match the checksum");
+        made.data[made.size - cases[c].from_end] ^= 1;
+        made.size -= 2; /* without the end of it */
+        expect_volume_refused(cases[c].parse, &made, MS_ERR_FORMAT, "its packed data are cut at byte");
+    }
 }
 
 static void packed_data_of_another_size_are_refused(void **state)
@@ -266,6 +336,8 @@ int main(void)
         cmocka_unit_test(malformed_mhd_is_refused_with_its_line),
         cmocka_unit_test(every_type_of_nrrd_is_read),
         cmocka_unit_test(every_encoding_of_nrrd_is_read),
+        cmocka_unit_test(members_of_gzip_follow_each_other),
+        cmocka_unit_test(a_wrong_checksum_is_named),
         cmocka_unit_test(packed_data_of_another_size_are_refused),
         cmocka_unit_test(malformed_headers_of_nrrd_are_refused_with_their_line),
         cmocka_unit_test(bad_data_of_nrrd_are_refused),

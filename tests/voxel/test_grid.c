@@ -109,13 +109,88 @@ static void what_is_far_away_is_refused(void **state)
     ms_grid_free(&grid);
 }
 
+/* Gives each voxel inside its number and lowers it to that of any neighbour, of 26, until nothing changes. */
+static size_t brute_pieces(size_t *largest, const ms_grid *grid)
+{
+    const int nx = grid->n[0], ny = grid->n[1], nz = grid->n[2];
+    size_t name[512], count[512] = {0}, pieces = 0;
+    const size_t voxels = ms_grid_voxels(grid);
+    assert_true(voxels <= 512);
+    for (size_t v = 0; v < voxels; v++) {
+        name[v] = v;
+    }
+    for (int changed = 1; changed;) {
+        changed = 0;
+        for (size_t m = 0; m < voxels * 27; m++) {
+            const size_t v = m / 27;
+            const int x = (int)v % nx, y = (int)v / nx % ny, z = (int)v / nx / ny;
+            const int i = x + (int)(m % 3) - 1, j = y + (int)(m / 3 % 3) - 1, k = z + (int)(m / 9 % 3) - 1;
+            if (i < 0 || j < 0 || k < 0 || i >= nx || j >= ny || k >= nz || !grid->inside[v] ||
+                !inside_at(grid, i, j, k)) {
+                continue;
+            }
+            const size_t other = name[ms_grid_index(grid, i, j, k)];
+            changed |= other < name[v];
+            name[v] = other < name[v] ? other : name[v];
+        }
+    }
+    *largest = 0;
+    for (size_t v = 0; v < voxels; v++) {
+        if (grid->inside[v]) {
+            pieces += name[v] == v;
+            count[name[v]]++;
+            *largest = count[name[v]] > *largest ? count[name[v]] : *largest;
+        }
+    }
+    return pieces;
+}
+
+static void pieces_agree_with_brute_force(void **state)
+{
+    (void)state;
+    uint64_t seed = 23;
+    int met[64] = {0}, different = 0;
+    for (int run = 0; run < 400; run++) {
+        ms_grid grid = empty_grid(1 + pick(&seed, 8), 1 + pick(&seed, 8), 1 + pick(&seed, 8), 1);
+        const double filled = between(&seed, 0, run % 2 ? 0.15 : 1);
+        for (size_t v = 0; v < ms_grid_voxels(&grid); v++) {
+            grid.inside[v] = next_uniform(&seed) < filled;
+        }
+        size_t pieces, largest, expected;
+        const size_t truth = brute_pieces(&expected, &grid);
+        assert_int_equal(ms_grid_pieces(&pieces, &largest, &grid, NULL), MS_OK);
+        assert_int_equal(pieces, truth);
+        assert_int_equal(largest, expected);
+        different += !met[pieces];
+        met[pieces] = 1;
+        ms_grid_free(&grid);
+    }
+    assert_true(different > 8);
+}
+
+/* Two voxels at steps (i, j, k) from each other: of one piece if no step is above 1. */
+static void a_corner_joins_and_a_gap_does_not(void **state)
+{
+    (void)state;
+    for (int to = 0; to < 125; to++) {
+        ms_grid grid = empty_grid(5, 5, 5, 1);
+        const int at[3] = {to % 5, to / 5 % 5, to / 25};
+        size_t pieces, largest;
+        grid.inside[ms_grid_index(&grid, 2, 2, 2)] = grid.inside[ms_grid_index(&grid, at[0], at[1], at[2])] = 1;
+        assert_int_equal(ms_grid_pieces(&pieces, &largest, &grid, NULL), MS_OK);
+        const int near = abs(at[0] - 2) < 2 && abs(at[1] - 2) < 2 && abs(at[2] - 2) < 2;
+        assert_int_equal(pieces, near ? 1 : 2);
+        assert_int_equal(largest, near && to != 62 ? 2 : 1);
+        ms_grid_free(&grid);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_extents_are_refused),
-        cmocka_unit_test(a_grid_begins_empty_with_x_fastest),
-        cmocka_unit_test(a_larger_grid_keeps_what_it_had),
-        cmocka_unit_test(what_is_far_away_is_refused),
+        cmocka_unit_test(bad_extents_are_refused),         cmocka_unit_test(a_grid_begins_empty_with_x_fastest),
+        cmocka_unit_test(a_larger_grid_keeps_what_it_had), cmocka_unit_test(what_is_far_away_is_refused),
+        cmocka_unit_test(pieces_agree_with_brute_force),   cmocka_unit_test(a_corner_joins_and_a_gap_does_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,8 +6,9 @@
 #include "base/ms_file.h"
 #include "ms_write.h"
 
-/* Readers, as ms_format.read. */
+/* Readers, as ms_format.read. In the files of YADE a fifth column is the id of a clump. */
 ms_status ms_xyzr_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
+ms_status ms_xyzr_read_yade(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
 ms_status ms_json_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
 ms_status ms_lammps_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
 

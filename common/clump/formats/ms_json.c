@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/ms_version.h"
+#include "ms_columns.h"
 #include "ms_fields.h"
 #include "ms_formats.h"
 
@@ -73,19 +74,34 @@ static ms_status parse_root(json_t **root, const ms_bytes *bytes, const char *na
                  : ms_fail(err, MS_ERR_FORMAT, "%s: line %d: %s; this is no JSON", name, where.line, where.text);
 }
 
-/* Do the columns say that a mass follows the radius? */
-static int names_mass(const json_t *root)
+/* What the columns are called, where the file says it. */
+static ms_status take_columns(ms_columns *columns, const json_t *root, const char *name, ms_error *err)
 {
-    const char *fifth = json_string_value(json_array_get(json_object_get(root, "columns"), 4));
-    return fifth && strcmp(fifth, "mass") == 0;
+    const json_t *list = json_object_get(root, "columns");
+    ms_word word[MS_COLUMNS_MOST];
+    ms_error cause;
+    size_t n = 0;
+    for (; n < json_array_size(list) && n < MS_COLUMNS_MOST; n++) {
+        const char *text = json_string_value(json_array_get(list, n));
+        word[n] = (ms_word){text ? text : "", text ? strlen(text) : 0};
+    }
+    if (list && n < 4) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: its 'columns' are no list that begins with x, y, z, r", name);
+    }
+    const ms_status status = ms_columns_read(columns, word, n, &cause);
+    return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: 'columns': %s", name, cause.text);
 }
 
 static ms_status take_spheres(ms_clump *clump, const json_t *root, const char *name, ms_error *err)
 {
     const json_t *list = json_object_get(root, "spheres");
-    const size_t n = json_array_size(list), columns = names_mass(root) ? 5 : 4;
+    ms_columns named = {0};
     double v[5];
-    ms_status status = n ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "%s: holds no list 'spheres'", name);
+    ms_status status = take_columns(&named, root, name, err);
+    const size_t n = json_array_size(list), columns = named.mass ? 5 : 4;
+    if (status == MS_OK && n == 0) {
+        status = ms_fail(err, MS_ERR_FORMAT, "%s: holds no list 'spheres'", name);
+    }
     for (size_t s = 0; s < n && status == MS_OK; s++) {
         status = take_number_list(v, columns, json_array_get(list, s))
                      ? ms_fields_add_sphere(clump, v, name, err)

@@ -32,7 +32,7 @@ const ms_format ms_formats[] = {
      "yade",
      "file for ymport.textClumps, and a script",
      MS_NEED_PARTICLE,
-     ms_xyzr_read,
+     ms_xyzr_read_yade,
      {{"", ms_yade_write}, {".py", ms_yade_script}}},
     {"mercury",
      "mercury",

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/ms_text.h"
+#include "ms_columns.h"
 #include "ms_fields.h"
 #include "ms_formats.h"
 
@@ -85,66 +86,49 @@ static int begins_with_number(const ms_text *text)
     return ms_text_word(&word, &ahead) && (strchr("+-.0123456789", *word.start) || ms_text_to_double(&value, &word));
 }
 
-/* Does the header name three columns x, y, z in some order, but not the first three in this one? */
-static int header_contradicts(const ms_text *text)
-{
-    static const char *const NAMES[] = {"x", "y", "z"};
-    ms_text ahead = *text;
-    ms_word word;
-    int in_order = 0; /* the first columns so far are x, y, z */
-    int run = 0;      /* columns in a row that are x, y or z */
-    for (int column = 0; ms_text_word(&word, &ahead); column++) {
-        int name = 0;
-        while (name < 3 && !ms_text_word_is(&word, NAMES[name])) {
-            name++;
-        }
-        in_order += name == column && name < 3;
-        run = name < 3 ? run + 1 : 0;
-        if (run == 3 && in_order < 3) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* Does the header say that a mass follows the radius? */
-static int header_names_mass(const ms_text *text)
-{
-    ms_text ahead = *text;
-    ms_word word;
-    int column = 0;
-    while (column < 5 && ms_text_word(&word, &ahead)) {
-        column++;
-    }
-    return column == 5 && ms_text_word_is(&word, "mass");
-}
-
-/* The masses, as the clump grows. */
-typedef struct masses {
-    int wanted;
+/* What is known of the columns, and the masses, as the clump grows. */
+typedef struct table {
+    ms_columns columns;
+    ms_word clump; /* the id of the first sphere's clump */
     size_t capacity;
-    double *value;
-} masses;
+    double *mass;
+} table;
 
-static ms_status add_mass(masses *m, const ms_clump *clump, double mass, ms_error *err)
+static ms_status add_mass(table *t, const ms_clump *clump, double mass, ms_error *err)
 {
-    if (clump->n_spheres > m->capacity) {
-        double *grown = realloc(m->value, clump->capacity * sizeof *grown);
+    if (clump->n_spheres > t->capacity) {
+        double *grown = realloc(t->mass, clump->capacity * sizeof *grown);
         if (!grown) {
             return ms_fail(err, MS_ERR_NOMEM, "no memory for the masses of %zu spheres", clump->n_spheres);
         }
-        m->value = grown;
-        m->capacity = clump->capacity;
+        t->mass = grown;
+        t->capacity = clump->capacity;
     }
-    m->value[clump->n_spheres - 1] = mass;
+    t->mass[clump->n_spheres - 1] = mass;
     return MS_OK;
 }
 
-static ms_status read_sphere(ms_clump *clump, masses *m, ms_text *text, ms_error *err)
+/* Spheres of several clumps are no clump. */
+static ms_status check_clump_id(table *t, ms_text *text, ms_error *err)
+{
+    ms_word id;
+    if (!ms_text_word(&id, text)) {
+        return MS_OK;
+    }
+    t->clump = t->clump.length > 0 ? t->clump : id;
+    if (id.length != t->clump.length || memcmp(id.start, t->clump.start, id.length) != 0) {
+        return ms_text_fail(err, text, "this sphere is of clump %s, those before of clump %s; keep the spheres of one",
+                            ms_text_quote(&id).text, ms_text_quote(&t->clump).text);
+    }
+    return MS_OK;
+}
+
+static ms_status read_sphere(ms_clump *clump, table *t, ms_text *text, ms_error *err)
 {
     double v[5];
+    const int mass = t->columns.mass;
     ms_status status =
-        ms_text_doubles(v, m->wanted ? 5 : 4, text, m->wanted ? "a sphere (x y z r mass)" : "a sphere (x y z r)", err);
+        ms_text_doubles(v, mass ? 5 : 4, text, mass ? "a sphere (x y z r mass)" : "a sphere (x y z r)", err);
     if (status != MS_OK) {
         return status;
     }
@@ -154,20 +138,67 @@ static ms_status read_sphere(ms_clump *clump, masses *m, ms_text *text, ms_error
     }
     const ms_sphere sphere = {.centre = {v[0], v[1], v[2]}, .radius = v[3]};
     status = ms_clump_add(clump, &sphere, err);
-    return status == MS_OK && m->wanted ? add_mass(m, clump, v[4], err) : status;
+    if (status == MS_OK && t->columns.clump) {
+        status = check_clump_id(t, text, err);
+    }
+    return status == MS_OK && mass ? add_mass(t, clump, v[4], err) : status;
 }
 
-static ms_status parse_spheres(ms_clump *clump, masses *m, ms_bytes *bytes, const char *name, ms_error *err)
+/* Takes the names of the columns from a line; the text stands on it, for messages. */
+static ms_status read_names(table *t, const ms_word *name, size_t n, const ms_text *text, ms_error *err)
 {
-    ms_text text;
-    int header_allowed = 1;
-    if (memchr(bytes->data, 0, bytes->size)) {
-        return ms_fail(err, MS_ERR_FORMAT, "%s: this is not a text file of spheres x,y,z,r", name);
+    ms_error cause;
+    const ms_status status = ms_columns_read(&t->columns, name, n, &cause);
+    return status == MS_OK ? MS_OK : ms_text_fail(err, text, "%s", cause.text);
+}
+
+/* The columns that a comment names: "# x y z r", of YADE "#format x_y_z_r_clumpId"; 0 if it names none. */
+static size_t split_comment(ms_word name[MS_COLUMNS_MOST], const ms_word *line)
+{
+    static const char YADE[] = "#format ";
+    const size_t head = sizeof YADE - 1;
+    const ms_word first = {line->start, head < line->length ? head : line->length};
+    const int yade = ms_text_word_is(&first, YADE);
+    const ms_word rest = {line->start + (yade ? head : 1), line->length - (yade ? head : 1)};
+    const size_t n = ms_columns_split(name, &rest, yade ? '_' : 0);
+    return ms_columns_name_axes(name, n) ? n : 0;
+}
+
+/* Many a tool names the columns in a comment above them. Masses take a header of their own. */
+static ms_status read_comments(table *t, ms_text text, ms_error *err)
+{
+    ms_word line = ms_text_rest(&text), name[MS_COLUMNS_MOST];
+    while (text.at < text.end && (line.length == 0 || line.start[0] == '#')) {
+        const size_t n = line.length > 0 ? split_comment(name, &line) : 0;
+        const ms_status status = read_names(t, name, n, &text, err);
+        if (status != MS_OK) {
+            return status;
+        }
+        text.at++;
+        text.line++;
+        line = ms_text_rest(&text);
     }
-    mend_line_ends(bytes);
-    ms_text_start(&text, bytes, name);
-    text.comment = '#';
+    t->columns.mass = 0;
+    return MS_OK;
+}
+
+/* The line at which the text stands, up to its comment. */
+static ms_word peek_line(const ms_text *text)
+{
+    ms_text ahead = *text;
+    ms_word line = ms_text_rest(&ahead);
+    const char *comment = memchr(line.start, '#', line.length);
+    line.length = comment ? (size_t)(comment - line.start) : line.length;
+    return line;
+}
+
+static ms_status read_spheres(ms_clump *clump, table *t, ms_bytes *bytes, ms_text text, ms_error *err)
+{
+    int header_allowed = 1;
     while (ms_text_seek(&text)) {
+        ms_word name[MS_COLUMNS_MOST];
+        const ms_word line = peek_line(&text);
+        const size_t n = header_allowed ? ms_columns_split(name, &line, 0) : 0; /* before its marks are blanked */
         const int first_is_empty = is_mark(*text.at);
         const char *flaw = separate_line(bytes, &text);
         if (line_is_empty(&text)) {
@@ -178,29 +209,49 @@ static ms_status parse_spheres(ms_clump *clump, masses *m, ms_bytes *bytes, cons
         if (flaw && (!header || first_is_empty)) { /* a nameless first column holds numbers of rows */
             return ms_text_fail(err, &text, "%s", flaw);
         }
-        if (header && header_contradicts(&text)) {
-            return ms_text_fail(err, &text,
-                                "the header names x, y, z in other columns; the first four must be x, y, z, r");
-        }
-        m->wanted |= header && header_names_mass(&text);
-        ms_status status = header ? MS_OK : read_sphere(clump, m, &text, err);
+        ms_status status = header ? read_names(t, name, n, &text, err) : read_sphere(clump, t, &text, err);
         if (status != MS_OK) {
             return status;
         }
         ms_text_skip_line(&text);
     }
-    if (clump->n_spheres == 0) {
+    return MS_OK;
+}
+
+static ms_status parse_spheres(ms_clump *clump, table *t, ms_bytes *bytes, const char *name, ms_error *err)
+{
+    ms_text text;
+    if (memchr(bytes->data, 0, bytes->size)) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: this is not a text file of spheres x,y,z,r", name);
+    }
+    mend_line_ends(bytes);
+    ms_text_start(&text, bytes, name);
+    ms_status status = read_comments(t, text, err);
+    text.comment = '#';
+    if (status == MS_OK) {
+        status = read_spheres(clump, t, bytes, text, err);
+    }
+    if (status == MS_OK && clump->n_spheres == 0) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: no spheres; give one line x,y,z,r for each", name);
     }
-    return MS_OK;
+    return status;
 }
 
 ms_status ms_xyzr_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
 {
-    masses m = {0};
+    table t = {0};
     (void)particle;
-    const ms_status status = parse_spheres(clump, &m, bytes, name, err);
-    clump->mass = m.value;
+    const ms_status status = parse_spheres(clump, &t, bytes, name, err);
+    clump->mass = t.mass;
+    return status;
+}
+
+ms_status ms_xyzr_read_yade(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
+{
+    table t = {.columns = {.clump = 1}};
+    (void)particle;
+    const ms_status status = parse_spheres(clump, &t, bytes, name, err);
+    clump->mass = t.mass;
     return status;
 }
 
