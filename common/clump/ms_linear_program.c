@@ -1,6 +1,7 @@
 #include "ms_linear_program.h"
 
 #include <glpk.h>
+#include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdlib.h>

@@ -205,7 +205,10 @@ static ms_status write_file(const ms_output_file *file, const ms_content *conten
     if (strcmp(file->path, "-") != 0 && status == MS_OK) {
         fprintf(words, "wrote %s\n", file->path);
     }
-    if (status == MS_OK && ms_write_remark(remark, content, file->format)) {
+    if (status == MS_OK) {
+        status = ms_write_remark(remark, content, file->format, err);
+    }
+    if (status == MS_OK && remark[0]) {
         fprintf(stderr, "%s: %s\n", file->path, remark);
     }
     return status;

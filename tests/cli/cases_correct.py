@@ -55,11 +55,12 @@ class Correct(Case):
             self.assertGreaterEqual(row[4], truth / 1000 * (1 - 1e-9))
 
     def test_centre_tolerance(self):
-        """Two spheres on either side of the centre, too far out. The second's share m adds 3 m to the moment across, and
-        is 1/3 with the centre met; T radii of gyration, sqrt(14 / 12), take T sqrt(14 / 12) / (10 / 12) off epsilon."""
+        """Two spheres on either side of the centre, too far out. The second's share m adds 3 m to the moment across
+        and is 1/3 with the centre met; T radii of gyration, sqrt(14 / 12), take T sqrt(14 / 12) / (10 / 12) off epsilon."""
         self.write("far.csv", "1.5,2,1.5,0.5\n4.5,2,1.5,0.5\n")
         for flags, tolerance in ((("--centre-tolerance", 0), 0), ((), 1e-7), (("--centre-tolerance", 0.02), 0.02)):
-            masses = self.mskit("correct", "far.csv", "--target", "box.obj", "--density", 1, *flags, "--json").json["masses"]
+            run = self.mskit("correct", "far.csv", "--target", "box.obj", "--density", 1, *flags, "--json")
+            masses = run.json["masses"]
             self.assertEqual(masses["centre_epsilon"], 0)
             self.assertLessEqual(abs(masses["error_centre"] - tolerance), 1e-10)
             epsilon = (0.1 + 2) / (10 / 12) - 1 - tolerance * math.sqrt(14 / 12) / (10 / 12)
@@ -139,8 +140,8 @@ class Correct(Case):
     def test_a_missed_centre_is_a_number(self):
         """The centre is 0.3 above a plane of four spheres; radius of gyration of the box: sqrt(14 / 12)."""
         self.write("flat.csv", "2,2,1.2,0.1\n3,2,1.2,0.1\n2,2.5,1.2,0.1\n3,1.5,1.2,0.1\n")
-        run = self.mskit("correct", "flat.csv", "--target", "box.obj", "--density", "1", "-o", "d.csv", "-o", "d.lammps",
-                         "--json")
+        run = self.mskit("correct", "flat.csv", "--target", "box.obj", "--density", "1", "-o", "d.csv", "-o",
+                         "d.lammps", "--json")
         self.assert_close(run.json["masses"]["centre_epsilon"], 0.3 / math.sqrt(14 / 12), 1e-9)
         self.assertTrue(run.json["masses"]["optimal"])
         self.assert_close(sums(self.rows("d.csv"), 1)[1][2], 1.2, 1e-12)
@@ -166,8 +167,8 @@ class Correct(Case):
     def test_a_dimer_in_single_precision(self):
         """Two balls of radius 1 mm that touch no third thing; the corners are right to 6e-8."""
         clump, mesh = shared_file("cases", "m01_dimer.csv"), shared_file("cases", "m01_dimer_float32.stl")
-        run = self.mskit("correct", clump, "--target", mesh, "--density", "2500", "--unit", "mm", "-o", "m.lammps", "-o",
-                         "m.csv", "--json").json
+        run = self.mskit("correct", clump, "--target", mesh, "--density", "2500", "--unit", "mm", "-o", "m.lammps",
+                         "-o", "m.csv", "--json").json
         self.assert_close(run["particle"]["mass"], 2.0795e-5, 1e-5)
         for found, truth in zip(run["particle"]["centre"], (0.75, 0.1, 0.2)):
             self.assertLess(abs(found - truth), 1e-7)
@@ -194,9 +195,10 @@ class Correct(Case):
         self.assertNotIn("a.liggghts", self.files())
 
     def test_what_engines_sum_is_said(self):
-        """Two balls of radius 1, centres 1 apart, share two caps of height 1/2: 1.1852 times the volume of the union."""
+        """Two balls of radius 1, centres 1 apart, share two caps of height 1/2: 1.1852 times the union."""
         self.write("two.csv", "0,0,0,1\n1,0,0,1\n")
-        run = self.mskit("correct", "two.csv", "--properties", "union", "--density", "1", "-o", "a.mfix", "-o", "a.yade")
+        run = self.mskit("correct", "two.csv", "--properties", "union", "--density", "1", "-o", "a.mfix", "-o",
+                         "a.yade")
         self.assert_says(run, "a.mfix: MFiX sums the spheres", "mass +19 %")
         self.assertNotIn("a.yade:", run.err)
         self.write("half.csv", "0,0,0,0.5\n")  # a quarter of the moments, at the same mass

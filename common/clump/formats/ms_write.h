@@ -75,10 +75,12 @@ MS_API ms_status ms_write_check(const ms_content *content, const ms_format *form
 /**
  * What is off where the engine sums the spheres.
  *
- * @param[out] text a sentence with the errors of mass, centre and inertia; empty where there is nothing to say
- * @return nonzero if there is: the engine sums, and some error is above 1/1000
+ * @param[out] text a sentence with the errors of mass, centre and inertia; empty where there is nothing to say: the
+ *                  engine does not sum, no error is above 1/1000, or the particle or the masses are not known
+ * @return MS_OK; MS_ERR_NOMEM; as ms_particle_from_spheres
  */
-MS_API int ms_write_remark(char text[MS_WRITE_REMARK], const ms_content *content, const ms_format *format);
+MS_API ms_status ms_write_remark(char text[MS_WRITE_REMARK], const ms_content *content, const ms_format *format,
+                                 ms_error *err);
 
 /**
  * Writes a clump, each file under a temporary name that is then renamed. Beside a template stands the way back to the

@@ -25,8 +25,8 @@ static ms_status sum_spheres(ms_particle *sum, ms_template *made, ms_sum kind, m
     return status == MS_OK ? ms_particle_from_spheres(sum, &made->clump, 1, err) : status;
 }
 
-static int put_errors(char text[MS_WRITE_REMARK], const ms_format *format, const ms_particle *sum,
-                      const ms_particle *truth)
+static void put_errors(char text[MS_WRITE_REMARK], const ms_format *format, const ms_particle *sum,
+                       const ms_particle *truth)
 {
     const double mean = (truth->inertia[0][0] + truth->inertia[1][1] + truth->inertia[2][2]) / 3;
     const double mass = sum->mass / truth->mass - 1;
@@ -38,28 +38,30 @@ static int put_errors(char text[MS_WRITE_REMARK], const ms_format *format, const
         product = fmax(product, fabs(sum->inertia[m][(m + 1) % 3]) / mean);
     }
     if (fmax(fmax(fabs(mass), centre), fmax(fabs(moment), product)) < WORTH) {
-        return 0;
+        return;
     }
     snprintf(text, MS_WRITE_REMARK,
              "%s: mass %+.2g %%, centre off by %.2g radii of gyration, moments of inertia up to %+.2g %%, products up "
              "to %.2g %% of the mean moment",
              format->sums, 100 * mass, centre, 100 * moment, 100 * product);
-    return 1;
 }
 
-int ms_write_remark(char text[MS_WRITE_REMARK], const ms_content *content, const ms_format *format)
+ms_status ms_write_remark(char text[MS_WRITE_REMARK], const ms_content *content, const ms_format *format, ms_error *err)
 {
     ms_template made;
     ms_particle sum;
-    int found = 0;
     text[0] = '\0';
-    if (format->sum == MS_SUM_NONE || !content->particle || (format->sum == MS_SUM_MASSES && !content->clump->mass) ||
-        ms_template_make(&made, content->clump, content->particle, NULL) != MS_OK) {
-        return 0;
+    if (format->sum == MS_SUM_NONE || !content->particle || (format->sum == MS_SUM_MASSES && !content->clump->mass)) {
+        return MS_OK;
     }
-    if (sum_spheres(&sum, &made, format->sum, NULL) == MS_OK) {
-        found = put_errors(text, format, &sum, &made.particle);
+    ms_status status = ms_template_make(&made, content->clump, content->particle, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    status = sum_spheres(&sum, &made, format->sum, err);
+    if (status == MS_OK) {
+        put_errors(text, format, &sum, &made.particle);
     }
     ms_template_free(&made);
-    return found;
+    return status;
 }
