@@ -61,8 +61,8 @@ class Columns(Case):
                          "shape,checksum,label,generator,options,seed,cells,n_asked,n,stopped_by,eta,dice,coverage,"
                          "overshoot,off_volume,protrusion_max,protrusion_rms,gap_max,gap_rms,smallest_radius_ratio,"
                          "pieces,inertia_union,inertia_corrected,epsilon,products_epsilon,centre_epsilon,voxel_size,"
-                         "seconds_read,seconds_voxelize,seconds_distance,seconds_generate,seconds_score,seconds_correct,repeats,"
-                         "peak_memory_kb,threads,version,cause")
+                         "seconds_read,seconds_voxelize,seconds_distance,seconds_generate,seconds_score,"
+                         "seconds_correct,repeats,peak_memory_kb,threads,version,cause")
 
     def test_csv_of_stability(self):
         self.mskit("stability", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10, "--runs", 1, "--perturb", "seed")

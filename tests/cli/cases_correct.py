@@ -56,7 +56,7 @@ class Correct(Case):
 
     def test_centre_tolerance(self):
         """Two spheres on either side of the centre, too far out. The second's share m adds 3 m to the moment across
-        and is 1/3 with the centre met; T radii of gyration, sqrt(14 / 12), take T sqrt(14 / 12) / (10 / 12) off epsilon."""
+        and is 1/3 with the centre met; T radii of gyration, sqrt(14 / 12), take T sqrt(14 / 12) / (10 / 12) off it."""
         self.write("far.csv", "1.5,2,1.5,0.5\n4.5,2,1.5,0.5\n")
         for flags, tolerance in ((("--centre-tolerance", 0), 0), ((), 1e-7), (("--centre-tolerance", 0.02), 0.02)):
             run = self.mskit("correct", "far.csv", "--target", "box.obj", "--density", 1, *flags, "--json")
