@@ -52,10 +52,11 @@ def per_cent(text):
 
 
 def inertia(row):
-    """Before and after correction."""
+    """Before and after correction; none where no masses meet the centre."""
     if not row or not row["inertia_union"]:
         return "-"
-    after = per_cent(row["inertia_corrected"]) if row["inertia_corrected"] else "none"
+    met = row["inertia_corrected"] and float(row.get("centre_epsilon") or 0) <= 1e-7
+    after = per_cent(row["inertia_corrected"]) if met else "none"
     return f"{per_cent(row['inertia_union'])} / {after}"
 
 

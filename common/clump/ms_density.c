@@ -7,7 +7,7 @@
 #include "base/ms_vector.h"
 #include "ms_linear_program.h"
 
-/* Errors below this are rounding. */
+/* Errors below this are rounding, and are said to be 0. */
 static const double EXACT = 1e-9;
 
 /* The equations (2) to (5) without units: lengths over the radius of gyration and from the true centre, masses over
@@ -122,44 +122,6 @@ static ms_linear_program *make_programme(const equations *e, double least, doubl
     return p;
 }
 
-/* Do all centres lie on a point (0), a line (1), in a plane (2), or not (3)? */
-static int count_dimensions(const equations *e)
-{
-    ms_principal principal;
-    ms_body spread = {.volume = 1};
-    double mean[3] = {0};
-    for (size_t s = 0; s < e->n; s++) {
-        for (int k = 0; k < 3; k++) {
-            mean[k] += e->place[s][k] / (double)e->n;
-        }
-    }
-    for (size_t s = 0; s < e->n; s++) {
-        for (int k = 0; k < 9; k++) {
-            spread.inertia[k / 3][k % 3] += (e->place[s][k / 3] - mean[k / 3]) * (e->place[s][k % 3] - mean[k % 3]);
-        }
-    }
-    int found = 0;
-    if (ms_inertia_principal(&principal, &spread, NULL) != MS_OK) {
-        return 3;
-    }
-    for (int m = 0; m < 3; m++) {
-        found += principal.moment[m] > EXACT * EXACT * (double)e->n;
-    }
-    return found;
-}
-
-static ms_status fail_centre(const equations *e, double least_error, double tolerance, ms_error *err)
-{
-    static const char *const WHY[] = {"all centres coincide", "all centres lie on one line",
-                                      "all centres lie in one plane",
-                                      "it is outside the hull of the centres, or too near to it for the bounds"};
-    return ms_fail(err, MS_ERR_SHAPE,
-                   "no masses of these %zu spheres have the centre of mass of the particle (Yuan's eq. 4): %s; the "
-                   "nearest they come is %.3g radii of gyration along an axis, and %.3g is allowed. More spheres would "
-                   "help, or a tolerance on the centre of mass of %.2g",
-                   e->n, WHY[count_dimensions(e)], least_error, tolerance, 1.01 * least_error);
-}
-
 /* What the masses sum to, by other means than the rows of the programme. */
 static ms_status judge_masses(ms_density_report *report, const equations *e, const ms_clump *clump,
                               const ms_particle *particle, ms_error *err)
@@ -197,26 +159,60 @@ typedef struct solution {
     const equations *e;
     double least, most, centre_tolerance;
     int input_frame;
-    double *share; /* of the mass, one per sphere */
+    double *share; /* of the mass, one per sphere; those of the last step that came to an end */
     double reached[GOALS];
+    int optimal;
 } solution;
 
+/* The steps in their order. The centre comes twice: what it was allowed to be off and is not needed is taken back. */
+static ms_status make_steps(solution *s, ms_linear_program *p, ms_error *err)
+{
+    static const enum goal STEP[] = {CENTRE, EPSILON, PRODUCTS, CENTRE};
+    double again;
+    for (size_t k = 0; k < sizeof STEP / sizeof *STEP; k++) {
+        const double allowed = k == 0 ? s->centre_tolerance : 0;
+        ms_status status = ms_linear_program_minimise(p, STEP[k], allowed, k == 3 ? &again : &s->reached[STEP[k]], err);
+        if (status != MS_OK) {
+            return status;
+        }
+        ms_linear_program_shares(p, s->share);
+    }
+    ms_status status = ms_linear_program_spread(p, err);
+    if (status == MS_OK) {
+        ms_linear_program_shares(p, s->share);
+    }
+    return status;
+}
+
+/* Even masses obey the bounds: they stand where the simplex method does not come to the end of its first step. */
 static ms_status solve_shares(void *context, ms_error *err)
 {
     solution *s = context;
+    for (size_t m = 0; m < s->e->n; m++) {
+        s->share[m] = 1 / (double)s->e->n;
+    }
     ms_linear_program *p = make_programme(s->e, s->least, s->most, s->input_frame, err);
-    ms_status status = p ? MS_OK : MS_ERR_NOMEM;
-    for (int goal = 0; goal < GOALS && status == MS_OK; goal++) {
-        status = ms_linear_program_minimise(p, goal, EXACT, &s->reached[goal], err);
-        if (goal == CENTRE && status == MS_OK && s->reached[CENTRE] > s->centre_tolerance) {
-            status = fail_centre(s->e, s->reached[CENTRE], s->centre_tolerance, err);
-        }
-    }
-    if (status == MS_OK) {
-        status = ms_linear_program_spread(p, s->share, err);
-    }
+    ms_status status = p ? make_steps(s, p, err) : MS_ERR_NOMEM;
     ms_linear_program_free(p);
-    return status;
+    s->optimal = status == MS_OK;
+    return status == MS_ERR_LIMIT ? MS_OK : status;
+}
+
+static double largest(const double v[3])
+{
+    return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+}
+
+/* The least errors that masses can have; of masses that may not be the best ones, those that they have. */
+static void note_reached(ms_density_report *report, const solution *s)
+{
+    const double had[GOALS] = {report->error_centre, largest(report->error_moment), largest(report->error_product)};
+    double *const out[GOALS] = {&report->centre, &report->epsilon, &report->products};
+    for (int goal = 0; goal < GOALS; goal++) {
+        const double error = s->optimal ? s->reached[goal] : had[goal];
+        *out[goal] = error > EXACT ? error : 0;
+    }
+    report->optimal = s->optimal;
 }
 
 static ms_status check_clump(const ms_clump *clump, double least, double most, const ms_density_options *options,
@@ -251,8 +247,9 @@ ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_
     const double n = (double)clump->n_spheres;
     const double least = options->least > 0 ? options->least : fmin(1e-3, 0.5 / n);
     const double most = options->most > 0 ? options->most : 1;
+    const double tolerance = options->centre_tolerance > 0 ? options->centre_tolerance : MS_DENSITY_CENTRE_TOLERANCE;
     equations e = {0};
-    solution s = {&e, least, most, options->centre_tolerance, options->input_frame, NULL, {0}};
+    solution s = {&e, least, most, tolerance, options->input_frame, NULL, {0}, 0};
     memset(report, 0, sizeof *report);
     ms_status status = check_clump(clump, least, most, options, err);
     if (status == MS_OK) {
@@ -266,12 +263,11 @@ ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_
         status = ms_linear_program_apart(solve_shares, &s, err);
     }
     if (status == MS_OK) {
-        *report = (ms_density_report){
-            .centre = s.reached[CENTRE], .epsilon = s.reached[EPSILON], .products = s.reached[PRODUCTS]};
         for (size_t m = 0; m < e.n; m++) {
             clump->mass[m] *= particle->mass;
         }
         status = judge_masses(report, &e, clump, particle, err);
+        note_reached(report, &s);
     }
     if (status != MS_OK) {
         memset(report, 0, sizeof *report);

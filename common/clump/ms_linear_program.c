@@ -1,6 +1,7 @@
 #include "ms_linear_program.h"
 
 #include <glpk.h>
+#include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdlib.h>
@@ -14,9 +15,13 @@ struct ms_linear_program {
     size_t n;
     int n_goals;
     double most;
-    int *index; /* room for a row; GLPK counts from 1 */
+    double tolerance; /* to which the simplex method meets bounds */
+    int *index;       /* room for a row; GLPK counts from 1 */
     double *value;
 };
+
+/* Of the simplex method: the one to begin with, and the last one that is tried where it finds no end. */
+static const double FINEST = 1e-11, COARSEST = 1e-6;
 
 /* GLPK aborts when it has no memory; this returns to where it was called instead. */
 static void leave_solver(void *back)
@@ -125,7 +130,7 @@ ms_linear_program *ms_linear_program_new(size_t n, int n_goals, double least, do
 {
     ms_linear_program *p = calloc(1, sizeof *p);
     if (p) {
-        *p = (ms_linear_program){.n = n, .n_goals = n_goals, .most = most};
+        *p = (ms_linear_program){.n = n, .n_goals = n_goals, .most = most, .tolerance = FINEST};
         p->index = malloc((n + 4) * sizeof *p->index);
         p->value = malloc((n + 4) * sizeof *p->value);
     }
@@ -181,8 +186,8 @@ ms_status ms_linear_program_equation(ms_linear_program *p, const double *row, do
     return MS_OK;
 }
 
-/* Minimises the objective that is set. */
-static ms_status minimise_objective(ms_linear_program *p, ms_error *err)
+/* One run of the simplex method, from the basis that stands or, afresh, from one that GLPK makes. */
+static ms_status run_simplex(ms_linear_program *p, int afresh, ms_error *err)
 {
     glp_smcp how;
     jmp_buf back;
@@ -192,8 +197,11 @@ static ms_status minimise_objective(ms_linear_program *p, ms_error *err)
     }
     glp_init_smcp(&how);
     how.msg_lev = GLP_MSG_OFF;
-    how.tol_bnd = how.tol_dj = 1e-10;
+    how.tol_bnd = how.tol_dj = p->tolerance;
     how.it_lim = 20000 + 20 * (int)p->n;
+    if (afresh) {
+        glp_adv_basis(p->problem, 0);
+    }
     const int failed = glp_simplex(p->problem, &how), status = glp_get_status(p->problem);
     end_guard();
     if (failed || status != GLP_OPT) {
@@ -205,7 +213,21 @@ static ms_status minimise_objective(ms_linear_program *p, ms_error *err)
     return MS_OK;
 }
 
-ms_status ms_linear_program_minimise(ms_linear_program *p, int goal, double zero, double *value, ms_error *err)
+/* Minimises the objective that is set. Where rounding hides the end, bounds are met less closely. */
+static ms_status minimise_objective(ms_linear_program *p, ms_error *err)
+{
+    ms_status status = run_simplex(p, 0, err);
+    if (status == MS_ERR_LIMIT) {
+        status = run_simplex(p, 1, err);
+    }
+    while (status == MS_ERR_LIMIT && p->tolerance < COARSEST) {
+        p->tolerance = fmin(100 * p->tolerance, COARSEST);
+        status = run_simplex(p, 1, err);
+    }
+    return status;
+}
+
+ms_status ms_linear_program_minimise(ms_linear_program *p, int goal, double allowed, double *value, ms_error *err)
 {
     const int column = (int)p->n + 2 + goal;
     glp_set_obj_coef(p->problem, column, 1);
@@ -213,23 +235,27 @@ ms_status ms_linear_program_minimise(ms_linear_program *p, int goal, double zero
     if (status != MS_OK) {
         return status;
     }
-    *value = glp_get_col_prim(p->problem, column);
-    *value = *value > zero ? *value : 0;
+    *value = fmax(glp_get_col_prim(p->problem, column), 0);
     glp_set_obj_coef(p->problem, column, 0);
-    /* A hair above the least value, lest rounding leave nothing. */
-    glp_set_col_bnds(p->problem, column, *value > 0 ? GLP_DB : GLP_FX, 0, *value * (1 + zero));
+    /* Above the least value by more than the simplex method's own tolerance: a bound that it meets only by rounding may
+     * leave no masses at all. */
+    const double bound = fmax(*value, allowed);
+    glp_set_col_bnds(p->problem, column, GLP_DB, 0, bound + 2 * p->tolerance * (1 + bound));
     return MS_OK;
 }
 
-ms_status ms_linear_program_spread(ms_linear_program *p, double *share, ms_error *err)
+ms_status ms_linear_program_spread(ms_linear_program *p, ms_error *err)
 {
     const int u = (int)p->n + 1;
     glp_set_obj_coef(p->problem, u, -1);
-    ms_status status = minimise_objective(p, err);
-    for (size_t s = 0; s < p->n && status == MS_OK; s++) {
-        share[s] = glp_get_col_prim(p->problem, u) + glp_get_col_prim(p->problem, (int)s + 1);
+    return minimise_objective(p, err);
+}
+
+void ms_linear_program_shares(const ms_linear_program *p, double *share)
+{
+    for (size_t s = 0; s < p->n; s++) {
+        share[s] = glp_get_col_prim(p->problem, (int)p->n + 1) + glp_get_col_prim(p->problem, (int)s + 1);
     }
-    return status;
 }
 
 void ms_linear_program_free(ms_linear_program *p)

@@ -36,16 +36,20 @@ ms_status ms_linear_program_equation(ms_linear_program *p, const double *row, do
                                      ms_error *err);
 
 /**
- * Makes a goal's column least, then holds it there.
+ * Makes a goal's column least, then holds it there. It may be made least again, when others are held.
  *
- * @param      zero  what is below counts as 0
- * @param[out] value the least one
- * @return MS_OK; MS_ERR_LIMIT if the simplex method finds no end; MS_ERR_NOMEM
+ * @param      allowed it is held no lower than here
+ * @param[out] value   the least one, 0 or more
+ * @return MS_OK; MS_ERR_LIMIT if the simplex method finds no end, from whatever basis and with bounds met to 1e-6
+ *         instead of 1e-11: no shares are to be had then; MS_ERR_NOMEM
  */
-ms_status ms_linear_program_minimise(ms_linear_program *p, int goal, double zero, double *value, ms_error *err);
+ms_status ms_linear_program_minimise(ms_linear_program *p, int goal, double allowed, double *value, ms_error *err);
 
-/** Makes the smallest share greatest. @param[out] share n values. @return as ms_linear_program_minimise */
-ms_status ms_linear_program_spread(ms_linear_program *p, double *share, ms_error *err);
+/** Makes the smallest share greatest. @return as ms_linear_program_minimise */
+ms_status ms_linear_program_spread(ms_linear_program *p, ms_error *err);
+
+/** The shares that the last step found, which had MS_OK. @param[out] share n values */
+void ms_linear_program_shares(const ms_linear_program *p, double *share);
 
 void ms_linear_program_free(ms_linear_program *p);
 

@@ -28,11 +28,14 @@ ms_status ms_mass_flag(int *taken, ms_mass_flags *flags, const char *name, const
         {"most-mass", &flags->options.most, DBL_MIN, 1},
         {"centre-tolerance", &flags->options.centre_tolerance, 0, DBL_MAX},
     };
+    ms_status status;
     *taken = 1;
     for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++) {
         if (strcmp(name, numbers[n].name) == 0) {
             flags->any = 1;
-            return ms_flags_number(numbers[n].value, name, value, numbers[n].lo, numbers[n].hi, err);
+            status = ms_flags_number(numbers[n].value, name, value, numbers[n].lo, numbers[n].hi, err);
+            *numbers[n].value = fmax(*numbers[n].value, DBL_MIN); /* 0, where it is allowed, is not "not given" */
+            return status;
         }
     }
     flags->any |= strcmp(name, "unit") == 0 || strcmp(name, "properties") == 0 || strcmp(name, "axes") == 0;
@@ -110,8 +113,12 @@ void ms_mass_print(FILE *stream, const ms_mass *mass)
     if (r->products > 0.01 && !mass->all_at_once) {
         fprintf(stream, "  %-34s --axes input meets them with the moments, at a larger epsilon\n", "");
     }
-    if (r->centre > 0) {
-        fprintf(stream, "  %-34s %.3g\n", "centre of mass / radius of gyration", r->centre);
+    fprintf(stream, "  %-34s %.3g\n", "centre of mass / radius of gyration", r->error_centre);
+    if (r->centre > MS_DENSITY_CENTRE_TOLERANCE) {
+        fprintf(stream, "  %-34s the least is %.3g along an axis; more spheres may help\n", "", r->centre);
+    }
+    if (!r->optimal) {
+        fprintf(stream, "  %-34s the simplex method came to no end; better ones may exist\n", "masses of the spheres");
     }
     fprintf(stream, "  %-34s mass %.1e, centre %.1e, moments %.1e, products %.1e\n", "errors of the sums",
             r->error_mass, r->error_centre, largest(r->error_moment), largest(r->error_product));
@@ -125,9 +132,9 @@ static json_t *pack_mass_vector(const double v[3])
 json_t *ms_mass_json(const ms_mass *mass)
 {
     const ms_density_report *r = &mass->report;
-    return json_pack("{s:f,s:f,s:f,s:f,s:f,s:f,s:f,s:o,s:o,s:f}", "epsilon", r->epsilon, "products_epsilon",
-                     r->products, "centre_epsilon", r->centre, "least", r->least_mass, "most", r->most_mass,
-                     "error_mass", r->error_mass, "error_centre", r->error_centre, "error_moments",
+    return json_pack("{s:f,s:f,s:f,s:b,s:f,s:f,s:f,s:f,s:o,s:o,s:f}", "epsilon", r->epsilon, "products_epsilon",
+                     r->products, "centre_epsilon", r->centre, "optimal", r->optimal, "least", r->least_mass, "most",
+                     r->most_mass, "error_mass", r->error_mass, "error_centre", r->error_centre, "error_moments",
                      pack_mass_vector(r->error_moment), "error_products", pack_mass_vector(r->error_product), "seconds",
                      mass->seconds);
 }

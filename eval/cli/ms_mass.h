@@ -20,7 +20,7 @@
     {"axes", 0, "principal|input", "axes of the equations (principal)"}, \
     {"least-mass", 0, "M", "least mass of a sphere / that of the particle (1/1000, or 1/2n for n > 500)"}, \
     {"most-mass", 0, "M", "greatest mass of a sphere / that of the particle (1)"}, \
-    {"centre-tolerance", 0, "T", "how far the centre of mass may be off / radius of gyration (0)"}
+    {"centre-tolerance", 0, "T", "how far the centre of mass may be off for better moments / radius of gyration (1e-7)"}
 /* clang-format on */
 
 typedef struct ms_mass_flags {

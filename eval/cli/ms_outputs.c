@@ -187,17 +187,49 @@ ms_status ms_outputs_try(const ms_outputs *outputs, const char *source, ms_error
     return status;
 }
 
-ms_status ms_outputs_write(const ms_outputs *outputs, const ms_content *content, FILE *words, ms_error *err)
+/* Of all formats, those that cannot hold this clump are passed over. */
+static int pass_over(const ms_outputs *outputs, const ms_output_file *file, const ms_content *content)
 {
-    ms_status status = MS_OK;
-    for (size_t f = 0; f < outputs->n_files && status == MS_OK; f++) {
-        const ms_output_file *file = &outputs->file[f];
-        status = ms_write_clump(content, file->path, file->format, err);
-        if (strcmp(file->path, "-") != 0 && status == MS_OK) {
-            fprintf(words, "wrote %s\n", file->path);
-        }
+    ms_error why;
+    const int passed = outputs->folder && file->owned && ms_write_check(content, file->format, &why) != MS_OK;
+    if (passed) {
+        fprintf(stderr, "%s is not written: %s\n", file->path, why.text);
+    }
+    return passed;
+}
+
+static ms_status write_file(const ms_output_file *file, const ms_content *content, FILE *words, ms_error *err)
+{
+    char remark[MS_WRITE_REMARK];
+    ms_status status = ms_write_clump(content, file->path, file->format, err);
+    if (strcmp(file->path, "-") != 0 && status == MS_OK) {
+        fprintf(words, "wrote %s\n", file->path);
+    }
+    if (status == MS_OK) {
+        status = ms_write_remark(remark, content, file->format, err);
+    }
+    if (status == MS_OK && remark[0]) {
+        fprintf(stderr, "%s: %s\n", file->path, remark);
     }
     return status;
+}
+
+ms_status ms_outputs_write(const ms_outputs *outputs, const ms_content *content, FILE *words, ms_error *err)
+{
+    ms_status first = MS_OK;
+    for (size_t f = 0; f < outputs->n_files; f++) {
+        ms_error cause;
+        if (pass_over(outputs, &outputs->file[f], content)) {
+            continue;
+        }
+        ms_status status = write_file(&outputs->file[f], content, words, &cause);
+        if (status != MS_OK && first == MS_OK) {
+            first = ms_fail(err, status, "%s", cause.text);
+        } else if (status != MS_OK) {
+            fprintf(stderr, "%s\n", cause.text);
+        }
+    }
+    return first;
 }
 
 void ms_outputs_free(ms_outputs *outputs)

@@ -11,7 +11,7 @@ enum { MS_OUTPUTS_MAX = 16, MS_OUTPUTS_FORMATS = 16 };
 #define MS_OUTPUT_FLAGS \
     {"output", 'o', "FILE", "the clump, its format by its ending, - for standard output; may be repeated"}, \
     {"format", 0, "F", "format of the outputs whatever their ending; repeated: one file of each, by default names"}, \
-    {"all-formats", 0, "DIR", "one file of each format into this folder"}
+    {"all-formats", 0, "DIR", "one file of each format that can hold the clump into this folder"}
 /* clang-format on */
 
 /** One file to write. */
@@ -59,7 +59,12 @@ ms_status ms_outputs_make_folder(const char *path, ms_error *err);
 /** ms_outputs_try_file of all files; makes the folder of --all-formats. */
 ms_status ms_outputs_try(const ms_outputs *outputs, const char *source, ms_error *err);
 
-/** Writes all files and says so on `words`. @return as ms_write_clump */
+/**
+ * Writes all files and says so on `words`. What is off where an engine sums the spheres, and which of all formats cannot
+ * hold this clump, goes to stderr. A file that cannot be written does not keep back those after it.
+ *
+ * @return MS_OK; as ms_write_clump of the first file that failed
+ */
 ms_status ms_outputs_write(const ms_outputs *outputs, const ms_content *content, FILE *words, ms_error *err);
 
 void ms_outputs_free(ms_outputs *outputs);

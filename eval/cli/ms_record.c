@@ -3,6 +3,7 @@
 #include <omp.h>
 #include <sys/resource.h>
 
+#include "clump/formats/ms_json.h"
 #include "ms_json_object.h"
 #include "ms_report.h"
 
@@ -59,6 +60,7 @@ json_t *ms_record_json(const ms_generator *generator, const ms_settings *setting
                              ms_report_metrics_json(&r->metrics), "seconds", seconds, "threads", omp_get_max_threads(),
                              "peak_memory_kb", (json_int_t)usage.ru_maxrss);
     if (r->mass.corrected) {
+        ms_json_object_set(&json, "particle", ms_json_from_particle(&r->mass.particle));
         ms_json_object_set(&json, "masses", ms_mass_json(&r->mass));
     }
     return json;

@@ -23,6 +23,7 @@
     X(CORRECTED, "inertia_corrected") \
     X(EPSILON, "epsilon") \
     X(PRODUCTS, "products_epsilon") \
+    X(CENTRE, "centre_epsilon") \
     X(VOXEL, "voxel_size") \
     X(READ, "seconds_read") \
     X(VOXELIZE, "seconds_voxelize") \

@@ -178,6 +178,7 @@ static ms_status put_masses(ms_compare_row *row, ms_clump *clump, const ms_targe
     row->number[MS_COLUMN_CORRECTED] = difference / sum;
     row->number[MS_COLUMN_EPSILON] = report.epsilon;
     row->number[MS_COLUMN_PRODUCTS] = report.products;
+    row->number[MS_COLUMN_CENTRE] = report.centre;
     return MS_OK;
 }
 

@@ -7,8 +7,8 @@ SCORES = ("spheres eta dice coverage overshoot off_volume protrusion_max protrus
           "smallest_radius_ratio pieces volume inertia_error.moments inertia_error.weighted_mean "
           "inertia_error.axes_degrees inertia_error.centroid")
 TARGET = "path fnv1a rule grid voxel_size grid_origin voxels triangles closed"
-MASSES = ("epsilon products_epsilon centre_epsilon least most error_mass error_centre error_moments error_products "
-          "seconds")
+MASSES = ("epsilon products_epsilon centre_epsilon optimal least most error_mass error_centre error_moments "
+          "error_products seconds")
 PARTICLE = "scale density mass centre inertia principal_moments principal_axes"
 SECONDS = "read voxelize distance generate score cpu"
 RECORD = ("generator options.spacing options.boost options.radius-offset options.order options.confine options.plane "
@@ -44,8 +44,7 @@ class Columns(Case):
     def test_csv_of_clumps(self):
         self.clump()
         self.assertEqual(self.header("c.csv"), "x,y,z,r")
-        self.mskit("correct", "c.csv", "--target", "grain.stl", "--density", 1000, "--centre-tolerance", 0.5,
-                   "--cells", 15, "-o", "m.csv")
+        self.mskit("correct", "c.csv", "--target", "grain.stl", "--density", 1000, "--cells", 15, "-o", "m.csv")
         self.assertEqual(self.header("m.csv"), "x,y,z,r,mass,density")
 
     def test_csv_of_curves(self):
@@ -61,9 +60,9 @@ class Columns(Case):
         self.assertEqual(self.header("compare.csv"),
                          "shape,checksum,label,generator,options,seed,cells,n_asked,n,stopped_by,eta,dice,coverage,"
                          "overshoot,off_volume,protrusion_max,protrusion_rms,gap_max,gap_rms,smallest_radius_ratio,"
-                         "pieces,inertia_union,inertia_corrected,epsilon,products_epsilon,voxel_size,seconds_read,"
-                         "seconds_voxelize,seconds_distance,seconds_generate,seconds_score,seconds_correct,repeats,"
-                         "peak_memory_kb,threads,version,cause")
+                         "pieces,inertia_union,inertia_corrected,epsilon,products_epsilon,centre_epsilon,voxel_size,"
+                         "seconds_read,seconds_voxelize,seconds_distance,seconds_generate,seconds_score,"
+                         "seconds_correct,repeats,peak_memory_kb,threads,version,cause")
 
     def test_csv_of_stability(self):
         self.mskit("stability", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10, "--runs", 1, "--perturb", "seed")
@@ -80,6 +79,8 @@ class Columns(Case):
         written = json.loads(self.read("c.json"))
         self.assertEqual(keys(written), ["mskit"] + record + ["columns", "spheres"])
         self.assertEqual(written["columns"], ["x", "y", "z", "r"])
+        run = self.generate("grain.stl", "-g", "mss", "-n", 5, "--cells", 15, "--correct", "--density", 1000)
+        self.assertEqual(keys(run), record + under("particle", PARTICLE) + under("masses", MASSES))
 
     def test_json_of_score(self):
         self.clump()
@@ -88,8 +89,8 @@ class Columns(Case):
 
     def test_json_of_correct(self):
         self.clump()
-        run = self.mskit("correct", "c.csv", "--target", "grain.stl", "--density", 1000, "--centre-tolerance", 0.5,
-                         "--cells", 15, "--json", "-o", "m.json", "-o", "m.lammps").json
+        run = self.mskit("correct", "c.csv", "--target", "grain.stl", "--density", 1000, "--cells", 15,
+                         "--json", "-o", "m.json", "-o", "m.lammps").json
         self.assertEqual(keys(run), under("particle", PARTICLE) + under("masses", MASSES))
         self.assertEqual(json.loads(self.read("m.json"))["columns"], ["x", "y", "z", "r", "mass", "density"])
         frame = json.loads(self.read("m.frame.json"))

@@ -3,7 +3,7 @@ import json
 import math
 import os
 
-from support import Case, box_obj, npy
+from support import Case, box_obj, npy, shared_file
 
 DENSITY = 2650
 GRID = ("--cells", "20")
@@ -36,15 +36,15 @@ class Correct(Case):
 
     def test_the_sums_are_those_of_the_box(self):
         """In millimetres: 6 mm^3; the inertia of a box is m (b^2 + c^2) / 12."""
-        self.mskit("correct", "c.csv", "--target", "box.obj", "--density", DENSITY, "--unit", "mm", "-o", "d.csv")
+        flags = ("--density", DENSITY, "--unit", "mm", "--centre-tolerance", 0)
+        self.mskit("correct", "c.csv", "--target", "box.obj", *flags, "-o", "d.csv")
         rows = self.rows("d.csv")
         mass, centre, inertia = sums(rows, 1e-3)
         truth = 6e-9 * DENSITY
         self.assert_close(mass, truth, 1e-12)
         for k, middle in enumerate((2.5, 2, 1.5)):
             self.assert_close(centre[k], middle, 1e-9)
-        report = self.mskit("correct", "c.csv", "--target", "box.obj", "--density", DENSITY, "--unit", "mm",
-                            "--json").json
+        report = self.mskit("correct", "c.csv", "--target", "box.obj", *flags, "--json").json
         moments = [truth * square * 1e-6 / 12 for square in (5, 10, 13)]
         for k, moment in enumerate(moments):
             self.assert_close(report["particle"]["principal_moments"][k], moment, 1e-12)
@@ -53,6 +53,18 @@ class Correct(Case):
         for row in rows:
             self.assert_close(row[5] * 4 / 3 * math.pi * (1e-3 * row[3]) ** 3, row[4], 1e-14)
             self.assertGreaterEqual(row[4], truth / 1000 * (1 - 1e-9))
+
+    def test_centre_tolerance(self):
+        """Two spheres on either side of the centre, too far out. The second's share m adds 3 m to the moment across
+        and is 1/3 with the centre met; T radii of gyration, sqrt(14 / 12), take T sqrt(14 / 12) / (10 / 12) off it."""
+        self.write("far.csv", "1.5,2,1.5,0.5\n4.5,2,1.5,0.5\n")
+        for flags, tolerance in ((("--centre-tolerance", 0), 0), ((), 1e-7), (("--centre-tolerance", 0.02), 0.02)):
+            run = self.mskit("correct", "far.csv", "--target", "box.obj", "--density", 1, *flags, "--json")
+            masses = run.json["masses"]
+            self.assertEqual(masses["centre_epsilon"], 0)
+            self.assertLessEqual(abs(masses["error_centre"] - tolerance), 1e-10)
+            epsilon = (0.1 + 2) / (10 / 12) - 1 - tolerance * math.sqrt(14 / 12) / (10 / 12)
+            self.assertLessEqual(abs(masses["epsilon"] - epsilon), 1e-10)
 
     def test_units(self):
         mass = {}
@@ -125,12 +137,88 @@ class Correct(Case):
         self.mskit("convert", "d.csv", "--unit", "mm", "--density", DENSITY, "-o", "t.lammps")
         self.assert_close(float(self.read("t.lammps").decode().split("\n")[3].split()[0]), 6e-9 * DENSITY, 1e-12)
 
+    def test_a_missed_centre_is_a_number(self):
+        """The centre is 0.3 above a plane of four spheres; radius of gyration of the box: sqrt(14 / 12)."""
+        self.write("flat.csv", "2,2,1.2,0.1\n3,2,1.2,0.1\n2,2.5,1.2,0.1\n3,1.5,1.2,0.1\n")
+        run = self.mskit("correct", "flat.csv", "--target", "box.obj", "--density", "1", "-o", "d.csv", "-o",
+                         "d.lammps", "--json")
+        self.assert_close(run.json["masses"]["centre_epsilon"], 0.3 / math.sqrt(14 / 12), 1e-9)
+        self.assertTrue(run.json["masses"]["optimal"])
+        self.assert_close(sums(self.rows("d.csv"), 1)[1][2], 1.2, 1e-12)
+        self.assert_close(run.json["particle"]["centre"][2], 1.5, 1e-12)  # the particle keeps its own
+        words = self.mskit("correct", "flat.csv", "--target", "box.obj", "--density", "1", "-o", "e.csv").out
+        self.assertIn("the least is 0.278 along an axis", words)
+
+    def test_few_spheres_always_have_masses(self):
+        """Their centre of mass is that of the shape but for what voxels and meshes are off."""
+        for kind in ("ellipsoid", "torus", "cone", "grain"):
+            shape = self.shape(kind)
+            for method in ("mss", "variational"):
+                for n in (1, 2, 3, 5):
+                    name = f"{kind}-{method}-{n}"
+                    with self.subTest(run=name):
+                        run = self.generate(shape, "-g", method, "-n", n, "--cells", 15, "--correct", "--density", 2500,
+                                            "-o", name + ".csv", "-o", name + ".lammps")
+                        self.assertTrue(run["masses"]["optimal"])
+                        self.assert_close(sums(self.rows(name + ".csv"), 1)[0], run["particle"]["mass"], 1e-9)
+                        header = self.read(name + ".lammps").decode().split("\n")[3].split()
+                        self.assertEqual(float(header[0]), run["particle"]["mass"])
+
+    def test_a_dimer_in_single_precision(self):
+        """Two balls of radius 1 mm that touch no third thing; the corners are right to 6e-8."""
+        clump, mesh = shared_file("cases", "m01_dimer.csv"), shared_file("cases", "m01_dimer_float32.stl")
+        run = self.mskit("correct", clump, "--target", mesh, "--density", "2500", "--unit", "mm", "-o", "m.lammps",
+                         "-o", "m.csv", "--json").json
+        self.assert_close(run["particle"]["mass"], 2.0795e-5, 1e-5)
+        for found, truth in zip(run["particle"]["centre"], (0.75, 0.1, 0.2)):
+            self.assertLess(abs(found - truth), 1e-7)
+        for row in self.rows("m.csv"):
+            self.assert_close(row[4], run["particle"]["mass"] / 2, 1e-6)
+
+    def test_one_sphere_in_all_formats(self):
+        self.write("one.csv", "0,0,0,1\n")
+        ball = self.shape("ball")
+        run = self.mskit("correct", "one.csv", "--target", ball, "--density", "1000", "--all-formats", "out")
+        self.assert_says(run, "out/one.liggghts is not written", "one sphere")
+        self.assertNotIn("MFiX", run.err)  # whose sum is right to 0.05 %
+        endings = "clu csv deme frame.json json lammps lammps.in mercury mfix pfc vtk yade yade.py".split()
+        self.assertEqual(sorted(os.listdir(self.path("out"))), ["one." + ending for ending in endings])
+        self.generate(ball, "-n", "1", *GRID, "--correct", "--density", "1000", "--all-formats", "made")
+        self.assertEqual(sorted(os.listdir(self.path("made"))), ["ball-mss." + ending for ending in endings])
+        run = self.mskit("correct", "one.csv", "--target", ball, "--density", "1", "-o", "a.liggghts", code=1)
+        self.assert_says(run, "mskit correct: LIGGGHTS", "one sphere", "particletemplate/sphere")
+        self.assertNotIn("a.liggghts", self.files())
+        run = self.mskit("correct", "one.csv", "--target", ball, "--density", "1", "-o", "a.liggghts", "-o", "b.yade",
+                         code=1)
+        self.assert_says(run, "one sphere")
+        self.assertIn("b.yade", self.files())
+        self.assertNotIn("a.liggghts", self.files())
+
+    def test_what_engines_sum_is_said(self):
+        """Two balls of radius 1, centres 1 apart, share two caps of height 1/2: 1.1852 times the union."""
+        self.write("two.csv", "0,0,0,1\n1,0,0,1\n")
+        run = self.mskit("correct", "two.csv", "--properties", "union", "--density", "1", "-o", "a.mfix", "-o",
+                         "a.yade")
+        self.assert_says(run, "a.mfix: MFiX sums the spheres", "mass +19 %")
+        self.assertNotIn("a.yade:", run.err)
+        self.write("half.csv", "0,0,0,0.5\n")  # a quarter of the moments, at the same mass
+        run = self.mskit("correct", "half.csv", "--target", self.shape("ball"), "--density", "1", "-o", "h.json", "-o",
+                         "h.lammps")
+        self.assert_says(run, "h.lammps: LAMMPS sums the spheres", "moments of inertia up to -75 %")
+        run = self.mskit("convert", "h.json", "-o", "i.lammps", "-o", "i.mfix")
+        self.assert_says(run, "i.lammps: LAMMPS", "up to -75 %", "i.mfix: MFiX", "mass -87 %")
+
+    def test_products_of_a_molecule_may_be_rounding(self):
+        self.mskit("correct", "c.csv", "--target", "box.obj", "--density", DENSITY, "-o", "t.lammps")
+        text = self.read("t.lammps").decode()
+        moment = float(text.split("\n")[5].split()[0])
+        for part, code in ((1e-12, 0), (1e-3, 1)):
+            self.write("u.lammps", text.replace(" 0 0 0 inertia", f" 0 {part * moment!r} 0 inertia"))
+            run = self.mskit("convert", "u.lammps", "-o", "u.csv", code=code)
+        self.assert_says(run, "has products")
+
     def test_what_cannot_be(self):
         target = ("--target", "box.obj", "--density", "1")
-        self.write("flat.csv", "2,2,1.2,0.1\n3,2,1.2,0.1\n2,2.5,1.2,0.1\n3,1.5,1.2,0.1\n")
-        self.assert_refused("correct", "flat.csv", *target, "-o", "d.csv", code=1,
-                            says=("in one plane", "eq. 4", "tolerance"))
-        self.mskit("correct", "flat.csv", *target, "--centre-tolerance", "1", "-o", "d.csv")
         self.assert_refused("correct", "c.csv", *target, "--least-mass", "0.5", "-o", "e.csv", code=1, says=("eq. 5",))
         self.assert_refused("correct", "c.csv", *target, "-o", "c.csv", code=1, says=("is the input itself",))
         self.assert_refused("correct", "c.csv", "--target", "missing.stl", "--density", "1", "-o", "e.csv", code=1,

@@ -70,7 +70,7 @@ class Documents(Case):
         for shape in ("box.obj", "scan.npy"):
             grid = ("--cells", "20") if shape == "box.obj" else ()
             self.mskit("generate", shape, *grid, "-n", "2", "-o", "c.json", "-o", "c.csv")
-            self.mskit("correct", "c.csv", "--target", shape, *grid, "--density", "1", "--centre-tolerance", "1", "-o",
+            self.mskit("correct", "c.csv", "--target", shape, *grid, "--density", "1", "-o",
                        "d.json", "-o", "d.yade")
             records = [json.loads(self.read("c.json")), json.loads(self.read("d.json")),
                        json.loads(self.read("d.frame.json")), self.mskit("info", shape, "--json").json,

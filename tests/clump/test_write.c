@@ -214,7 +214,7 @@ static void a_failure_leaves_the_file_that_was_there(void **state)
     char folder[64], path[128];
     ms_clump clump = {0}, bad = {0};
     ms_error err = {{0}};
-    const ms_format failing = {"failing", "failing", "fails", MS_NEED_SPHERES, NULL, {{"", failing_format}}};
+    const ms_format failing = {"failing", "failing", "fails", MS_NEED_SPHERES, NULL, .part = {{"", failing_format}}};
     add_sphere(&clump, 1, 2, 3, 4);
     add_sphere(&bad, 1, 2, (double)NAN, 4); /* JSON has no such number */
     make_folder(folder);

@@ -9,6 +9,9 @@
 #include "ms_formats.h"
 #include "ms_script.h"
 
+/* Products of inertia below this part of the moments are rounding, of whoever wrote the file. */
+static const double ROUNDING = 1e-9;
+
 /* What the file says of each sphere. */
 typedef struct molecule {
     size_t n;
@@ -65,7 +68,7 @@ static ms_status read_header_line(molecule *t, ms_particle *particle, ms_text *t
     } else if (n == 3 && ms_text_word_is(keyword, "com")) {
         memcpy(particle->centre, v, 3 * sizeof *v);
     } else if (n == 6 && ms_text_word_is(keyword, "inertia")) {
-        if (v[3] != 0 || v[4] != 0 || v[5] != 0) {
+        if (!(fmax(fabs(v[3]), fmax(fabs(v[4]), fabs(v[5]))) <= ROUNDING * (v[0] + v[1] + v[2]))) {
             return ms_text_fail(err, text, "the inertia has products; only principal axes are read");
         }
         for (int k = 0; k < 3; k++) {

@@ -8,9 +8,7 @@
 /* A comment or an empty line in it crashes LIGGGHTS. */
 ms_status ms_liggghts_write(FILE *stream, const ms_content *content, ms_error *err)
 {
-    if (content->clump->n_spheres < 2) {
-        return ms_fail(err, MS_ERR_ARG, "LIGGGHTS takes no multisphere of one sphere; use its particletemplate/sphere");
-    }
+    (void)err;
     ms_fields_spheres(stream, content->clump, " ", "\n");
     return MS_OK;
 }

@@ -8,45 +8,29 @@
 #include "ms_formats.h"
 
 const ms_format ms_formats[] = {
-    {"csv", "csv", "x,y,z,r in the unit and frame of the shape", MS_NEED_SPHERES, ms_xyzr_read, {{"", ms_xyzr_write}}},
-    {"json",
-     "json",
-     "spheres, scores and all that is needed to repeat the run",
-     MS_NEED_SPHERES,
-     ms_json_read,
-     {{"", ms_json_write}}},
-    {"vtk", "vtk", "points with radius, for ParaView", MS_NEED_SPHERES, NULL, {{"", ms_vtk_write}}},
-    {"liggghts",
-     "liggghts",
-     "sphere file, and a script with its particletemplate/multisphere",
-     MS_NEED_PARTICLE,
-     ms_xyzr_read,
-     {{"", ms_liggghts_write}, {".in", ms_liggghts_script}}},
-    {"lammps",
-     "lammps",
-     "molecule file for fix rigid/small, and a script",
-     MS_NEED_MASSES,
-     ms_lammps_read,
-     {{"", ms_lammps_write}, {".in", ms_lammps_script}}},
-    {"yade",
-     "yade",
-     "file for ymport.textClumps, and a script",
-     MS_NEED_PARTICLE,
-     ms_xyzr_read_yade,
-     {{"", ms_yade_write}, {".py", ms_yade_script}}},
-    {"mercury",
-     "mercury",
-     "folder for MercuryDPM's ClumpInput",
-     MS_NEED_PARTICLE,
-     NULL,
-     {{"/Clump/Clump.txt", ms_mercury_write_clump},
-      {"/Inertia/Mass.txt", ms_mercury_write_mass},
-      {"/Inertia/TOI.txt", ms_mercury_write_inertia},
-      {"/Inertia/PD.txt", ms_mercury_write_axes}}},
-    {"deme", "deme", "Chrono DEM-Engine's x,y,z,r", MS_NEED_PARTICLE, ms_xyzr_read, {{"", ms_deme_write}}},
-    {"kratos", "clu", "Kratos cluster file", MS_NEED_PARTICLE, NULL, {{"", ms_kratos_write}}},
-    {"mfix", "mfix", "MFiX gsp_config.csv", MS_NEED_PARTICLE, NULL, {{"", ms_mfix_write}}},
-    {"pfc", "pfc", "PFC command clump template create", MS_NEED_PARTICLE, NULL, {{"", ms_pfc_write}}},
+    {"csv", "csv", "x,y,z,r in the unit and frame of the shape", MS_NEED_SPHERES, ms_xyzr_read,
+     .part = {{"", ms_xyzr_write}}},
+    {"json", "json", "spheres, scores and all that is needed to repeat the run", MS_NEED_SPHERES, ms_json_read,
+     .part = {{"", ms_json_write}}},
+    {"vtk", "vtk", "points with radius, for ParaView", MS_NEED_SPHERES, NULL, .part = {{"", ms_vtk_write}}},
+    {"liggghts", "liggghts", "sphere file, and a script with its particletemplate/multisphere", MS_NEED_PARTICLE,
+     ms_xyzr_read, .part = {{"", ms_liggghts_write}, {".in", ms_liggghts_script}},
+     .not_one = "LIGGGHTS takes no multisphere of one sphere; use its particletemplate/sphere"},
+    {"lammps", "lammps", "molecule file for fix rigid/small, and a script", MS_NEED_MASSES, ms_lammps_read,
+     .part = {{"", ms_lammps_write}, {".in", ms_lammps_script}}, .sum = MS_SUM_MASSES,
+     .sums = "LAMMPS sums the spheres without 'reinit no', and after create_atoms"},
+    {"yade", "yade", "file for ymport.textClumps, and a script", MS_NEED_PARTICLE, ms_xyzr_read_yade,
+     .part = {{"", ms_yade_write}, {".py", ms_yade_script}}},
+    {"mercury", "mercury", "folder for MercuryDPM's ClumpInput", MS_NEED_PARTICLE, NULL,
+     .part = {{"/Clump/Clump.txt", ms_mercury_write_clump},
+              {"/Inertia/Mass.txt", ms_mercury_write_mass},
+              {"/Inertia/TOI.txt", ms_mercury_write_inertia},
+              {"/Inertia/PD.txt", ms_mercury_write_axes}}},
+    {"deme", "deme", "Chrono DEM-Engine's x,y,z,r", MS_NEED_PARTICLE, ms_xyzr_read, .part = {{"", ms_deme_write}}},
+    {"kratos", "clu", "Kratos cluster file", MS_NEED_PARTICLE, NULL, .part = {{"", ms_kratos_write}}},
+    {"mfix", "mfix", "MFiX gsp_config.csv", MS_NEED_PARTICLE, NULL, .part = {{"", ms_mfix_write}},
+     .sum = MS_SUM_VOLUMES, .sums = "MFiX sums the spheres at one density, overlaps and all"},
+    {"pfc", "pfc", "PFC command clump template create", MS_NEED_PARTICLE, NULL, .part = {{"", ms_pfc_write}}},
     {0},
 };
 
@@ -154,8 +138,11 @@ static ms_status write_template(const ms_content *content, const char *path, con
     return status;
 }
 
-static ms_status check_need(const ms_content *content, const ms_format *format, ms_error *err)
+ms_status ms_write_check(const ms_content *content, const ms_format *format, ms_error *err)
 {
+    if (format->not_one && content->clump->n_spheres < 2) {
+        return ms_fail(err, MS_ERR_ARG, "%s", format->not_one);
+    }
     if (format->need == MS_NEED_SPHERES) {
         return MS_OK;
     }
@@ -182,7 +169,7 @@ ms_status ms_write_clump(const ms_content *content, const char *path, const ms_f
         return MS_ERR_ARG;
     }
     named.name = slash ? slash + 1 : path;
-    ms_status status = check_need(content, format, err);
+    ms_status status = ms_write_check(content, format, err);
     if (status != MS_OK) {
         return status;
     }

@@ -31,7 +31,14 @@ typedef enum ms_need {
     MS_NEED_MASSES    /* a template that also takes a mass for each sphere */
 } ms_need;
 
-enum { MS_FORMAT_MAX_PARTS = 5 };
+/* What an engine sums, instead of taking mass, centre and inertia as they are given. */
+typedef enum ms_sum {
+    MS_SUM_NONE,
+    MS_SUM_MASSES, /* solid spheres of the masses in the file */
+    MS_SUM_VOLUMES /* solid spheres of the particle's density */
+} ms_sum;
+
+enum { MS_FORMAT_MAX_PARTS = 5, MS_WRITE_REMARK = 512 };
 
 /** A format of clump files. A table of them ends with a NULL name. */
 typedef struct ms_format {
@@ -45,6 +52,10 @@ typedef struct ms_format {
     ms_status (*read)(ms_clump *clump, ms_particle *particle, struct ms_bytes *bytes, const char *name, ms_error *err);
 
     ms_part part[MS_FORMAT_MAX_PARTS]; /* ends with a NULL suffix */
+
+    const char *not_one; /* why the engine takes no clump of one sphere; NULL: it does */
+    ms_sum sum;
+    const char *sums; /* when it does, in words */
 } ms_format;
 
 MS_API extern const ms_format ms_formats[];
@@ -58,14 +69,26 @@ MS_API const ms_format *ms_write_format_of_path(const char *path, ms_error *err)
 /** Nonzero if its files stand in a folder of the path's name. */
 MS_API int ms_write_format_is_folder(const ms_format *format);
 
+/** Can the format hold this clump? @return MS_OK; MS_ERR_ARG where it needs what is not known, or takes no single sphere */
+MS_API ms_status ms_write_check(const ms_content *content, const ms_format *format, ms_error *err);
+
+/**
+ * What is off where the engine sums the spheres.
+ *
+ * @param[out] text a sentence with the errors of mass, centre and inertia; empty where there is nothing to say: the
+ *                  engine does not sum, no error is above 1/1000, or the particle or the masses are not known
+ * @return MS_OK; MS_ERR_NOMEM; as ms_particle_from_spheres
+ */
+MS_API ms_status ms_write_remark(char text[MS_WRITE_REMARK], const ms_content *content, const ms_format *format,
+                                 ms_error *err);
+
 /**
  * Writes a clump, each file under a temporary name that is then renamed. Beside a template stands the way back to the
  * frame of the shape, STEM.frame.json, where STEM is the path without its ending.
  *
  * @param path   "-" for standard output, which takes the first file of the format alone
  * @param format NULL: by the ending of the path; csv for standard output
- * @return MS_OK; MS_ERR_ARG for an unknown ending, or where the format needs what is not known; MS_ERR_IO;
- *         MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for an unknown ending, or as ms_write_check; MS_ERR_IO; MS_ERR_NOMEM
  */
 MS_API ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err);
 
