@@ -191,9 +191,10 @@ run {steps}
 
 class Lammps(Engine):
     program = "lmp"
+    before = ""  # commands before the run that is measured
 
     def run_bodies(self, clump, bodies, steps=STEPS):
-        """Bodies inserted with one seed are turned alike. There is a single run: the second one would damp walls wrongly."""
+        """Bodies inserted with one seed are turned alike. A second run would damp walls wrongly."""
         script = engines.without_fall(clump.script("c.lammps.in"))
         if len(bodies) > 1:
             script = engines.alone(script)
@@ -205,7 +206,7 @@ class Lammps(Engine):
                               .replace("region above", f"region at{k}").rstrip())
             inserts += "".join(f" v{axis} {v!r} {v!r}" for axis, v in zip("xyz", velocity)) + "\n"
         script = re.sub(r"(?m)^fix insert .*\n", lambda _: inserts, script)
-        clump.write("bodies.in", script + f"""
+        clump.write("bodies.in", script + self.before + f"""
 compute bodies all rigid/local move mass inertiax inertiay inertiaz
 dump bodies all local {steps + 1} bodies.txt c_bodies[1] c_bodies[2] c_bodies[3] c_bodies[4]
 dump_modify bodies format line "%.17g %.17g %.17g %.17g"
@@ -221,6 +222,12 @@ run {steps + 1}
                 self.assertAlmostEqual(got / given, 1, delta=1e-12)
         states = read_states(clump, "states.txt", len(bodies))
         return states[0], states[-1]
+
+    def test_floor_of_a_second_run(self):
+        """The cure that docs/templates.md tells: the walls are fixed again before it."""
+        fix = re.search(r"(?m)^fix floor .*\n", self.clumps["ball"].script("c.lammps.in")).group(0)
+        self.before = "run 1\nunfix floor\n" + fix
+        self.test_floor()
 
 
 class Yade(Engine):

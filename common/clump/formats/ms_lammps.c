@@ -202,7 +202,7 @@ ms_status ms_lammps_write(FILE *stream, const ms_content *content, ms_error *err
 
 /* Contact of spheres and of walls. The polynomial of damping tsuji is for the mass of one of two equal spheres, but LAMMPS
  * multiplies it by the reduced mass: a restitution of 0.5 has to be asked for as that whose polynomial is larger by the
- * root of 2, or 0.615 is what comes of it. */
+ * root of 2, or 0.615 is what comes of it. Each run puts the walls' through the polynomial again: the script has one. */
 static void write_contacts(FILE *stream, const ms_script_drop *drop)
 {
     static const char *const WALLS[] = {"floor", "west_east", "south_north"};
@@ -254,7 +254,7 @@ ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *er
     fputs("# The template: its mass and inertia are kept (reinit no) and gravity acts on the body.\n", stream);
     fprintf(stream, "molecule clump %s\n", content->name);
     fputs("fix move all rigid/small molecule mol clump reinit no gravity gravity\n", stream);
-    fputs("# Without near they are inserted into each other, and LAMMPS loses atoms.\n", stream);
+    fputs("# Without near they may be inserted into each other, and LAMMPS loses atoms.\n", stream);
     fprintf(stream,
             "fix insert all deposit ${n} 0 1 32452843 region above mol clump rigid move near %s attempt 500\n\n",
             ms_script_number(2 * d.reach, &a));
