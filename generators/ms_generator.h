@@ -14,7 +14,8 @@ MS_C_BEGIN
 /** Is told, often, how far a run has come: `spheres` so far, D of the last step (NAN if unknown). */
 typedef void (*ms_progress)(void *context, size_t spheres, double dice);
 
-/** Is told in one sentence what about the input, though allowed, makes the result worse than it could be, and the cure. */
+/** Is told in one sentence what about the input, though allowed, makes the result worse than it could be, and the cure.
+ * */
 typedef void (*ms_remark)(void *context, const char *sentence);
 
 /** All that a generator is given. Everything is borrowed. */

@@ -6,8 +6,8 @@
 
 MS_C_BEGIN
 
-/** How far off the centre may be by default: no mesh knows its own any better. The corners of an STL are 24-bit numbers,
- * right to 6e-8 of their size, and so is the centre that follows from them. */
+/** How far off the centre may be by default: no mesh knows its own any better. The corners of an STL are 24-bit
+ * numbers, right to 6e-8 of their size, and so is the centre that follows from them. */
 #define MS_DENSITY_CENTRE_TOLERANCE 1e-7
 
 /** What is asked of the masses; a zeroed struct holds the defaults. */

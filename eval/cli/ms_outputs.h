@@ -60,8 +60,8 @@ ms_status ms_outputs_make_folder(const char *path, ms_error *err);
 ms_status ms_outputs_try(const ms_outputs *outputs, const char *source, ms_error *err);
 
 /**
- * Writes all files and says so on `words`. What is off where an engine sums the spheres, and which of all formats cannot
- * hold this clump, goes to stderr. A file that cannot be written does not keep back those after it.
+ * Writes all files and says so on `words`. What is off where an engine sums the spheres, and which of all formats
+ * cannot hold this clump, goes to stderr. A file that cannot be written does not keep back those after it.
  *
  * @return MS_OK; as ms_write_clump of the first file that failed
  */

@@ -80,8 +80,8 @@ static const double DEFAULT_OFF_VOLUME = 0.9;
 /* Spheres whose centres and radii differ by less, in voxels, are one. */
 static const double SAME = 0.01;
 
-/* Edges that are longer than so many times the size of a sphere's share, d_eq / n^(1/3), let the spheres reach out: D of
- * cubes of 8 to 3458 nodes by 2 to 1000 spheres is then above that of finer meshes (docs/methods/fcm.md). */
+/* Edges that are longer than so many times the size of a sphere's share, d_eq / n^(1/3), let the spheres reach out: D
+ * of cubes of 8 to 3458 nodes by 2 to 1000 spheres is then above that of finer meshes (docs/methods/fcm.md). */
 static const double EDGE_OF_SHARE = 1.5;
 
 typedef struct fcm {

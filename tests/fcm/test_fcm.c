@@ -7,8 +7,8 @@
 #include "fcm/ms_random_spheres.h"
 #include "measure/ms_metrics.h"
 #include "shared/ms_bisect_count.h"
-#include "voxel/ms_raster.h"
 #include "support/body_samples.h"
+#include "voxel/ms_raster.h"
 
 /* Options as "name=value name=value". */
 static ms_status try_fcm(ms_clump *clump, ms_stop_reason *reason, const ms_target *target, ms_stop stop,

@@ -203,36 +203,67 @@ ms_status ms_lammps_write(FILE *stream, const ms_content *content, ms_error *err
     return MS_OK;
 }
 
+/* Contact of spheres and of walls. The polynomial of damping tsuji is for the mass of one of two equal spheres, but
+ * LAMMPS multiplies it by the reduced mass: a restitution of 0.5 has to be asked for as that whose polynomial is larger
+ * by the root of 2, or 0.615 is what comes of it. Each run puts the walls' through the polynomial again: the script has
+ * one. */
+static void write_lammps_contacts(FILE *stream, const ms_script_drop *drop)
+{
+    static const char *const WALLS[] = {"floor", "west_east", "south_north"};
+    ms_number young, side;
+    ms_script_number(drop->young, &young);
+    ms_script_number(drop->side, &side);
+    fprintf(stream,
+            "# 0.3667 makes a restitution of 0.5.\n"
+            "variable contact string \"hertz/material %s 0.3667 0.3 tangential mindlin NULL 1.0 0.5 damping tsuji\"\n"
+            "pair_style granular\npair_coeff * * ${contact}\n",
+            young.text);
+    for (int k = 0; k < 3; k++) {
+        fprintf(stream, "fix %s all wall/gran granular ${contact} %cplane ", WALLS[k], "zxy"[k]);
+        fprintf(stream, k == 0 ? "0 NULL\n" : "-%s %s\n", side.text, side.text);
+    }
+}
+
+/* Where particles are inserted: above the floor, within the walls, the higher the more there are. */
+static void write_lammps_places(FILE *stream, const ms_script_drop *drop)
+{
+    ms_number reach, width, low;
+    fprintf(stream, "variable top equal %s*(2+v_n)\nvariable roof equal v_top+%s\n",
+            ms_script_number(drop->reach, &reach), reach.text);
+    fprintf(stream, "region box block -%s %s -%s %s", ms_script_number(1.25 * drop->side, &width), width.text,
+            width.text, width.text);
+    fprintf(stream, " -%s ${roof}\ncreate_box 1 box\n", reach.text);
+    fprintf(stream, "region above block -%s %s -%s %s", ms_script_number(drop->side - drop->reach, &width), width.text,
+            width.text, width.text);
+    fprintf(stream, " %s ${top}\n", ms_script_number(1.5 * drop->reach, &low));
+}
+
 ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *err)
 {
     const ms_script_drop d = ms_script_drop_of(content);
-    ms_number a, b, c;
+    ms_number a, b;
     (void)err;
-    fprintf(stream, "# Drops %s on a plane: lmp -in %s.in\n", content->name, content->name);
+    fprintf(stream, "# Drops %s into a box: lmp -in %s.in; fifty of them by -var n 50\nvariable n index 1\n\n",
+            content->name, content->name);
     fputs("units si\natom_style sphere\natom_modify map array\nboundary f f f\nnewton off\n", stream);
-    fprintf(stream, "region box block -%s %s -%s %s", ms_script_number(40 * d.reach, &a), a.text, a.text, a.text);
-    fprintf(stream, " -%s %s\ncreate_box 1 box\n", ms_script_number(d.reach, &b), ms_script_number(4 * d.reach, &c));
+    write_lammps_places(stream, &d);
     fprintf(stream, "comm_modify vel yes cutoff %s\n", ms_script_number(2 * d.reach, &a));
     fprintf(stream, "neighbor %s bin\n\n", ms_script_number(0.2 * d.reach, &a));
     fputs("fix molecules all property/atom mol ghost yes\n"
-          "neigh_modify delay 0 exclude molecule/intra all\n"
-          "pair_style granular\n",
+          "neigh_modify delay 0 exclude molecule/intra all\n",
           stream);
-    fprintf(stream, "pair_coeff * * hertz/material %s 0.5 0.3 tangential mindlin NULL 1.0 0.5 damping tsuji\n",
-            ms_script_number(d.young, &a));
+    write_lammps_contacts(stream, &d);
     fprintf(stream, "timestep %s\n", ms_script_number(d.step, &b));
-    fputs("fix gravity all gravity 9.81 vector 0 0 -1 disable\n", stream);
-    fprintf(stream,
-            "fix floor all wall/gran granular hertz/material %s 0.5 0.3 tangential mindlin NULL 1.0 0.5 "
-            "damping tsuji zplane 0 NULL\n\n",
-            a.text);
+    fputs("fix gravity all gravity 9.81 vector 0 0 -1 disable\n\n", stream);
     fputs("# The template: its mass and inertia are kept (reinit no) and gravity acts on the body.\n", stream);
     fprintf(stream, "molecule clump %s\n", content->name);
     fputs("fix move all rigid/small molecule mol clump reinit no gravity gravity\n", stream);
-    fprintf(stream, "region above block -%s %s -%s %s", ms_script_number(d.reach, &a), a.text, a.text, a.text);
-    fprintf(stream, " %s %s\n", ms_script_number(1.5 * d.reach, &b), ms_script_number(2 * d.reach, &c));
-    fputs("fix insert all deposit 1 0 1 32452843 region above mol clump rigid move\n\n", stream);
+    fputs("# Without near they may be inserted into each other, and LAMMPS loses atoms.\n", stream);
+    fprintf(stream,
+            "fix insert all deposit ${n} 0 1 32452843 region above mol clump rigid move near %s attempt 500\n\n",
+            ms_script_number(2 * d.reach, &a));
     fputs("thermo_style custom step atoms\nthermo_modify lost error\n", stream);
-    fprintf(stream, "thermo %.0f\nrun %.0f\n", ceil(d.end / d.step / 10), ceil(d.end / d.step));
+    fprintf(stream, "variable steps equal ceil(%.0f*sqrt(1+v_n/4))\n", ceil(d.end / d.step));
+    fprintf(stream, "thermo %.0f\nrun ${steps}\n", ceil(d.end / d.step / 10));
     return MS_OK;
 }

@@ -13,31 +13,43 @@ ms_status ms_liggghts_write(FILE *stream, const ms_content *content, ms_error *e
     return MS_OK;
 }
 
-ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *err)
+/* Where particles are inserted: above the floor, within the walls, the higher the more there are. */
+static void write_liggghts_places(FILE *stream, const ms_script_drop *drop)
 {
-    const ms_script_drop d = ms_script_drop_of(content);
-    const ms_particle *p = content->particle;
-    ms_number a, b, c;
-    (void)err;
-    fprintf(stream, "# Drops %s on a plane: liggghts -in %s.in\n", content->name, content->name);
-    fputs("atom_style granular\natom_modify map array\ncommunicate single vel yes\nboundary f f f\nnewton off\n"
-          "units si\n",
-          stream);
-    fprintf(stream, "region box block -%s %s -%s %s", ms_script_number(40 * d.reach, &a), a.text, a.text, a.text);
-    fprintf(stream, " -%s %s units box\ncreate_box 1 box\n", ms_script_number(d.reach, &b),
-            ms_script_number(4 * d.reach, &c));
-    fprintf(stream, "neighbor %s bin\nneigh_modify delay 0\n\n", ms_script_number(0.2 * d.reach, &a));
+    ms_number reach, side, low;
+    fprintf(stream, "variable top equal %s*(2+v_n)\nvariable roof equal v_top+%s\n",
+            ms_script_number(drop->reach, &reach), reach.text);
+    fprintf(stream, "region box block -%s %s -%s %s", ms_script_number(1.25 * drop->side, &side), side.text, side.text,
+            side.text);
+    fprintf(stream, " -%s ${roof} units box\ncreate_box 1 box\n", reach.text);
+    fprintf(stream, "region above block -%s %s -%s %s", ms_script_number(drop->side, &side), side.text, side.text,
+            side.text);
+    fprintf(stream, " %s ${top} volume_limit 1e-300 units box\n", ms_script_number(0.2 * drop->reach, &low));
+}
+
+static void write_liggghts_contacts(FILE *stream, const ms_script_drop *drop)
+{
+    static const char *const WALLS[] = {"floor", "west", "east", "south", "north"};
+    ms_number value;
     fputs("hard_particles yes\n", stream); /* lets the modulus be above 1e9 */
-    fprintf(stream, "fix young all property/global youngsModulus peratomtype %s\n", ms_script_number(d.young, &a));
+    fprintf(stream, "fix young all property/global youngsModulus peratomtype %s\n",
+            ms_script_number(drop->young, &value));
     fputs("fix poisson all property/global poissonsRatio peratomtype 0.3\n"
           "fix restitution all property/global coefficientRestitution peratomtypepair 1 0.5\n"
           "fix friction all property/global coefficientFriction peratomtypepair 1 0.5\n"
           "pair_style gran model hertz tangential history\npair_coeff * *\n",
           stream);
-    fprintf(stream, "timestep %s\n", ms_script_number(d.step, &a));
-    fputs("fix gravity all gravity 9.81 vector 0 0 -1\n"
-          "fix floor all wall/gran model hertz tangential history primitive type 1 zplane 0\n\n",
-          stream);
+    ms_script_number(drop->side, &value);
+    for (int k = 0; k < 5; k++) {
+        fprintf(stream, "fix %s all wall/gran model hertz tangential history primitive type 1 %cplane %s%s\n", WALLS[k],
+                "zxxyy"[k], k % 2 ? "-" : "", k == 0 ? "0" : value.text);
+    }
+}
+
+static void write_liggghts_particle(FILE *stream, const ms_content *content)
+{
+    const ms_particle *p = content->particle;
+    ms_number a, b, c;
     fputs("# The template: mass and inertia about its origin, along its axes.\n", stream);
     fprintf(stream,
             "fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 "
@@ -47,12 +59,28 @@ ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *
         fprintf(stream, " %s", k == 0 || k == 3 || k == 5 ? ms_script_number(p->inertia[k / 2][k / 2], &c) : "0");
     }
     fputs(" use_density\nfix kinds all particledistribution/discrete 15485867 1 clump 1.0\n", stream);
-    fprintf(stream, "region above block -%s %s -%s %s", ms_script_number(2 * d.reach, &a), a.text, a.text, a.text);
-    fprintf(stream, " %s %s volume_limit 1e-300 units box\n", ms_script_number(0.2 * d.reach, &b),
-            ms_script_number(3 * d.reach, &c));
-    fputs("fix insert all insert/pack seed 32452843 distributiontemplate kinds insert_every once overlapcheck yes "
-          "all_in yes particles_in_region 1 region above\nfix move all multisphere\n\n",
+}
+
+ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *err)
+{
+    const ms_script_drop d = ms_script_drop_of(content);
+    ms_number a;
+    (void)err;
+    fprintf(stream, "# Drops %s into a box: liggghts -in %s.in; fifty of them by -var n 50\nvariable n index 1\n\n",
+            content->name, content->name);
+    fputs("atom_style granular\natom_modify map array\ncommunicate single vel yes\nboundary f f f\nnewton off\n"
+          "units si\n",
           stream);
-    fprintf(stream, "thermo %.0f\nrun %.0f\n", ceil(d.end / d.step / 10), ceil(d.end / d.step));
+    write_liggghts_places(stream, &d);
+    fprintf(stream, "neighbor %s bin\nneigh_modify delay 0\n\n", ms_script_number(0.2 * d.reach, &a));
+    write_liggghts_contacts(stream, &d);
+    fprintf(stream, "timestep %s\n", ms_script_number(d.step, &a));
+    fputs("fix gravity all gravity 9.81 vector 0 0 -1\n\n", stream);
+    write_liggghts_particle(stream, content);
+    fputs("fix insert all insert/pack seed 32452843 distributiontemplate kinds insert_every once overlapcheck yes "
+          "orientation random all_in yes particles_in_region ${n} region above\nfix move all multisphere\n\n",
+          stream);
+    fprintf(stream, "variable steps equal ceil(%.0f*sqrt(1+v_n/4))\n", ceil(d.end / d.step));
+    fprintf(stream, "thermo %.0f\nrun ${steps}\n", ceil(d.end / d.step / 10));
     return MS_OK;
 }

@@ -11,7 +11,7 @@ ms_script_drop ms_script_drop_of(const ms_content *content)
     const double young = fmax(1e5 * p->density * GRAVITY * reach, 5e6), shear = young / (2 * (1 + POISSON));
     const double rayleigh = acos(-1.0) * least * sqrt(p->density / shear) / (0.1631 * POISSON + 0.8766);
     return (ms_script_drop){
-        .reach = reach, .young = young, .step = rayleigh / 10, .end = 4 * sqrt(4 * reach / GRAVITY)};
+        .reach = reach, .young = young, .step = rayleigh / 10, .end = 4 * sqrt(4 * reach / GRAVITY), .side = 4 * reach};
 }
 
 const char *ms_script_number(double value, ms_number *room)

@@ -1,17 +1,18 @@
-/** What the scripts share that load a template and drop it on a plane: a start for the user's own, run by the tests of
- * the engines. Private to the writers of formats. */
+/** What the scripts share that load a template and drop particles into a box, one or as many as asked for: a start for
+ * the user's own, run by the tests of the engines. Private to the writers of formats. */
 #ifndef MS_SCRIPT_H
 #define MS_SCRIPT_H
 
 #include "base/ms_text.h"
 #include "ms_write.h"
 
-/** A drop that suits the size of the particle, whatever that is. */
+/** A drop that suits the size of the particle, whatever that is; the scripts have a restitution of 0.5. */
 typedef struct ms_script_drop {
     double reach; /* of the particle around its centre of mass */
     double young; /* stiff enough for overlaps of a per mille of its size, and what LIGGGHTS demands */
     double step;  /* a tenth of the Rayleigh time of the smallest sphere */
-    double end;   /* time to fall and come to rest */
+    double end;   /* time for one particle to fall and come to rest; n of them get sqrt(1 + n/4) times that */
+    double side;  /* half the width of the box */
 } ms_script_drop;
 
 ms_script_drop ms_script_drop_of(const ms_content *content);
