@@ -158,6 +158,9 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
     const double start = omp_get_wtime();
     memset(input, 0, sizeof *input);
     input->path = path;
+    if (flags->threads) {
+        omp_set_num_threads(flags->threads);
+    }
     if (path[0] == '\0') {
         return ms_fail(err, MS_ERR_IO, "the name of the shape is empty; name a mesh or a volume");
     }
