@@ -19,7 +19,7 @@ typedef struct box_pair {
     box_name first, second;
 } box_pair;
 
-/* Each step down replaces a pair by three at the most, one of which is next; so many steps there are for each of two. */
+/* A step down replaces a pair by three at most, of which one is next; each of the two boxes has so many steps. */
 enum { PAIRS = 2 * 2 * MS_BVH_STACK + 1 };
 
 typedef struct search {

@@ -62,12 +62,15 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
 /** Refuses flags that do not apply to what was read. @return MS_OK; MS_ERR_ARG */
 ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flags, ms_error *err);
 
-/** Makes the target; says the size of the grid on stderr, and if its voxels do not hold the shape. Refuses open meshes unless allowed. */
+/**
+ * Makes the target; says the size of the grid on stderr, and if its voxels do not hold the shape. Refuses open meshes
+ * unless allowed.
+ */
 ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err);
 
 /**
- * Says on stderr that the voxels do not hold the shape, with the figures and a number of cells to try, if they are off by
- * 1 % or more of its volume.
+ * Says on stderr that the voxels do not hold the shape, with the figures and a number of cells to try, if they are
+ * off by 1 % or more of its volume.
  *
  * @param misfit as ms_target_misfit
  */

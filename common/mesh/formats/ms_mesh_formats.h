@@ -48,7 +48,7 @@ ms_status ms_mesh_build_reserve(ms_mesh_builder *builder, size_t n_vertices, siz
 
 ms_status ms_mesh_build_vertex(ms_mesh_builder *builder, const double position[3], size_t place, ms_error *err);
 
-/** A polygon: begin, its corners in turn, end. It is cut into triangles within it: a fan around its first corner where that is so. */
+/** A polygon: begin, its corners in turn, end. It is cut into triangles within it (ms_mesh_polygon.h). */
 void ms_mesh_build_face_begin(ms_mesh_builder *builder, size_t place);
 
 /** A vertex, counted from 0, that may come later in the file: whether it exists is checked at the end. */
