@@ -35,6 +35,7 @@
 #include "shape/ms_shape.h"
 #include "volume/ms_volume.h"
 #include "voxel/ms_grid.h"
+#include "voxel/ms_solid.h"
 #include "voxel/ms_target.h"
 #include "voxel/ms_voxelize.h"
 

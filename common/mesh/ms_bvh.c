@@ -42,6 +42,7 @@ typedef struct builder {
     item *list;
     ms_bvh_node *node;
     uint32_t n_nodes;
+    ms_bvh_effort effort;
 } builder;
 
 /* A list that is still to be cut in two, for the boxes of `node`. */
@@ -107,8 +108,14 @@ static uint32_t partition_items(item *list, uint32_t n, int axis, int cut, const
     return front;
 }
 
+static int is_longest(const box *b, int axis)
+{
+    const double extent = b->hi[axis] - b->lo[axis];
+    return extent >= b->hi[0] - b->lo[0] && extent >= b->hi[1] - b->lo[1] && extent >= b->hi[2] - b->lo[2];
+}
+
 /* Cuts a node's list in two; returns the size of the first part. */
-static uint32_t split_items(item *list, uint32_t n, uint32_t depth)
+static uint32_t split_items(item *list, uint32_t n, uint32_t depth, ms_bvh_effort effort)
 {
     box centres = no_box;
     for (uint32_t k = 0; k < n; k++) {
@@ -119,7 +126,7 @@ static uint32_t split_items(item *list, uint32_t n, uint32_t depth)
     double least = HUGE_VAL;
     for (int axis = 0; axis < 3 && depth < BALANCED; axis++) {
         double extent = centres.hi[axis] - centres.lo[axis];
-        if (!(extent > 0)) {
+        if (!(extent > 0) || (effort == MS_BVH_FOR_ONE_WALK && !is_longest(&centres, axis))) {
             continue;
         }
         bin bins[BINS];
@@ -166,7 +173,7 @@ static void build_nodes(builder *b, uint32_t n)
     b->n_nodes = 1;
     while (waiting > 0) {
         task now = stack[--waiting];
-        uint32_t front = now.n > LEAF ? split_items(b->list + now.first, now.n, now.depth) : now.n / 2;
+        uint32_t front = now.n > LEAF ? split_items(b->list + now.first, now.n, now.depth, b->effort) : now.n / 2;
         const uint32_t first[2] = {now.first, now.first + front};
         /* A single triangle stands in both boxes: none is ever empty. */
         const uint32_t count[2] = {front > 0 ? front : 1, now.n - front};
@@ -232,7 +239,7 @@ static void find_frame(ms_bvh *bvh, const ms_mesh *mesh)
     }
 }
 
-ms_status ms_bvh_build(ms_bvh *bvh, const ms_mesh *mesh, ms_error *err)
+ms_status ms_bvh_build(ms_bvh *bvh, const ms_mesh *mesh, ms_bvh_effort effort, ms_error *err)
 {
     *bvh = (ms_bvh){0};
     if (mesh->n_triangles == 0) {
@@ -242,7 +249,7 @@ ms_status ms_bvh_build(ms_bvh *bvh, const ms_mesh *mesh, ms_error *err)
         return ms_fail(err, MS_ERR_LIMIT, "a mesh of %zu triangles is too large; the limit is 2^31", mesh->n_triangles);
     }
     uint32_t n = (uint32_t)mesh->n_triangles;
-    builder b = {.list = malloc(n * sizeof *b.list), .node = malloc(n * sizeof *b.node)};
+    builder b = {.list = malloc(n * sizeof *b.list), .node = malloc(n * sizeof *b.node), .effort = effort};
     bvh->triangle = malloc(n * sizeof *bvh->triangle);
     if (!b.list || !b.node || !bvh->triangle) {
         free(b.list);

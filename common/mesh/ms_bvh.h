@@ -28,6 +28,12 @@ typedef struct ms_bvh {
     ms_bvh_triangle *triangle;
 } ms_bvh;
 
+/** How well the boxes are cut. */
+typedef enum ms_bvh_effort {
+    MS_BVH_FOR_MANY_RAYS, /* the best of three axes */
+    MS_BVH_FOR_ONE_WALK   /* the longest side: in half the time */
+} ms_bvh_effort;
+
 /** A stack of this many nodes is enough for any walk: the depth is bounded. */
 #define MS_BVH_STACK 128
 
@@ -38,7 +44,7 @@ typedef struct ms_bvh {
  * Source: binned surface area heuristic, Wald, On fast construction of SAH-based bounding
  * volume hierarchies (2007). Cost: O(triangles log triangles).
  */
-ms_status ms_bvh_build(ms_bvh *bvh, const ms_mesh *mesh, ms_error *err);
+ms_status ms_bvh_build(ms_bvh *bvh, const ms_mesh *mesh, ms_bvh_effort effort, ms_error *err);
 void ms_bvh_free(ms_bvh *bvh);
 
 #endif

@@ -18,7 +18,7 @@ ms_status ms_closest_build(ms_closest **out, const ms_mesh *mesh, ms_error *err)
     if (!closest) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for a search structure");
     }
-    ms_status status = ms_bvh_build(&closest->bvh, mesh, err);
+    ms_status status = ms_bvh_build(&closest->bvh, mesh, MS_BVH_FOR_MANY_RAYS, err);
     if (status != MS_OK) {
         free(closest);
         return status;

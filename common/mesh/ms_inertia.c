@@ -127,6 +127,34 @@ ms_status ms_inertia_mesh(ms_body *body, const ms_mesh *mesh, ms_error *err)
     return MS_OK;
 }
 
+/* Moves the tensor of a body by `shift` away from its centroid, `volume` times. */
+static void shift_inertia(double inertia[3][3], const double shift[3], double volume)
+{
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            inertia[i][j] += volume * ((i == j ? ms_dot(shift, shift) : 0) - shift[i] * shift[j]);
+        }
+    }
+}
+
+void ms_inertia_add(ms_body *body, const ms_body *part, int sign)
+{
+    const double added = sign * part->volume, volume = body->volume + added;
+    double to_body[3], to_part[3];
+    for (int k = 0; k < 3; k++) {
+        const double apart = part->centroid[k] - body->centroid[k];
+        to_body[k] = -apart * added / volume;
+        to_part[k] = apart + to_body[k];
+        body->centroid[k] -= to_body[k];
+    }
+    for (int k = 0; k < 9; k++) {
+        body->inertia[k / 3][k % 3] += sign * part->inertia[k / 3][k % 3];
+    }
+    shift_inertia(body->inertia, to_body, body->volume);
+    shift_inertia(body->inertia, to_part, added);
+    body->volume = volume;
+}
+
 double ms_mesh_area(const ms_mesh *mesh)
 {
     sum area = {0};

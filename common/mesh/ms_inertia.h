@@ -21,7 +21,9 @@ typedef struct ms_principal {
 
 /**
  * Exact integrals over a closed, outward-wound mesh by the divergence theorem. Summed about
- * the centre of the box, so that a mesh far from the origin keeps its precision.
+ * the centre of the box, so that a mesh far from the origin keeps its precision. What lies in
+ * a mesh more than once counts as often, what is wound inside out negative: ms_solid_mesh
+ * takes such bodies for what they are.
  *
  * @param[out] body zeros on failure
  * @param      mesh closed and outward-wound (ms_mesh_repair sees to it); may be empty
@@ -33,6 +35,9 @@ typedef struct ms_principal {
  * Eberly, Polyhedral Mass Properties (2002). Cost: O(triangles), one pass.
  */
 MS_API ms_status ms_inertia_mesh(ms_body *body, const ms_mesh *mesh, ms_error *err);
+
+/** Adds a part to a body, or with sign -1 takes it away; volume is left. Source: Steiner's theorem. */
+MS_API void ms_inertia_add(ms_body *body, const ms_body *part, int sign);
 
 /** Surface area of the mesh; 0 for an empty one. */
 MS_API double ms_mesh_area(const ms_mesh *mesh);

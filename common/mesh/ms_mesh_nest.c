@@ -235,7 +235,7 @@ ms_status ms_mesh_nest(ms_shells *shells, const ms_mesh *mesh, ms_error *err)
     ms_bvh bvh = {0};
     ray r = {.bvh = &bvh, .shell_of = shells->shell_of};
     candidates c = {.shell = malloc(shells->n * sizeof *c.shell), .sure = malloc(shells->n)};
-    ms_status status = ms_bvh_build(&bvh, mesh, err);
+    ms_status status = ms_bvh_build(&bvh, mesh, MS_BVH_FOR_MANY_RAYS, err);
     if (status == MS_OK) {
         for (uint32_t s = 0; c.shell && c.sure && s < shells->n; s++) {
             shells->shell[s].depth = depth_of(&c, &r, shells, mesh, s);

@@ -7,10 +7,7 @@
 /* Across the rays: coordinates are integers in units of 2^-15 voxel. With extents below
  * 2^15 an edge function is below 2^62, so that int64_t holds it exactly. */
 enum { ACROSS_BITS = 15, ACROSS = 1 << ACROSS_BITS };
-/* Along the rays: crossings are integers in units of 2^-12 voxel. */
-enum { ALONG_BITS = 12, ALONG = 1 << ALONG_BITS };
-/* A ray counts as the four rays infinitely near it; a set of them has a bit for each. */
-enum { NEAR_RAYS = 4, ALL_NEAR = (1 << NEAR_RAYS) - 1, LAST_NEAR = 1 << (NEAR_RAYS - 1) };
+enum { ALL_NEAR = (1 << MS_SWEEP_NEAR_RAYS) - 1, LAST_NEAR = 1 << (MS_SWEEP_NEAR_RAYS - 1) };
 
 typedef struct vertex {
     int32_t b, c; /* across the rays, in 1/ACROSS voxel from the centre of the first voxel */
@@ -20,28 +17,23 @@ typedef struct vertex {
 /* One sweep of rays over the mesh. Rays run along axis a; planes are stacked along c. */
 typedef struct sweep {
     const ms_mesh *mesh;
-    ms_grid *grid;
+    ms_grid *grid;  /* without voxels where `take` takes the crossings */
+    double cell[3]; /* sides of its voxels */
     int a, b, c;
     int rays;   /* rays per voxel along b and along c */
     int parity; /* 0: inside by coverage; 1: sets bit a by the parity of crossings */
+    ms_sweep_taker *take;
+    void *context;
     vertex *vertices;
     size_t *plane_start;      /* n[c] + 1 offsets into plane_triangle */
     uint32_t *plane_triangle; /* the triangles that touch each plane's rays */
 } sweep;
 
-/* A face that a ray passes through. */
-typedef struct crossing {
-    uint32_t ray; /* of those of the plane */
-    int32_t at;   /* along the ray, in 1/ALONG voxel from the outer face of the first voxel */
-    int8_t sign;  /* 1 into matter, -1 out of it */
-    uint8_t near; /* the near rays that pass */
-} crossing;
-
 /* What one thread needs for one plane. */
 typedef struct plane_work {
     int32_t *lines;  /* rows of voxels: what each is covered by, as steps along the row */
     uint32_t *start; /* of each ray, into sorted; one more at the end */
-    crossing *found, *sorted;
+    ms_crossing *found, *sorted;
     size_t count, capacity;
     int out_of_memory;
 } plane_work;
@@ -64,16 +56,21 @@ static void place_vertices(sweep *s)
     }
     for (size_t v = 0; v < s->mesh->n_vertices; v++) {
         const double *p = s->mesh->vertex[v];
-        double b = (p[s->b] - centre[s->b]) / grid->h, c = (p[s->c] - centre[s->c]) / grid->h;
+        double b = (p[s->b] - centre[s->b]) / s->cell[s->b], c = (p[s->c] - centre[s->c]) / s->cell[s->c];
         s->vertices[v].b = (int32_t)(rint(b * ACROSS) + (grid->n[s->b] - 1) * (ACROSS / 2));
         s->vertices[v].c = (int32_t)(rint(c * ACROSS) + (grid->n[s->c] - 1) * (ACROSS / 2));
-        s->vertices[v].a = (p[s->a] - centre[s->a]) / grid->h + 0.5 * grid->n[s->a];
+        s->vertices[v].a = (p[s->a] - centre[s->a]) / s->cell[s->a] + 0.5 * grid->n[s->a];
     }
 }
 
 static int floor_div(int64_t value, int64_t divisor)
 {
     return (int)(value >= 0 ? value / divisor : -((-value + divisor - 1) / divisor));
+}
+
+static size_t rays_of_plane(const sweep *s)
+{
+    return (size_t)s->grid->n[s->b] * (size_t)s->rays * (size_t)s->rays;
 }
 
 /* Rays are numbered across all voxels: ray r crosses at ray_first + r * ray_step. */
@@ -157,7 +154,7 @@ static int shifted_side(int64_t db, int64_t dc, int sb, int sc)
 static int near_rays_inside(const int64_t e[3], const int64_t db[3], const int64_t dc[3], int positive)
 {
     int inside = 0;
-    for (int near = 0; near < NEAR_RAYS; near++) {
+    for (int near = 0; near < MS_SWEEP_NEAR_RAYS; near++) {
         const int sb = near & 1 ? 1 : -1, sc = near & 2 ? 1 : -1;
         int in = 1;
         for (int m = 0; m < 3; m++) {
@@ -174,9 +171,9 @@ static void add_crossing(plane_work *w, uint32_t ray, double x, int sign, int ne
 {
     if (w->count == w->capacity) {
         const size_t capacity = 2 * w->capacity + 1024;
-        crossing *found = realloc(w->found, capacity * sizeof *found);
+        ms_crossing *found = realloc(w->found, capacity * sizeof *found);
         w->found = found ? found : w->found;
-        crossing *sorted = found ? realloc(w->sorted, capacity * sizeof *sorted) : NULL;
+        ms_crossing *sorted = found ? realloc(w->sorted, capacity * sizeof *sorted) : NULL;
         w->sorted = sorted ? sorted : w->sorted;
         if (!sorted) {
             w->out_of_memory = 1;
@@ -185,7 +182,7 @@ static void add_crossing(plane_work *w, uint32_t ray, double x, int sign, int ne
         w->capacity = capacity;
     }
     w->found[w->count++] =
-        (crossing){.ray = ray, .at = (int32_t)rint(x * ALONG), .sign = (int8_t)sign, .near = (uint8_t)near};
+        (ms_crossing){.ray = ray, .at = (int32_t)rint(x * MS_SWEEP_ALONG), .sign = (int8_t)sign, .near = (uint8_t)near};
 }
 
 /* By parity the row holds which voxel centres see the last of the near rays change sides. */
@@ -197,30 +194,30 @@ static void flip_beyond(int32_t *row, double x)
 /* From `at` on, so many near rays more (or fewer) run in matter. */
 static void cover_beyond(int32_t *row, const sweep *s, int32_t at, int weight)
 {
-    int voxel = at >> ALONG_BITS, part = at & (ALONG - 1);
+    int voxel = at >> MS_SWEEP_ALONG_BITS, part = at & (MS_SWEEP_ALONG - 1);
     if (s->rays == 1) {
         /* Only the centre counts; a face right through it covers it half. */
-        part = part < ALONG / 2 ? 0 : part == ALONG / 2 ? ALONG / 2 : ALONG;
+        part = part < MS_SWEEP_ALONG / 2 ? 0 : part == MS_SWEEP_ALONG / 2 ? MS_SWEEP_ALONG / 2 : MS_SWEEP_ALONG;
     }
-    row[voxel] += weight * (ALONG - part);
+    row[voxel] += weight * (MS_SWEEP_ALONG - part);
     row[voxel + 1] += weight * part;
 }
 
 static int by_place(const void *first, const void *second)
 {
-    const crossing *a = first, *b = second;
+    const ms_crossing *a = first, *b = second;
     return (a->at > b->at) - (a->at < b->at);
 }
 
 /* Crossings of one ray; their order at one place does not matter. They are few, but for heaps of bodies. */
-static void sort_along(crossing *c, size_t count)
+static void sort_along(ms_crossing *c, size_t count)
 {
     if (count > 16) {
         qsort(c, count, sizeof *c, by_place);
         return;
     }
     for (size_t m = 1; m < count; m++) {
-        const crossing here = c[m];
+        const ms_crossing here = c[m];
         size_t to = m;
         for (; to > 0 && c[to - 1].at > here.at; to--) {
             c[to] = c[to - 1];
@@ -257,14 +254,14 @@ static void cover_rays(plane_work *w, const sweep *s)
     if (w->count == 0) {
         return; /* before the first crossing there is no array of them to point into */
     }
-    sort_crossings(w, across * (size_t)s->rays);
-    for (size_t ray = 0; ray < across * (size_t)s->rays; ray++) {
+    sort_crossings(w, rays_of_plane(s));
+    for (size_t ray = 0; ray < rays_of_plane(s); ray++) {
         int32_t *row = w->lines + ray % across / (size_t)s->rays * row_length;
-        int winding[NEAR_RAYS] = {0}, covered = 0;
+        int winding[MS_SWEEP_NEAR_RAYS] = {0}, covered = 0;
         for (size_t m = w->start[ray]; m < w->start[ray + 1]; m++) {
-            const crossing *c = &w->sorted[m];
+            const ms_crossing *c = &w->sorted[m];
             int now = 0;
-            for (int near = 0; near < NEAR_RAYS; near++) {
+            for (int near = 0; near < MS_SWEEP_NEAR_RAYS; near++) {
                 winding[near] += c->near >> near & 1 ? c->sign : 0;
                 now += winding[near] > 0;
             }
@@ -352,7 +349,7 @@ static void emit_plane(const int32_t *lines, const sweep *s, int plane)
 {
     const int *n = s->grid->n;
     const size_t stride[3] = {1, (size_t)n[0], (size_t)n[0] * (size_t)n[1]};
-    const int32_t full = s->rays * s->rays * NEAR_RAYS * ALONG;
+    const int32_t full = s->rays * s->rays * MS_SWEEP_NEAR_RAYS * MS_SWEEP_ALONG;
     for (int j = 0; j < n[s->b]; j++) {
         const int32_t *row = lines + (size_t)j * ((size_t)n[s->a] + 1);
         uint8_t *voxel = s->grid->inside + stride[s->b] * (size_t)j + stride[s->c] * (size_t)plane;
@@ -376,7 +373,15 @@ static void sweep_plane(plane_work *w, const sweep *s, int plane)
             cross_row(w, s, v, ray, ray_first(s) + ((int64_t)plane * s->rays + ray) * ray_step(s));
         }
     }
-    if (!s->parity && !w->out_of_memory) {
+    if (w->out_of_memory) {
+        return;
+    }
+    if (s->take) {
+        sort_crossings(w, rays_of_plane(s));
+        s->take(s->context, plane, w->sorted, w->start);
+        return;
+    }
+    if (!s->parity) {
         cover_rays(w, s);
     }
     emit_plane(w->lines, s, plane);
@@ -386,7 +391,7 @@ static plane_work plane_work_alloc(const sweep *s)
 {
     const size_t across = (size_t)s->grid->n[s->b];
     plane_work w = {.lines = malloc(across * ((size_t)s->grid->n[s->a] + 1) * sizeof *w.lines),
-                    .start = malloc((across * (size_t)s->rays * (size_t)s->rays + 1) * sizeof *w.start)};
+                    .start = malloc((rays_of_plane(s) + 1) * sizeof *w.start)};
     w.out_of_memory = !w.lines || !w.start;
     return w;
 }
@@ -419,26 +424,41 @@ static ms_status sweep_planes(const sweep *s, ms_error *err)
                          : MS_OK;
 }
 
+static ms_status execute_sweep(sweep *s, ms_error *err)
+{
+    s->b = (s->a + 1) % 3;
+    s->c = (s->a + 2) % 3;
+    s->vertices = malloc(s->mesh->n_vertices * sizeof *s->vertices);
+    s->plane_start = calloc((size_t)s->grid->n[s->c] + 1, sizeof *s->plane_start);
+    if (!s->vertices || !s->plane_start) {
+        sweep_free(s);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to voxelise %zu vertices", s->mesh->n_vertices);
+    }
+    place_vertices(s);
+    ms_status status = sort_into_planes(s, err);
+    if (status == MS_OK) {
+        status = sweep_planes(s, err);
+    }
+    sweep_free(s);
+    return status;
+}
+
 ms_status ms_sweep(ms_grid *grid, const ms_mesh *mesh, int axis, int rays, int parity, ms_error *err)
 {
+    sweep s = {
+        .mesh = mesh, .grid = grid, .cell = {grid->h, grid->h, grid->h}, .a = axis, .rays = rays, .parity = parity};
+    return execute_sweep(&s, err);
+}
+
+ms_status ms_sweep_crossings(const ms_mesh *mesh, const int n[3], const double cell[3], int rays, ms_sweep_taker *take,
+                             void *context, ms_error *err)
+{
+    ms_grid lattice = {.n = {n[0], n[1], n[2]}};
     sweep s = {.mesh = mesh,
-               .grid = grid,
-               .a = axis,
-               .b = (axis + 1) % 3,
-               .c = (axis + 2) % 3,
+               .grid = &lattice,
+               .cell = {cell[0], cell[1], cell[2]},
                .rays = rays,
-               .parity = parity};
-    s.vertices = malloc(mesh->n_vertices * sizeof *s.vertices);
-    s.plane_start = calloc((size_t)grid->n[s.c] + 1, sizeof *s.plane_start);
-    if (!s.vertices || !s.plane_start) {
-        sweep_free(&s);
-        return ms_fail(err, MS_ERR_NOMEM, "no memory to voxelise %zu vertices", mesh->n_vertices);
-    }
-    place_vertices(&s);
-    ms_status status = sort_into_planes(&s, err);
-    if (status == MS_OK) {
-        status = sweep_planes(&s, err);
-    }
-    sweep_free(&s);
-    return status;
+               .take = take,
+               .context = context};
+    return execute_sweep(&s, err);
 }

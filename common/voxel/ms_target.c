@@ -25,6 +25,12 @@ double ms_target_equivalent_radius(const ms_target *target)
     return cbrt(target->body.volume * 3 / (4 * acos(-1.0)));
 }
 
+double ms_target_misfit(const ms_target *target)
+{
+    const double h = target->grid.h;
+    return target->mesh && target->closed ? (double)target->voxels * h * h * h / target->body.volume - 1 : 0;
+}
+
 /* The sums over the target's own voxels. */
 static ms_tally tally_grid(const ms_grid *grid)
 {
@@ -75,21 +81,16 @@ ms_status ms_target_add_distance(ms_target *target, ms_error *err)
     return status;
 }
 
-ms_status ms_target_voxels_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
-                                     ms_error *err)
+ms_status ms_target_voxels_from_solid(ms_target *target, const ms_mesh *mesh, const ms_solid *solid, double h,
+                                      ms_voxel_rule rule, ms_error *err)
 {
-    ms_status status = MS_OK;
     memset(target, 0, sizeof *target);
     target->mesh = mesh;
-    target->closed = closed;
+    target->closed = solid != NULL;
     target->rule = rule;
-    if (closed) {
-        status = ms_inertia_mesh(&target->body, mesh, err);
-    }
-    if (status == MS_OK) {
-        status = closed ? ms_voxelize(&target->grid, mesh, h, rule, err)
-                        : ms_voxelize_open(&target->grid, &target->disagree, mesh, h, err);
-    }
+    target->body = solid ? solid->body : target->body;
+    ms_status status = solid ? ms_voxelize(&target->grid, mesh, h, rule, err)
+                             : ms_voxelize_open(&target->grid, &target->disagree, mesh, h, err);
     if (status == MS_OK) {
         sum_up(target);
         status = ms_closest_build(&target->closest, mesh, err);
@@ -98,6 +99,18 @@ ms_status ms_target_voxels_from_mesh(ms_target *target, const ms_mesh *mesh, int
         ms_target_free(target);
     }
     return status;
+}
+
+ms_status ms_target_voxels_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
+                                     ms_error *err)
+{
+    ms_solid solid;
+    const ms_status status = closed ? ms_solid_mesh(&solid, mesh, err) : MS_OK;
+    if (status != MS_OK) {
+        memset(target, 0, sizeof *target);
+        return status;
+    }
+    return ms_target_voxels_from_solid(target, mesh, closed ? &solid : NULL, h, rule, err);
 }
 
 ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,

@@ -5,6 +5,7 @@
 #include "mesh/ms_inertia.h"
 #include "mesh/ms_mesh.h"
 #include "ms_grid.h"
+#include "ms_solid.h"
 #include "ms_voxelize.h"
 #include "volume/ms_volume.h"
 
@@ -18,7 +19,7 @@ typedef struct ms_target {
     ms_grid grid;               /* S, MSS eq. 5 */
     float *distance;            /* E, MSS eq. 8, in voxels */
     size_t voxels;              /* sum of S */
-    ms_body body;               /* exact for a closed mesh, else of the voxels */
+    ms_body body;               /* of a closed mesh by ms_solid_mesh, else of the voxels */
     size_t disagree;            /* voxels on which the axes did not agree (open mesh) */
     size_t pieces;              /* of a volume, ms_grid_pieces; 0 for a mesh */
     size_t largest_piece;       /* its voxels */
@@ -40,7 +41,7 @@ MS_API double ms_target_default_bytes(void);
  * @param      mesh   repaired (ms_mesh_repair); borrowed until ms_target_free
  * @param      closed nonzero: the mesh is closed; zero: take the majority of three axes
  * @param      h      lattice constant, in the mesh's unit
- * @return MS_OK; as ms_voxelize, ms_inertia_mesh
+ * @return MS_OK; as ms_voxelize, ms_solid_mesh
  */
 MS_API ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
                                      ms_error *err);
@@ -71,9 +72,18 @@ MS_API ms_status ms_target_from_volume(ms_target *target, const ms_volume *volum
  */
 MS_API ms_status ms_target_voxels_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h,
                                             ms_voxel_rule rule, ms_error *err);
+/** Of a mesh whose body is known; NULL: the mesh is open. */
+MS_API ms_status ms_target_voxels_from_solid(ms_target *target, const ms_mesh *mesh, const ms_solid *solid, double h,
+                                             ms_voxel_rule rule, ms_error *err);
 MS_API ms_status ms_target_voxels_from_volume(ms_target *target, const ms_volume *volume, uint32_t label,
                                               ms_error *err);
 MS_API ms_status ms_target_add_distance(ms_target *target, ms_error *err);
+
+/**
+ * What the voxels hold more than the body of the mesh, relative to it; negative if less. 0
+ * where the voxels are the body: for an open mesh or a volume.
+ */
+MS_API double ms_target_misfit(const ms_target *target);
 
 /** Radius of the ball of the target's volume, in the mesh's unit. */
 MS_API double ms_target_equivalent_radius(const ms_target *target);

@@ -90,8 +90,23 @@ static void say_repairs(const char *path, const ms_mesh_report *r)
     if (r->flipped) {
         fprintf(stderr, "%s: turned %zu triangles that were wound the wrong way\n", path, r->flipped);
     }
-    if (r->bodies > 1) {
-        fprintf(stderr, "%s: %zu separate bodies; they are treated as one particle\n", path, r->bodies);
+}
+
+/* Whether bodies are separate, and what their volume is if not. */
+static void say_bodies(const ms_input *input)
+{
+    const ms_solid *solid = &input->solid;
+    const size_t bodies = input->report.bodies;
+    if (solid->overlapping) {
+        const double whole = 0.01 * solid->body.volume;
+        fprintf(
+            stderr,
+            "%s: its surface passes through itself (%zu shells); volume, centre and inertia are those of the union, to "
+            "about 1e-4; the mesh holds %.3g %% of that volume more than once and %.3g %% inside out\n",
+            input->path, input->report.shells, solid->more_often / whole, solid->inside_out / whole);
+    } else if (bodies > 1) {
+        fprintf(stderr, "%s: %zu %s; they are treated as one particle\n", input->path, bodies,
+                solid->touches ? "bodies, of which some may touch and none overlap" : "separate bodies");
     }
 }
 
@@ -130,6 +145,10 @@ static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, ms_error *er
     if (status == MS_OK) {
         say_repairs(input->path, &input->report);
     }
+    if (status == MS_OK && input->report.closed) {
+        status = name_file(err, ms_solid_mesh(&input->solid, &input->mesh, &cause), input, &cause);
+        say_bodies(input);
+    }
     return status;
 }
 
@@ -139,6 +158,9 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
     const double start = omp_get_wtime();
     memset(input, 0, sizeof *input);
     input->path = path;
+    if (flags->threads) {
+        omp_set_num_threads(flags->threads);
+    }
     if (path[0] == '\0') {
         return ms_fail(err, MS_ERR_IO, "the name of the shape is empty; name a mesh or a volume");
     }
@@ -167,6 +189,13 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
 
 enum { DEFAULT_CELLS = 100 };
 
+static double shortest_side(const ms_mesh *mesh)
+{
+    double lo[3], hi[3];
+    ms_mesh_box(lo, hi, mesh);
+    return fmin(hi[0] - lo[0], fmin(hi[1] - lo[1], hi[2] - lo[2]));
+}
+
 /* The lattice constant that the flags ask for. */
 static ms_status choose_voxel_size(double *h, const ms_input *input, const ms_input_flags *flags, ms_error *err)
 {
@@ -176,13 +205,11 @@ static ms_status choose_voxel_size(double *h, const ms_input *input, const ms_in
         return MS_OK;
     }
     if (flags->deq > 0) {
-        ms_body body;
         if (!input->report.closed) {
             return ms_fail(err, MS_ERR_ARG, "--deq needs the volume of a closed mesh; use --cells or --voxel-size");
         }
-        ms_status status = name_file(err, ms_inertia_mesh(&body, &input->mesh, &cause), input, &cause);
-        *h = cbrt(6 * body.volume / acos(-1.0)) / flags->deq;
-        return status;
+        *h = cbrt(6 * input->solid.body.volume / acos(-1.0)) / flags->deq;
+        return MS_OK;
     }
     return name_file(err, ms_voxelize_size(h, &input->mesh, flags->cells > 0 ? flags->cells : DEFAULT_CELLS, &cause),
                      input, &cause);
@@ -211,6 +238,25 @@ static ms_status finish_target(ms_input *input, double start, ms_error *cause)
     return status;
 }
 
+/* Voxels miss the volume in proportion to their size or faster; far off, one step does not tell how much faster. */
+static double cells_to_try(double cells, double misfit)
+{
+    static const double AIM = 0.005, MOST_TIMES = 4;
+    return ceil(cells * fmin(MOST_TIMES, fabs(misfit) / AIM) - 1e-9);
+}
+
+void ms_input_say_misfit(const char *name, double misfit, double voxel_size, const ms_mesh *mesh)
+{
+    if (!(fabs(misfit) >= MS_INPUT_MISFIT)) {
+        return;
+    }
+    const double cells = shortest_side(mesh) / voxel_size, more = cells_to_try(cells, misfit);
+    fprintf(stderr,
+            "%s: the voxels hold %.3g %% %s than the shape: they are too coarse for it, and measures on them are of "
+            "another body; try --cells %.0f (now %.3g) or --voxel-size %.4g\n",
+            name, 100 * fabs(misfit), misfit > 0 ? "more" : "less", more, cells, shortest_side(mesh) / more);
+}
+
 static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, ms_error *err)
 {
     double h = 0, n[3];
@@ -229,13 +275,18 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
     status = check_memory(n, flags, err);
     if (status == MS_OK) {
         const double start = omp_get_wtime();
-        status = ms_target_voxels_from_mesh(&input->target, &input->mesh, input->report.closed, h, flags->rule, &cause);
+        status = ms_target_voxels_from_solid(&input->target, &input->mesh, input->report.closed ? &input->solid : NULL,
+                                             h, flags->rule, &cause);
         status = status == MS_OK ? finish_target(input, start, &cause) : status;
         status = name_file(err, status, input, &cause);
     }
     if (status == MS_OK && !input->report.closed) {
-        fprintf(stderr, "%s: the mesh is open (%zu open edges); the three axes disagreed on %zu of %zu voxels\n",
+        fprintf(stderr,
+                "%s: the mesh is open (%zu open edges); the three axes disagreed on %zu of %zu voxels, and volume and "
+                "inertia are those of the voxels\n",
                 input->path, input->report.open_edges, input->target.disagree, input->target.voxels);
+    } else if (status == MS_OK) {
+        ms_input_say_misfit(input->path, ms_target_misfit(&input->target), h, &input->mesh);
     }
     return status;
 }

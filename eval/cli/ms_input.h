@@ -5,9 +5,13 @@
 #include "mesh/ms_mesh.h"
 #include "ms_flags.h"
 #include "volume/ms_volume.h"
+#include "voxel/ms_solid.h"
 #include "voxel/ms_target.h"
 
 enum { MS_INPUT_MAX_THREADS = 1024 };
+
+/** From this part of the volume on it is said that voxels do not hold it. */
+#define MS_INPUT_MISFIT 0.01
 
 /** Flags about the shape and its grid, common to several commands; see MS_INPUT_FLAGS. */
 typedef struct ms_input_flags {
@@ -42,20 +46,35 @@ typedef struct ms_input {
     uint64_t checksum; /* FNV-1a of the file */
     ms_mesh mesh;      /* empty for a volume */
     ms_mesh_report report;
+    ms_solid solid;   /* of a closed mesh */
     ms_volume volume; /* empty for a mesh */
     ms_target target; /* after ms_input_target */
     uint32_t label;   /* that was asked for; 0: none */
     double read_seconds, voxelize_seconds, distance_seconds;
 } ms_input;
 
-/** Reads a mesh or a volume; mends a mesh. What was mended is said on stderr. */
+/**
+ * Reads a mesh or a volume; mends a mesh, and if it is closed takes its volume, centre and
+ * inertia. What was mended, and whether bodies overlap, is said on stderr.
+ */
 ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err);
 
 /** Refuses flags that do not apply to what was read. @return MS_OK; MS_ERR_ARG */
 ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flags, ms_error *err);
 
-/** Makes the target; says the size of the grid on stderr. Refuses open meshes unless allowed. */
+/**
+ * Makes the target; says the size of the grid on stderr, and if its voxels do not hold the shape. Refuses open meshes
+ * unless allowed.
+ */
 ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err);
+
+/**
+ * Says on stderr that the voxels do not hold the shape, with the figures and a number of cells to try, if they are
+ * off by 1 % or more of its volume.
+ *
+ * @param misfit as ms_target_misfit
+ */
+void ms_input_say_misfit(const char *name, double misfit, double voxel_size, const ms_mesh *mesh);
 
 /** The largest grid that the memory allowed admits. */
 size_t ms_input_max_voxels(const ms_input_flags *flags);

@@ -56,9 +56,7 @@ static ms_status body_of_target(ms_body *body, const correct_arguments *a, ms_er
     }
     status = ms_input_check_flags(&input, &a->input, err);
     if (status == MS_OK && input.mesh.n_triangles && input.report.closed) {
-        ms_error cause;
-        status = ms_inertia_mesh(body, &input.mesh, &cause);
-        status = status == MS_OK ? status : ms_fail(err, status, "%s: %s", a->target, cause.text);
+        *body = input.solid.body;
     } else if (status == MS_OK) {
         status = ms_input_target(&input, &a->input, err);
         *body = input.target.body;

@@ -45,9 +45,12 @@ static double equivalent_diameter(const info_facts *f)
     return f->has_body ? cbrt(6 * f->body.volume / acos(-1.0)) : (double)NAN;
 }
 
-/* Wadell: area of the ball of equal volume over the area of the body. */
+/* Wadell: area of the ball of equal volume over the area of the body. That of a union is not known. */
 static double sphericity(const info_facts *f)
 {
+    if (f->input->solid.overlapping) {
+        return (double)NAN;
+    }
     const double d = equivalent_diameter(f);
     return acos(-1.0) * d * d / f->area;
 }
@@ -74,7 +77,7 @@ static ms_status gather(info_facts *f, ms_input *input, const ms_input_flags *fl
         ms_mesh_box(f->lo, f->hi, &input->mesh);
         f->area = ms_mesh_area(&input->mesh);
         f->has_body = input->report.closed;
-        status = f->has_body ? ms_inertia_mesh(&f->body, &input->mesh, err) : MS_OK;
+        f->body = input->solid.body;
     }
     return status == MS_OK && f->has_body ? ms_inertia_principal(&f->principal, &f->body, err) : status;
 }
@@ -92,7 +95,8 @@ static void print_mesh(const info_facts *f)
     printf("  %-22s %s\n  %-22s %zu\n  %-22s %zu\n", "closed", r->closed ? "yes" : "no", "open edges", r->open_edges,
            "non-manifold edges", r->nonmanifold_edges);
     if (r->closed) {
-        printf("  %-22s %zu (%zu cavities)\n", "bodies", r->bodies, r->cavities);
+        printf("  %-22s %zu (%zu cavities%s)\n", "bodies", r->bodies, r->cavities,
+               f->input->solid.overlapping ? ", overlapping" : "");
     } else {
         printf("  %-22s %zu\n", "shells", r->shells);
     }
@@ -120,7 +124,7 @@ static void print_facts(const info_facts *f)
     print_vector("box from", f->lo);
     print_vector("box size", size);
     if (isfinite(f->area)) {
-        printf("  %-22s %.9g\n", "area", f->area);
+        printf("  %-22s %.9g%s\n", "area", f->area, f->input->solid.overlapping ? " with what is inside" : "");
     }
     if (!f->has_body) {
         puts("  (an open mesh has no volume)");
@@ -136,7 +140,7 @@ static void print_facts(const info_facts *f)
         print_vector(AXES[a], f->principal.axis[a]);
     }
     printf("  %-22s %.9g\n", "equivalent diameter", equivalent_diameter(f));
-    if (isfinite(f->area)) {
+    if (isfinite(sphericity(f))) {
         printf("  %-22s %.6f\n", "sphericity (Wadell)", sphericity(f));
     }
 }
@@ -148,12 +152,13 @@ static json_t *facts_json(const info_facts *f)
                              f->lo[0], f->lo[1], f->lo[2], "box_hi", f->hi[0], f->hi[1], f->hi[2], "area",
                              ms_report_number(f->area), "equivalent_diameter", ms_report_number(equivalent_diameter(f)),
                              "sphericity", ms_report_number(sphericity(f)));
-    json_t *mesh = json_pack(
-        "{s:I,s:I,s:b,s:I,s:I,s:I,s:I,s:I,s:I,s:I,s:I}", "triangles", (json_int_t)f->input->mesh.n_triangles,
-        "vertices", (json_int_t)f->input->mesh.n_vertices, "closed", r->closed, "open_edges", (json_int_t)r->open_edges,
-        "nonmanifold_edges", (json_int_t)r->nonmanifold_edges, "shells", (json_int_t)r->shells, "bodies",
-        (json_int_t)r->bodies, "cavities", (json_int_t)r->cavities, "turned", (json_int_t)r->flipped,
-        "dropped_degenerate", (json_int_t)r->dropped_degenerate, "dropped_duplicate", (json_int_t)r->dropped_duplicate);
+    json_t *mesh = json_pack("{s:I,s:I,s:b,s:I,s:I,s:I,s:I,s:I,s:b,s:I,s:I,s:I}", "triangles",
+                             (json_int_t)f->input->mesh.n_triangles, "vertices", (json_int_t)f->input->mesh.n_vertices,
+                             "closed", r->closed, "open_edges", (json_int_t)r->open_edges, "nonmanifold_edges",
+                             (json_int_t)r->nonmanifold_edges, "shells", (json_int_t)r->shells, "bodies",
+                             (json_int_t)r->bodies, "cavities", (json_int_t)r->cavities, "overlapping",
+                             f->input->solid.overlapping, "turned", (json_int_t)r->flipped, "dropped_degenerate",
+                             (json_int_t)r->dropped_degenerate, "dropped_duplicate", (json_int_t)r->dropped_duplicate);
     if (f->input->mesh.n_triangles) {
         ms_json_object_merge(&json, mesh);
     } else {

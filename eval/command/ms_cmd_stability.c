@@ -1,5 +1,6 @@
 /* mskit stability [SHAPE...] */
 #include <errno.h>
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -188,12 +189,27 @@ static void show_run(const stability_progress *p, const ms_stability *s, const m
     }
 }
 
+/* Once for each resolution of a shape: that of its own grid was said when the grid was made. */
+static void say_misfit(const stability_progress *p, const ms_stability *s, const ms_stability_run *run)
+{
+    int said =
+        run->voxel_size == s->input->target.grid.h && fabs(ms_target_misfit(&s->input->target)) >= MS_INPUT_MISFIT;
+    for (const ms_stability_run *before = p->run; before < run && !said; before++) {
+        said = before->shape_checksum == run->shape_checksum && before->voxel_size == run->voxel_size &&
+               fabs(before->misfit) >= MS_INPUT_MISFIT;
+    }
+    if (!said) {
+        ms_input_say_misfit(s->input->path, run->misfit, run->voxel_size, &s->input->mesh);
+    }
+}
+
 static ms_status add_run(stability_progress *p, const ms_stability *s, const ms_change *change, int number,
                          ms_error *err)
 {
     ms_stability_run *run = &p->run[p->n_runs];
     show_run(p, s, change);
     ms_stability_try(run, s, change, number);
+    say_misfit(p, s, run);
     p->n_runs++;
     ms_stability_row(p->rows, run);
     return fflush(p->rows) == 0 ? MS_OK : ms_fail(err, MS_ERR_IO, "a row could not be written; is the disk full?");

@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "base/ms_file.h"
-#include "mesh/ms_inertia.h"
 #include "ms_perturb.h"
 #include "shape/ms_shape.h"
+#include "voxel/ms_solid.h"
 
 const ms_hard_shape ms_hard_shapes[] = {
     {.name = "plate", .kind = "plate", .value = {5, 5, 0.1, 50}, .deq = 100},
@@ -23,17 +23,14 @@ const ms_hard_shape ms_hard_shapes[] = {
     {0}};
 
 /* The flags with a voxel size in the place of a diameter. */
-static ms_status choose_voxels(ms_input_flags *flags, const ms_hard_shape *shape, const ms_mesh *mesh, ms_error *err)
+static void choose_voxels(ms_input_flags *flags, const ms_hard_shape *shape, const ms_solid *solid)
 {
-    ms_body body;
-    ms_status status = ms_inertia_mesh(&body, mesh, err);
     const double asked = flags->deq > 0 ? flags->deq : shape->deq;
-    if (status != MS_OK || (!shape->only && (flags->cells > 0 || flags->voxel_size > 0))) {
-        return status;
+    if (!shape->only && (flags->cells > 0 || flags->voxel_size > 0)) {
+        return;
     }
-    flags->voxel_size = cbrt(6 * body.volume / acos(-1.0)) / (shape->only ? shape->deq : asked);
+    flags->voxel_size = cbrt(6 * solid->body.volume / acos(-1.0)) / (shape->only ? shape->deq : asked);
     flags->cells = flags->deq = 0;
-    return MS_OK;
 }
 
 ms_status ms_hard_shapes_make(ms_input *input, const ms_hard_shape *shape, const ms_input_flags *flags, ms_error *err)
@@ -43,7 +40,8 @@ ms_status ms_hard_shapes_make(ms_input *input, const ms_hard_shape *shape, const
     input->path = shape->name;
     ms_status status = ms_shape_make(&input->mesh, ms_shape_find(shape->kind, err), shape->value, err);
     if (status == MS_OK) {
-        status = choose_voxels(&own, shape, &input->mesh, err);
+        status = ms_solid_mesh(&input->solid, &input->mesh, err); /* before it has holes */
+        choose_voxels(&own, shape, &input->solid);
     }
     if (status == MS_OK && shape->holes > 0) {
         own.allow_open = 1;

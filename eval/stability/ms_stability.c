@@ -100,6 +100,7 @@ static void try_change(ms_stability_run *run, const ms_stability *s)
     omp_set_num_threads(run->threads);
     if (status == MS_OK) {
         status = make_target(&target, &c, s, &run->cause);
+        run->misfit = status == MS_OK ? ms_target_misfit(&target) : 0;
     }
     if (status != MS_OK) {
         run->outcome = MS_OUTCOME_UNUSABLE;

@@ -42,6 +42,7 @@ typedef struct ms_stability_run {
     double level;
     uint64_t seed;
     double voxel_size;
+    double misfit; /* of the changed shape and its voxels: ms_target_misfit */
     int threads;
     size_t asked;
     double until_dice; /* 0: not asked for */

@@ -100,7 +100,7 @@ class Columns(Case):
         run = self.mskit("info", "grain.stl", "--json").json
         body = "volume centroid inertia principal_moments principal_axes"
         self.assertEqual(keys(run), ("path box_lo box_hi area equivalent_diameter sphericity triangles vertices closed "
-                                     "open_edges nonmanifold_edges shells bodies cavities turned dropped_degenerate "
+                                     "open_edges nonmanifold_edges shells bodies cavities overlapping turned dropped_degenerate "
                                      "dropped_duplicate " + body).split())
 
     def test_json_of_generators(self):

@@ -119,3 +119,16 @@ class Data(Case):
         for a, b in zip(self.spheres("near.csv"), self.spheres("far.csv")):
             self.assert_close(b[3], a[3], 0.01, "radius")
             self.assertGreater(max(abs(c) for c in b[:3]), 0.9e9)
+
+    def test_concave_polygons(self):
+        """An L of hexagons has the area of an L, and the gap that the same L of triangles has."""
+        self.write("c.csv", "x,y,z,r\n0.5,0.5,0.5,0.5\n2.5,0.5,0.5,0.5\n0.5,2.5,0.5,0.5\n")
+        gaps = []
+        for name in ("d02_L_ngon.obj", "d12_L_tri.obj"):
+            path = shared_file("cases", name)
+            info = self.mskit("info", path, "--json").json
+            self.assert_close(info["area"], 22, 1e-12, "area")
+            self.assert_close(info["volume"], 5, 1e-12, "volume")
+            score = self.mskit("score", "c.csv", "--target", path, "--cells", 20, "--json").json["scores"]
+            gaps.append(score["gap_max"])
+        self.assert_close(gaps[0], gaps[1], 0.01, "gap")

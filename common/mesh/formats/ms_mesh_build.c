@@ -1,9 +1,10 @@
-/* A mesh as the readers build it: fans, checks and welding. */
+/* A mesh as the readers build it: polygons, checks and welding. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "ms_mesh_formats.h"
+#include "ms_mesh_polygon.h"
 
 #define MAX_TRIANGLES (UINT64_C(1) << 31)
 #define MAX_VERTICES ((uint64_t)UINT32_MAX)
@@ -130,13 +131,31 @@ ms_status ms_mesh_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_
     return status;
 }
 
+/* Its corners may come later in the file: how to cut it is decided at the end. */
+static ms_status append_polygon(ms_mesh_builder *builder, ms_error *err)
+{
+    if (builder->n_polygons == builder->polygon_room) {
+        void *array = builder->polygon;
+        ms_status status = grow_array(&array, &builder->polygon_room, next_room(builder->polygon_room, MAX_TRIANGLES),
+                                      sizeof *builder->polygon, builder->name, err);
+        builder->polygon = array;
+        if (status) {
+            return status;
+        }
+    }
+    const size_t n = builder->n_corners - 2;
+    builder->polygon[builder->n_polygons++] =
+        (ms_mesh_fan){.first = builder->mesh.n_triangles - n, .n = n, .place = builder->place};
+    return MS_OK;
+}
+
 ms_status ms_mesh_build_face_end(ms_mesh_builder *builder, ms_error *err)
 {
     if (builder->n_corners < 3) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: %s %zu: a face has %zu corners and needs at least 3; remove it",
                        builder->name, builder->place_word, builder->place, builder->n_corners);
     }
-    return MS_OK;
+    return builder->n_corners > 3 ? append_polygon(builder, err) : MS_OK;
 }
 
 static size_t count_not_finite_triangles(const ms_mesh *mesh)
@@ -171,6 +190,24 @@ static ms_status check_mesh(ms_mesh_builder *builder, ms_error *err)
                        builder->first_not_finite);
     }
     return MS_OK;
+}
+
+static ms_status cut_polygons(ms_mesh_builder *builder, ms_error *err)
+{
+    ms_status status = MS_OK;
+    ms_error cause;
+    ms_polygon_work work = {0};
+    const ms_mesh *mesh = &builder->mesh;
+    for (size_t k = 0; k < builder->n_polygons && !status; k++) {
+        const ms_mesh_fan *polygon = &builder->polygon[k];
+        status = ms_mesh_polygon_cut(mesh->triangle + polygon->first, polygon->n, (const double(*)[3])mesh->vertex,
+                                     &work, &cause);
+        if (status) {
+            ms_fail(err, status, "%s: %s %zu: %s", builder->name, builder->place_word, polygon->place, cause.text);
+        }
+    }
+    ms_mesh_polygon_free(&work);
+    return status;
 }
 
 static uint64_t hash_position(const double position[3])
@@ -261,6 +298,9 @@ ms_status ms_mesh_build_finish(ms_mesh *mesh, ms_mesh_builder *builder, ms_statu
         status = check_mesh(builder, err);
     }
     if (!status) {
+        status = cut_polygons(builder, err);
+    }
+    if (!status) {
         status = weld_mesh(&builder->mesh, builder->name, err);
     }
     if (status) {
@@ -269,6 +309,7 @@ ms_status ms_mesh_build_finish(ms_mesh *mesh, ms_mesh_builder *builder, ms_statu
         trim_arrays(&builder->mesh);
         *mesh = builder->mesh;
     }
+    free(builder->polygon);
     *builder = (ms_mesh_builder){0};
     return status;
 }

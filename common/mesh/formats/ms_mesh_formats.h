@@ -18,6 +18,12 @@ ms_status ms_mesh_parse_obj(ms_mesh *mesh, const ms_bytes *bytes, const char *na
 ms_status ms_mesh_parse_ply(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
 ms_status ms_mesh_parse_off(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
 
+/** A face of more than three corners, as the triangles of its fan. */
+typedef struct ms_mesh_fan {
+    size_t first, n; /* triangles */
+    size_t place;
+} ms_mesh_fan;
+
 /** A mesh under construction. Places are line numbers in text and byte offsets in binary files. */
 typedef struct ms_mesh_builder {
     const char *name;       /* of the file */
@@ -26,6 +32,8 @@ typedef struct ms_mesh_builder {
     ms_mesh mesh;           /* vertices as in the file, not yet welded */
     size_t vertex_room;
     size_t triangle_room;
+    ms_mesh_fan *polygon;
+    size_t n_polygons, polygon_room;
     size_t place;     /* of the face under way */
     size_t n_corners; /* of the face under way */
     uint32_t fan[2];  /* its first corner and its latest */
@@ -40,7 +48,7 @@ ms_status ms_mesh_build_reserve(ms_mesh_builder *builder, size_t n_vertices, siz
 
 ms_status ms_mesh_build_vertex(ms_mesh_builder *builder, const double position[3], size_t place, ms_error *err);
 
-/** A polygon: begin, its corners in turn, end. It is cut into a fan around its first corner. */
+/** A polygon: begin, its corners in turn, end. It is cut into triangles within it (ms_mesh_polygon.h). */
 void ms_mesh_build_face_begin(ms_mesh_builder *builder, size_t place);
 
 /** A vertex, counted from 0, that may come later in the file: whether it exists is checked at the end. */
@@ -48,11 +56,12 @@ ms_status ms_mesh_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_
 ms_status ms_mesh_build_face_end(ms_mesh_builder *builder, ms_error *err);
 
 /**
- * Checks the mesh, welds vertices with equal coordinates (-0 equals 0) and drops those that
+ * Checks the mesh, cuts its polygons, welds vertices with equal coordinates (-0 equals 0) and drops those that
  * no triangle uses; the others keep the order of the file. Frees the builder in any case.
  *
  * @param      status of the parsing; nothing is built unless it is MS_OK
- * @return `status` if that is not MS_OK; MS_OK; MS_ERR_FORMAT; MS_ERR_NOMEM. Cost: O(vertices + triangles)
+ * @return `status` if that is not MS_OK; MS_OK; MS_ERR_FORMAT; MS_ERR_LIMIT and cost as
+ *         ms_mesh_polygon_cut, else O(vertices + triangles); MS_ERR_NOMEM
  */
 ms_status ms_mesh_build_finish(ms_mesh *mesh, ms_mesh_builder *builder, ms_status status, ms_error *err);
 

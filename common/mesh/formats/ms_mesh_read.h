@@ -10,15 +10,16 @@ MS_C_BEGIN
 /**
  * Reads a mesh, in double precision, strictly: a file that does not say exactly one mesh is
  * refused. The format comes from the ending (.stl .obj .ply .off). Polygons are cut into
- * fans; vertices with equal coordinates are welded, those that no face uses dropped. What an
+ * triangles that stay within them; vertices with equal coordinates are welded, those that no face uses dropped. What an
  * untrusted header claims is checked against the file's size before anything is allocated.
  *
  * @param[out] mesh the caller frees it; empty on failure
  * @param      path the file
  * @param[out] err  names the file and the line or byte; may be NULL
- * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_LIMIT over 2^31 triangles; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_LIMIT over 2^31 triangles or for concave
+ *         polygons that take very long to cut; MS_ERR_NOMEM
  *
- * Cost: O(file size).
+ * Cost: O(file size), and of concave polygons mostly O(corners^2).
  */
 MS_API ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err);
 
