@@ -24,19 +24,27 @@ ms_status ms_volume_data_file(ms_word *file, ms_text *value, ms_error *err)
     return MS_OK;
 }
 
+char *ms_volume_path_beside(const ms_word *file, const char *header)
+{
+    const char *slash = strrchr(header, '/');
+    size_t folder = slash && file->start[0] != '/' ? (size_t)(slash + 1 - header) : 0;
+    char *path = malloc(folder + file->length + 1);
+    if (path) {
+        memcpy(path, header, folder);
+        memcpy(path + folder, file->start, file->length);
+        path[folder + file->length] = '\0';
+    }
+    return path;
+}
+
 ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_text *header, ms_error *err)
 {
     ms_error inner = {{0}};
-    const char *slash = strrchr(header->name, '/');
-    size_t folder = slash && file->start[0] != '/' ? (size_t)(slash + 1 - header->name) : 0;
-    char *path = malloc(folder + file->length + 1);
+    char *path = ms_volume_path_beside(file, header->name);
     *bytes = (ms_bytes){0};
     if (!path) {
         return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to read its data file", header->name);
     }
-    memcpy(path, header->name, folder);
-    memcpy(path + folder, file->start, file->length);
-    path[folder + file->length] = '\0';
     ms_status status = ms_file_read(bytes, path, &inner);
     if (status) {
         ms_fail(err, status, "%s: line %zu: names a data file that cannot be used: %s", header->name, header->line,

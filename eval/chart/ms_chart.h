@@ -3,6 +3,7 @@
 #define MS_CHART_H
 
 #include <stddef.h>
+#include <stdio.h>
 
 #include "base/ms_error.h"
 
@@ -34,6 +35,9 @@ typedef struct ms_chart {
     const ms_chart_series *series; /* borrowed */
 } ms_chart;
 
+/** What ms_chart_write and ms_chart_draw put behind the stem; ends with NULL. */
+extern const char *const MS_CHART_ENDINGS[];
+
 /**
  * Writes STEM.dat and STEM.gp, from which gnuplot makes STEM.svg and STEM.png. A point that has no place (not finite,
  * not above 0 on a log axis) is left out, a series without points stands in neither file.
@@ -42,6 +46,9 @@ typedef struct ms_chart {
  * @return MS_OK; MS_ERR_ARG if no point is left; MS_ERR_IO; MS_ERR_NOMEM
  */
 ms_status ms_chart_write(const ms_chart *chart, const char *stem, ms_error *err);
+
+/** Names the file NAME.ENDING in a script of gnuplot; the ending with its dot. */
+void ms_chart_put_file(FILE *stream, const char *name, const char *ending);
 
 /**
  * Runs gnuplot on STEM.gp, in its folder.

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/ms_escape.h"
 #include "base/ms_file.h"
 
 static ms_status take_format(ms_outputs *outputs, const char *name, ms_error *err)
@@ -80,7 +81,9 @@ static ms_status add_default(ms_outputs *outputs, const char *source, const char
     if (!path) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the names of the outputs");
     }
-    snprintf(path, room, "%s%s%.*s%s.%s", folder, folder[0] ? "/" : "", length, base, behind, format->ending);
+    const int start = snprintf(path, room, "%s%s", folder, folder[0] ? "/" : "");
+    snprintf(path + start, room - (size_t)start, "%.*s%s.%s", length, base, behind, format->ending);
+    ms_escape_file_name(path + start);
     outputs->file[outputs->n_files++] = (ms_output_file){path, path, format};
     return MS_OK;
 }
@@ -142,32 +145,6 @@ int ms_outputs_to_stdout(const ms_outputs *outputs)
     return found;
 }
 
-/* Are both the same file? */
-static int same_file(const char *a, const char *b)
-{
-    struct stat first, second;
-    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
-           first.st_ino == second.st_ino;
-}
-
-/* A device or a pipe is not tried, since that would be noticed at its other end. */
-ms_status ms_outputs_try_file(const char *source, const char *path, ms_error *err)
-{
-    ms_output output;
-    struct stat info;
-    if (strcmp(path, "-") == 0 || (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))) {
-        return MS_OK;
-    }
-    if (same_file(source, path)) {
-        return ms_fail(err, MS_ERR_ARG, "%s is the input itself; it is not overwritten", path);
-    }
-    ms_status status = ms_output_open(&output, path, err);
-    if (status == MS_OK) {
-        ms_output_close(&output, MS_ERR_IO, NULL); /* removes it */
-    }
-    return status;
-}
-
 ms_status ms_outputs_make_folder(const char *path, ms_error *err)
 {
     struct stat info;
@@ -176,12 +153,31 @@ ms_status ms_outputs_make_folder(const char *path, ms_error *err)
                : ms_fail(err, MS_ERR_IO, "%s: this folder cannot be made; does the one above it exist?", path);
 }
 
-ms_status ms_outputs_try(const ms_outputs *outputs, const char *source, ms_error *err)
+/* Where the parts of a format go; its folders are made later. */
+typedef struct part_list {
+    ms_files *files;
+    int in_folder;
+} part_list;
+
+static ms_status add_part(void *context, const char *path, int is_frame, ms_error *err)
+{
+    const part_list *list = context;
+    return ms_files_add(list->files, path,
+                        is_frame          ? MS_FILE_FRAME
+                        : list->in_folder ? MS_FILE_LATER
+                                          : MS_FILE_WRITTEN,
+                        err);
+}
+
+ms_status ms_outputs_list(ms_files *files, const ms_outputs *outputs, ms_error *err)
 {
     ms_status status = outputs->folder ? ms_outputs_make_folder(outputs->folder, err) : MS_OK;
     for (size_t f = 0; f < outputs->n_files && status == MS_OK; f++) {
-        if (!ms_write_format_is_folder(outputs->file[f].format)) {
-            status = ms_outputs_try_file(source, outputs->file[f].path, err);
+        const ms_output_file *file = &outputs->file[f];
+        part_list list = {files, ms_write_format_is_folder(file->format)};
+        status = ms_write_check_path(file->path, file->format, err);
+        if (status == MS_OK) {
+            status = ms_write_list(file->path, file->format, add_part, &list, err);
         }
     }
     return status;

@@ -134,11 +134,24 @@ static ms_status resolve_masses(generate_arguments *a, ms_error *err)
 
 static ms_status try_generate_outputs(const generate_arguments *a, ms_error *err)
 {
-    ms_status status = a->target_grid ? ms_outputs_try_file(a->shape, a->target_grid, err) : MS_OK;
-    if (a->curve && status == MS_OK) {
-        status = ms_outputs_try_file(a->shape, a->curve, err);
+    const struct {
+        const char *path;
+        ms_file_use use;
+    } other[] = {
+        {a->recipe.settings.clump_file, MS_FILE_READ}, {a->target_grid, MS_FILE_WRITTEN}, {a->curve, MS_FILE_WRITTEN}};
+    ms_files files = {0};
+    ms_status status = ms_files_add_shape(&files, a->shape, err);
+    for (size_t f = 0; f < sizeof other / sizeof *other && status == MS_OK; f++) {
+        status = other[f].path ? ms_files_add(&files, other[f].path, other[f].use, err) : MS_OK;
     }
-    return status == MS_OK ? ms_outputs_try(&a->outputs, a->shape, err) : status;
+    if (status == MS_OK) {
+        status = ms_outputs_list(&files, &a->outputs, err);
+    }
+    if (status == MS_OK) {
+        status = ms_files_check(&files, err);
+    }
+    ms_files_free(&files);
+    return status;
 }
 
 /* What the generators are given; a line is shown on a terminal only. */

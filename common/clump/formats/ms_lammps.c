@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_escape.h"
 #include "base/ms_text.h"
 #include "base/ms_version.h"
 #include "ms_fields.h"
@@ -205,7 +206,7 @@ ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *er
     const ms_script_drop d = ms_script_drop_of(content);
     ms_number a, b, c;
     (void)err;
-    fprintf(stream, "# Drops %s on a plane: lmp -in %s.in\n", content->name, content->name);
+    ms_script_title(stream, content->name, "lmp -in", ".in");
     fputs("units si\natom_style sphere\natom_modify map array\nboundary f f f\nnewton off\n", stream);
     fprintf(stream, "region box block -%s %s -%s %s", ms_script_number(40 * d.reach, &a), a.text, a.text, a.text);
     fprintf(stream, " -%s %s\ncreate_box 1 box\n", ms_script_number(d.reach, &b), ms_script_number(4 * d.reach, &c));
@@ -224,8 +225,9 @@ ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *er
             "damping tsuji zplane 0 NULL\n\n",
             a.text);
     fputs("# The template: its mass and inertia are kept (reinit no) and gravity acts on the body.\n", stream);
-    fprintf(stream, "molecule clump %s\n", content->name);
-    fputs("fix move all rigid/small molecule mol clump reinit no gravity gravity\n", stream);
+    fputs("molecule clump ", stream);
+    ms_escape_lammps(stream, content->name);
+    fputs("\nfix move all rigid/small molecule mol clump reinit no gravity gravity\n", stream);
     fprintf(stream, "region above block -%s %s -%s %s", ms_script_number(d.reach, &a), a.text, a.text, a.text);
     fprintf(stream, " %s %s\n", ms_script_number(1.5 * d.reach, &b), ms_script_number(2 * d.reach, &c));
     fputs("fix insert all deposit 1 0 1 32452843 region above mol clump rigid move\n\n", stream);

@@ -1,6 +1,7 @@
 /* LIGGGHTS: a sphere file and a script with its particletemplate/multisphere. */
 #include <math.h>
 
+#include "base/ms_escape.h"
 #include "ms_fields.h"
 #include "ms_formats.h"
 #include "ms_script.h"
@@ -21,7 +22,7 @@ ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *
     const ms_particle *p = content->particle;
     ms_number a, b, c;
     (void)err;
-    fprintf(stream, "# Drops %s on a plane: liggghts -in %s.in\n", content->name, content->name);
+    ms_script_title(stream, content->name, "liggghts -in", ".in");
     fputs("atom_style granular\natom_modify map array\ncommunicate single vel yes\nboundary f f f\nnewton off\n"
           "units si\n",
           stream);
@@ -43,8 +44,10 @@ ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *
     fputs("# The template: mass and inertia about its origin, along its axes.\n", stream);
     fprintf(stream,
             "fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 "
-            "density constant %s nspheres %zu ntry 1000 spheres file %s scale 1.0 type 1 mass %s inertia_tensor",
-            ms_script_number(p->density, &a), content->clump->n_spheres, content->name, ms_script_number(p->mass, &b));
+            "density constant %s nspheres %zu ntry 1000 spheres file ",
+            ms_script_number(p->density, &a), content->clump->n_spheres);
+    ms_escape_lammps(stream, content->name);
+    fprintf(stream, " scale 1.0 type 1 mass %s inertia_tensor", ms_script_number(p->mass, &b));
     for (int k = 0; k < 6; k++) {
         fprintf(stream, " %s", k == 0 || k == 3 || k == 5 ? ms_script_number(p->inertia[k / 2][k / 2], &c) : "0");
     }

@@ -16,6 +16,9 @@ typedef struct ms_script_drop {
 
 ms_script_drop ms_script_drop_of(const ms_content *content);
 
+/** The comment in the first line: "Drops NAME on a plane: COMMAND NAME" and what is behind the name of the script. */
+void ms_script_title(FILE *stream, const char *name, const char *command, const char *suffix);
+
 /** The number as text, which stands in `room`. */
 const char *ms_script_number(double value, ms_number *room);
 

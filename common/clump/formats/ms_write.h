@@ -59,6 +59,19 @@ MS_API const ms_format *ms_write_format_of_path(const char *path, ms_error *err)
 MS_API int ms_write_format_is_folder(const ms_format *format);
 
 /**
+ * Names each file that ms_write_clump would write; none for "-".
+ *
+ * @param take told of each; `is_frame` of the frame beside a template, which is that of the clump, whatever the format
+ * @return MS_OK; MS_ERR_NOMEM; as take
+ */
+ms_status ms_write_list(const char *path, const ms_format *format,
+                        ms_status (*take)(void *context, const char *path, int is_frame, ms_error *err), void *context,
+                        ms_error *err);
+
+/** Can the script beside a template name it (ms_escape_fits_lammps)? @return MS_OK; MS_ERR_ARG */
+ms_status ms_write_check_path(const char *path, const ms_format *format, ms_error *err);
+
+/**
  * Writes a clump, each file under a temporary name that is then renamed. Beside a template stands the way back to the
  * frame of the shape, STEM.frame.json, where STEM is the path without its ending.
  *
