@@ -152,8 +152,8 @@ static ms_status open_locked(ms_csv *csv, int resume, ms_error *err)
     if (csv->fd < 0 && errno == EEXIST) {
         return ms_fail(
             err, MS_ERR_IO,
-            "%s: exists already, and rows of results are never replaced; name another file, or go on with it "
-            "by --resume, which compare has",
+            "%s: exists already, and rows of results are not replaced; name another file (compare --resume goes "
+            "on with one)",
             csv->path);
     }
     if (csv->fd < 0) {

@@ -123,7 +123,11 @@ static ms_status check_pair(const ms_file *first, const ms_file *second, ms_erro
     if (first->use == MS_FILE_READ) {
         return ms_fail(err, MS_ERR_ARG, "%s is the input itself; it is not overwritten", second->path);
     }
-    return ms_fail(err, MS_ERR_ARG, "%s and %s would be one file, and the first written be lost; name another",
+    if (strcmp(first->path, second->path) == 0) {
+        return ms_fail(err, MS_ERR_ARG, "%s would be written twice, and what comes first be lost; name another file",
+                       first->path);
+    }
+    return ms_fail(err, MS_ERR_ARG, "%s and %s are one file, and what comes first would be lost; name another",
                    first->path, second->path);
 }
 

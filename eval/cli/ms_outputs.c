@@ -183,17 +183,58 @@ ms_status ms_outputs_list(ms_files *files, const ms_outputs *outputs, ms_error *
     return status;
 }
 
+static ms_status write_file(const ms_content *content, const char *path, const ms_format *format, FILE *words,
+                            ms_error *err)
+{
+    const ms_status status = ms_write_clump(content, path, format, err);
+    if (status == MS_OK && strcmp(path, "-") != 0) {
+        fprintf(words, "wrote %s\n", path);
+    }
+    return status;
+}
+
+static ms_need known_of(const ms_content *content)
+{
+    const ms_particle *p = content->particle;
+    const int known = p && p->mass > 0 && p->density > 0;
+    return !known ? MS_NEED_SPHERES : content->clump->mass ? MS_NEED_MASSES : MS_NEED_PARTICLE;
+}
+
+char *ms_outputs_spare(const ms_outputs *outputs, ms_error *err)
+{
+    const char *path = outputs->file[0].path;
+    char *spare = malloc(strlen(path) + 5);
+    if (spare) {
+        sprintf(spare, "%s%s", path, strcmp(path, "-") == 0 ? "" : ".csv");
+    } else {
+        ms_fail(err, MS_ERR_NOMEM, "%s: no memory to write it", path);
+    }
+    return spare;
+}
+
+static ms_status write_spare(const ms_outputs *outputs, const ms_content *content, FILE *words, ms_error *err)
+{
+    char *spare = ms_outputs_spare(outputs, err);
+    const ms_status status =
+        spare ? write_file(content, spare, ms_write_format_find("csv", err), words, err) : MS_ERR_NOMEM;
+    free(spare);
+    return status;
+}
+
 ms_status ms_outputs_write(const ms_outputs *outputs, const ms_content *content, FILE *words, ms_error *err)
 {
     ms_status status = MS_OK;
+    size_t written = 0;
     for (size_t f = 0; f < outputs->n_files && status == MS_OK; f++) {
         const ms_output_file *file = &outputs->file[f];
-        status = ms_write_clump(content, file->path, file->format, err);
-        if (strcmp(file->path, "-") != 0 && status == MS_OK) {
-            fprintf(words, "wrote %s\n", file->path);
+        if (file->format->need > known_of(content)) {
+            fprintf(stderr, "%s is not written: a %s template takes masses\n", file->path, file->format->name);
+            continue;
         }
+        status = write_file(content, file->path, file->format, words, err);
+        written++;
     }
-    return status;
+    return status == MS_OK && outputs->n_files > 0 && written == 0 ? write_spare(outputs, content, words, err) : status;
 }
 
 void ms_outputs_free(ms_outputs *outputs)

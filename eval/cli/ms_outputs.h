@@ -58,7 +58,16 @@ ms_status ms_outputs_make_folder(const char *path, ms_error *err);
  * name that a script cannot hold; MS_ERR_IO; MS_ERR_NOMEM */
 ms_status ms_outputs_list(ms_files *files, const ms_outputs *outputs, ms_error *err);
 
-/** Writes all files and says so on `words`. @return as ms_write_clump */
+/** Where the clump goes if none of the outputs can be written for lack of masses: as CSV, behind the first output's name
+ * or to standard output. The caller frees it; NULL without memory. */
+char *ms_outputs_spare(const ms_outputs *outputs, ms_error *err);
+
+/**
+ * Writes all files and says so on `words`. Those that take masses which are not known are passed over, with a word on
+ * stderr; if all do, ms_outputs_spare takes the spheres, so that they are not lost.
+ *
+ * @return as ms_write_clump
+ */
 ms_status ms_outputs_write(const ms_outputs *outputs, const ms_content *content, FILE *words, ms_error *err);
 
 void ms_outputs_free(ms_outputs *outputs);

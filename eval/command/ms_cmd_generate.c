@@ -132,6 +132,20 @@ static ms_status resolve_masses(generate_arguments *a, ms_error *err)
     return ms_mass_resolve(&a->mass, err);
 }
 
+/* The file that is written if no masses are found and all outputs take them. */
+static ms_status list_spare(ms_files *files, const ms_outputs *outputs, ms_error *err)
+{
+    for (size_t f = 0; f < outputs->n_files; f++) {
+        if (outputs->file[f].format->need == MS_NEED_SPHERES) {
+            return MS_OK;
+        }
+    }
+    char *spare = ms_outputs_spare(outputs, err);
+    const ms_status status = spare ? ms_files_add(files, spare, MS_FILE_WRITTEN, err) : MS_ERR_NOMEM;
+    free(spare);
+    return status;
+}
+
 static ms_status try_generate_outputs(const generate_arguments *a, ms_error *err)
 {
     const struct {
@@ -146,6 +160,9 @@ static ms_status try_generate_outputs(const generate_arguments *a, ms_error *err
     }
     if (status == MS_OK) {
         status = ms_outputs_list(&files, &a->outputs, err);
+    }
+    if (status == MS_OK && a->correct) {
+        status = list_spare(&files, &a->outputs, err);
     }
     if (status == MS_OK) {
         status = ms_files_check(&files, err);
@@ -169,7 +186,9 @@ static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_
     ms_progress_line line = {.name = name};
     const ms_run run = make_run(a, input, &line);
     const double start = omp_get_wtime();
+    ms_progress_catch(a->recipe.generator->nested); /* what others have before their end is no clump */
     ms_status status = ms_generator_run(&r->clump, &r->reason, a->recipe.generator, &run, err);
+    ms_progress_catch(0);
     const double generated = omp_get_wtime();
     ms_progress_clear(&line);
     if (status == MS_OK && r->reason == MS_STOP_EXHAUSTED) {
@@ -182,11 +201,22 @@ static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_
         status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump, ms_input_max_voxels(&a->input), err);
     }
     r->score_seconds = omp_get_wtime() - generated;
-    if (status == MS_OK && a->correct) {
-        status =
-            ms_mass_correct(&r->mass, &r->clump, &a->mass, &input->target.body, ms_input_max_voxels(&a->input), err);
-    }
     r->generate_seconds = generated - start;
+    return status;
+}
+
+/* A clump whose masses are not found is written without them; the failure is kept for the end. */
+static ms_status add_masses(ms_result *r, const generate_arguments *a, const ms_input *input, ms_error *err)
+{
+    if (!a->correct) {
+        return MS_OK;
+    }
+    const ms_status status =
+        ms_mass_correct(&r->mass, &r->clump, &a->mass, &input->target.body, ms_input_max_voxels(&a->input), err);
+    if (status != MS_OK) {
+        free(r->clump.mass);
+        r->clump.mass = NULL;
+    }
     return status;
 }
 
@@ -224,7 +254,7 @@ static ms_status write_outputs(const generate_arguments *a, const ms_input *inpu
                                const char *record, ms_error *err)
 {
     FILE *words = writes_to_stdout(a) ? stderr : stdout;
-    const ms_particle *particle = a->correct ? &r->mass.particle : NULL;
+    const ms_particle *particle = r->mass.corrected ? &r->mass.particle : NULL;
     const ms_content content = {.clump = &r->clump, .particle = particle, .record = record};
     ms_status status = ms_outputs_write(&a->outputs, &content, words, err);
     if (status == MS_OK && a->target_grid) {
@@ -270,6 +300,21 @@ static ms_status report_generate(const generate_arguments *a, const ms_input *in
     return status;
 }
 
+/* The clump is written whatever failed; then it is said. */
+static ms_status write_and_say(const generate_arguments *a, const ms_input *input, ms_result *r, ms_error *err)
+{
+    ms_error cause = {""};
+    const ms_status masses = add_masses(r, a, input, &cause);
+    ms_status status = report_generate(a, input, r, err);
+    if (status == MS_OK && masses != MS_OK) {
+        status = ms_fail(err, masses, "the clump is written without masses, for which this failed: %s", cause.text);
+    }
+    if (status == MS_OK && r->reason == MS_STOP_INTERRUPTED) {
+        status = ms_fail(err, MS_ERR_LIMIT, "interrupted; the %zu spheres so far are written", r->clump.n_spheres);
+    }
+    return status;
+}
+
 static int execute_generate(const ms_command *command, const generate_arguments *a)
 {
     ms_error err;
@@ -288,7 +333,7 @@ static int execute_generate(const ms_command *command, const generate_arguments 
         status = make_clump(&r, a, &input, &err);
     }
     if (status == MS_OK) {
-        status = report_generate(a, &input, &r, &err);
+        status = write_and_say(a, &input, &r, &err);
     }
     ms_clump_free(&r.clump);
     ms_input_free(&input);
