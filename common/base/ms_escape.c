@@ -37,8 +37,8 @@ static int is_printable(character c)
            !(c.code >= 0x2028 && c.code <= 0x202e) && !(c.code >= 0x2066 && c.code <= 0x2069);
 }
 
-/* Beyond ASCII: letters of any script, and no blanks, modifiers, punctuation or signs, which LAMMPS replaces by those of
- * ASCII, quotes among them. */
+/* Beyond ASCII: letters of any script, and no blanks, modifiers, punctuation or signs, some of which look like those of
+ * ASCII. */
 static int is_foreign_letter(character c)
 {
     return c.code > 0xa0 && !(c.code >= 0x2b0 && c.code < 0x370) && !(c.code >= 0x2000 && c.code < 0x2c00) &&
@@ -136,15 +136,32 @@ void ms_escape_lammps(FILE *stream, const char *text)
     fprintf(stream, "%c%s%c", quote, text, quote);
 }
 
-int ms_escape_fits_lammps(const char *text)
+/* Is each character allowed, and one kind of quotes free? */
+static int fits_quotes(const char *text, int (*is_allowed)(character c))
 {
     int fits = !(strchr(text, '"') && strchr(text, '\''));
     while (*text && fits) {
         const character c = read_character(text);
-        fits = is_printable(c) && (c.code < 0x80 || is_foreign_letter(c));
+        fits = is_allowed(c);
         text += c.length;
     }
     return fits;
+}
+
+int ms_escape_fits_liggghts(const char *text)
+{
+    return fits_quotes(text, is_printable);
+}
+
+/* LAMMPS replaces or breaks what is beyond it. */
+static int is_ascii(character c)
+{
+    return is_printable(c) && c.code < 0x80;
+}
+
+int ms_escape_fits_lammps(const char *text)
+{
+    return fits_quotes(text, is_ascii);
 }
 
 /* Does a spreadsheet take it for a formula? */
@@ -192,12 +209,12 @@ static int is_of_file_name(character c)
     return is_printable(c) && (c.code < 0x80 ? !strchr("\"$`\\<>|*?:/", (int)c.code) : is_foreign_letter(c));
 }
 
-void ms_escape_file_name(char *name)
+static void substitute(char *name, int (*is_allowed)(character c))
 {
     char *to = name;
     while (*name) {
         const character c = read_character(name);
-        if (is_of_file_name(c)) {
+        if (is_allowed(c)) {
             memmove(to, name, c.length);
             to += c.length;
         } else {
@@ -206,4 +223,19 @@ void ms_escape_file_name(char *name)
         name += c.length ? c.length : 1;
     }
     *to = '\0';
+}
+
+void ms_escape_file_name(char *name)
+{
+    substitute(name, is_of_file_name);
+}
+
+static int is_of_script(character c)
+{
+    return is_ascii(c) && is_of_file_name(c);
+}
+
+void ms_escape_script_name(char *name)
+{
+    substitute(name, is_of_script);
 }

@@ -25,12 +25,13 @@ void ms_escape_gnuplot_data(FILE *stream, const char *text);
 /** A string of Python 3 in single quotes, ASCII; as a path it is that of the bytes, UTF-8 or not. */
 void ms_escape_python(FILE *stream, const char *text);
 
-/** A word of a script of LAMMPS or LIGGGHTS, in quotes. The text is one that ms_escape_fits_lammps. */
+/** A word of a script of LAMMPS or LIGGGHTS, in quotes. The text is one that fits. */
 void ms_escape_lammps(FILE *stream, const char *text);
 
-/** Zero if no quotes of such a script can hold it: control characters, both kinds of quotes, bytes that are no UTF-8,
- * and punctuation beyond ASCII, which LAMMPS replaces. */
+/** Zero if no quotes of such a script can hold it: control characters, both kinds of quotes, bytes that are no UTF-8; of
+ * LAMMPS, which replaces or breaks it, whatever is beyond ASCII, too. */
 int ms_escape_fits_lammps(const char *text);
+int ms_escape_fits_liggghts(const char *text);
 
 /** A field of CSV, in quotes where it has to be. One that a spreadsheet would take for a formula gets an apostrophe in
  * front; control characters, ends of lines among them, and bytes that are no UTF-8 become '?'. */
@@ -43,8 +44,10 @@ void ms_escape_csv_path(FILE *stream, const char *text);
 char *ms_escape_utf8(const char *text);
 
 /** In place, the name of a file that is made from another: what is no UTF-8, control characters, what Windows forbids
- * and what a shell minds within quotes become '_', and so does punctuation beyond ASCII. Such a name
- * ms_escape_fits_lammps. */
+ * and what a shell minds within quotes become '_', and so does punctuation beyond ASCII. */
 void ms_escape_file_name(char *name);
+
+/** The same, and it also ms_escape_fits_lammps. */
+void ms_escape_script_name(char *name);
 
 #endif

@@ -84,6 +84,9 @@ static ms_status add_default(ms_outputs *outputs, const char *source, const char
     const int start = snprintf(path, room, "%s%s", folder, folder[0] ? "/" : "");
     snprintf(path + start, room - (size_t)start, "%.*s%s.%s", length, base, behind, format->ending);
     ms_escape_file_name(path + start);
+    if (ms_write_check_path(path, format, NULL) != MS_OK) {
+        ms_escape_script_name(path + start);
+    }
     outputs->file[outputs->n_files++] = (ms_output_file){path, path, format};
     return MS_OK;
 }

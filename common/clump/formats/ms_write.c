@@ -206,14 +206,17 @@ ms_status ms_write_list(const char *path, const ms_format *format,
 
 ms_status ms_write_check_path(const char *path, const ms_format *format, ms_error *err)
 {
-    const char *slash = strrchr(path, '/');
-    const int has_script = format->part[1].suffix && !ms_write_format_is_folder(format);
-    return !has_script || ms_escape_fits_lammps(slash ? slash + 1 : path)
-               ? MS_OK
-               : ms_fail(err, MS_ERR_ARG,
-                         "%s: no script can name this file, which has control characters, both kinds of quotes, or "
-                         "signs beyond ASCII that are no letters; name another",
-                         path);
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    int fits = 1;
+    for (const ms_part *part = format->part; part->suffix; part++) {
+        fits = fits && (part->write != ms_lammps_script || ms_escape_fits_lammps(name)) &&
+               (part->write != ms_liggghts_script || ms_escape_fits_liggghts(name));
+    }
+    return fits ? MS_OK
+                : ms_fail(err, MS_ERR_ARG,
+                          "%s: no script of %s can name this file, which has control characters, both kinds of quotes, "
+                          "or letters that it does not take; name another",
+                          path, format->name);
 }
 
 ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err)

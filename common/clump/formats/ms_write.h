@@ -68,7 +68,7 @@ ms_status ms_write_list(const char *path, const ms_format *format,
                         ms_status (*take)(void *context, const char *path, int is_frame, ms_error *err), void *context,
                         ms_error *err);
 
-/** Can the script beside a template name it (ms_escape_fits_lammps)? @return MS_OK; MS_ERR_ARG */
+/** Can the script of LAMMPS or LIGGGHTS beside a template name it (ms_escape.h)? @return MS_OK; MS_ERR_ARG */
 ms_status ms_write_check_path(const char *path, const ms_format *format, ms_error *err);
 
 /**
