@@ -76,28 +76,38 @@ void ms_escape_name(FILE *stream, const char *text)
     put_allowed(stream, text, is_plain, '_');
 }
 
-/* One character in quotes, which doubled stand for themselves. */
-static size_t put_doubling(FILE *stream, const char *text, char quote)
+static int is_plain_of_gnuplot(character c)
 {
-    const character c = read_character(text);
-    if (*text == quote) {
-        putc(quote, stream);
-    }
-    if (is_printable(c)) {
-        fwrite(text, 1, c.length, stream);
-    } else {
-        putc('?', stream);
-    }
-    return c.length ? c.length : 1;
+    return (is_plain(c) && c.code != '@') || (c.code > 0 && c.code < 0x80 && strchr(" ()|:", (int)c.code));
 }
 
+static void put_gnuplot(FILE *stream, const char *text)
+{
+    while (*text) {
+        const character c = read_character(text);
+        if (!is_printable(c)) {
+            putc('?', stream);
+        } else if (is_plain_of_gnuplot(c) || c.code >= 0x80) {
+            fwrite(text, 1, c.length, stream);
+        } else {
+            fprintf(stream, "\\%03o", (unsigned)c.code);
+        }
+        text += c.length ? c.length : 1;
+    }
+}
+
+/* Single quotes will not do: gnuplot 5.4 takes a doubled one in front for the end of the string. */
 void ms_escape_gnuplot(FILE *stream, const char *text)
 {
-    putc('\'', stream);
-    while (*text) {
-        text += put_doubling(stream, text, '\'');
-    }
-    putc('\'', stream);
+    ms_escape_gnuplot_file(stream, text, "");
+}
+
+void ms_escape_gnuplot_file(FILE *stream, const char *name, const char *ending)
+{
+    putc('"', stream);
+    put_gnuplot(stream, name);
+    put_gnuplot(stream, ending);
+    putc('"', stream);
 }
 
 static int is_datum(character c)
@@ -170,13 +180,28 @@ static int is_formula(const char *text)
     return *text && strchr("=+-@", *text);
 }
 
+/* One character in double quotes, which doubled stand for themselves. */
+static size_t put_doubling(FILE *stream, const char *text)
+{
+    const character c = read_character(text);
+    if (*text == '"') {
+        putc('"', stream);
+    }
+    if (is_printable(c)) {
+        fwrite(text, 1, c.length, stream);
+    } else {
+        putc('?', stream);
+    }
+    return c.length ? c.length : 1;
+}
+
 static void put_field(FILE *stream, const char *before, const char *text)
 {
     const int is_quoted = strpbrk(text, ",\" ") != NULL;
     fputs(is_quoted ? "\"" : "", stream);
     fputs(before, stream);
     while (*text) {
-        text += put_doubling(stream, text, '"');
+        text += put_doubling(stream, text);
     }
     fputs(is_quoted ? "\"" : "", stream);
 }

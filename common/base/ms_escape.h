@@ -15,9 +15,12 @@ void ms_escape_comment(FILE *stream, const char *text);
 /** A word that is a name in an engine's file and of no other use (PFC, Kratos): as in a comment, but '_'. */
 void ms_escape_name(FILE *stream, const char *text);
 
-/** A string of gnuplot, in single quotes. Control characters and bytes that are no UTF-8 become '?'. Markup remains:
- * what draws it says noenhanced. */
+/** A string of gnuplot, in double quotes; what means anything to it stands as its octal number. Control characters and
+ * bytes that are no UTF-8 become '?'. Markup of text remains: what draws it says noenhanced. */
 void ms_escape_gnuplot(FILE *stream, const char *text);
+
+/** The same of the name of a file and what stands behind it. */
+void ms_escape_gnuplot_file(FILE *stream, const char *name, const char *ending);
 
 /** A string in a data file of gnuplot, in double quotes; which it cannot hold, nor a backslash: '?', too. */
 void ms_escape_gnuplot_data(FILE *stream, const char *text);

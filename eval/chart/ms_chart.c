@@ -71,12 +71,6 @@ static int find_ranges(axis_range *x, axis_range *y, const ms_chart *chart)
     return 1;
 }
 
-void ms_chart_put_file(FILE *stream, const char *name, const char *ending)
-{
-    ms_escape_gnuplot(stream, name);
-    fprintf(stream, ".'%s'", ending);
-}
-
 /* Nonzero if a point is drawn higher than it is. */
 static int is_lifted(const ms_chart *chart)
 {
@@ -99,7 +93,7 @@ static void put_data(FILE *stream, const ms_chart *chart)
             continue;
         }
         fputs("# x y label: ", stream);
-        ms_escape_gnuplot(stream, series->name);
+        ms_escape_comment(stream, series->name);
         putc('\n', stream);
         for (size_t p = 0; p < series->count; p++) {
             if (has_place(chart, &series->point[p])) {
@@ -129,7 +123,7 @@ static void put_series(FILE *stream, const ms_chart_series *series, int index, i
     const char *colour = COLOUR[(size_t)look % (sizeof COLOUR / sizeof *COLOUR)];
     const int type = POINT[(size_t)look % (sizeof POINT / sizeof *POINT)];
     fputs("  ", stream);
-    ms_chart_put_file(stream, name, ".dat");
+    ms_escape_gnuplot_file(stream, name, ".dat");
     fprintf(stream, " index %d using 1:2 ", index);
     if (series->style == MS_CHART_FRONT) {
         fputs("with steps lw 6 lc rgb '#bbbbbb'", stream);
@@ -142,7 +136,7 @@ static void put_series(FILE *stream, const ms_chart_series *series, int index, i
     ms_escape_gnuplot(stream, series->name);
     if (has_labels(series)) {
         fputs(", \\\n  ", stream);
-        ms_chart_put_file(stream, name, ".dat");
+        ms_escape_gnuplot_file(stream, name, ".dat");
         fprintf(stream, " index %d using 1:2:3 with labels offset 0,0.8 font small tc rgb '%s' noenhanced notitle",
                 index, colour);
     }
@@ -183,7 +177,7 @@ static void put_script(FILE *stream, const ms_chart *chart, const char *name, co
     fputs("small = ',11'\nset terminal svg size 800,600 dynamic font 'DejaVu Sans,13' background rgb 'white'\n"
           "set output ",
           stream);
-    ms_chart_put_file(stream, name, ".svg");
+    ms_escape_gnuplot_file(stream, name, ".svg");
     fputs("\nplot \\\n", stream);
     for (size_t s = 0; s < chart->n_series; s++) {
         if (count_places(chart, &chart->series[s]) > 0) {
@@ -198,7 +192,7 @@ static void put_script(FILE *stream, const ms_chart *chart, const char *name, co
           "if (strstrt(GPVAL_TERMINALS, 'pngcairo') == 0) { set terminal png size 1200,900 }\n"
           "set output ",
           stream);
-    ms_chart_put_file(stream, name, ".png");
+    ms_escape_gnuplot_file(stream, name, ".png");
     fputs("\nreplot\n", stream);
 }
 

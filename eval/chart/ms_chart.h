@@ -3,7 +3,6 @@
 #define MS_CHART_H
 
 #include <stddef.h>
-#include <stdio.h>
 
 #include "base/ms_error.h"
 
@@ -46,9 +45,6 @@ extern const char *const MS_CHART_ENDINGS[];
  * @return MS_OK; MS_ERR_ARG if no point is left; MS_ERR_IO; MS_ERR_NOMEM
  */
 ms_status ms_chart_write(const ms_chart *chart, const char *stem, ms_error *err);
-
-/** Names the file NAME.ENDING in a script of gnuplot; the ending with its dot. */
-void ms_chart_put_file(FILE *stream, const char *name, const char *ending);
 
 /**
  * Runs gnuplot on STEM.gp, in its folder.

@@ -137,7 +137,7 @@ static void put_sheet_script(FILE *stream, const ms_compare_sheet *sheet, const 
             "if (strstrt(GPVAL_TERMINALS, 'pngcairo') > 0) { set terminal pngcairo size %d,%d font 'DejaVu Sans,11' }\n"
             "if (strstrt(GPVAL_TERMINALS, 'pngcairo') == 0) { set terminal png size %d,%d }\nset output ",
             width, height, width, height);
-    ms_chart_put_file(stream, sheet->shape, "-sheet.png");
+    ms_escape_gnuplot_file(stream, sheet->shape, "-sheet.png");
     fprintf(stream,
             "\nunset border\nunset tics\nunset key\nset margins 0,0,0,0\nset xrange [0:%d]\nset yrange [0:%d]\n", width,
             height);
@@ -155,7 +155,7 @@ static void put_sheet_script(FILE *stream, const ms_compare_sheet *sheet, const 
         put_sheet_label(stream, number, TILE - 8, picture->height - (double)row * TILE - 16, "right");
     }
     fputs("plot ", stream);
-    ms_chart_put_file(stream, sheet->shape, "-tiles.png");
+    ms_escape_gnuplot_file(stream, sheet->shape, "-tiles.png");
     fputs(" binary filetype=png with rgbimage\n", stream);
 }
 

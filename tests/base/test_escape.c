@@ -54,8 +54,8 @@ static void test_bytes_that_are_no_utf8(void **state)
 static void test_gnuplot(void **state)
 {
     (void)state;
-    check_written(ms_escape_gnuplot, "O'Brien", "'O''Brien'");
-    check_written(ms_escape_gnuplot, "a';system('x');#\n`y` $z", "'a'';system(''x'');#?`y` $z'");
+    check_written(ms_escape_gnuplot, "O'Brien", "\"O\\047Brien\"");
+    check_written(ms_escape_gnuplot, "'a\\n\n\"`y` $z@", "\"\\047a\\134n?\\042\\140y\\140 \\044z\\100\"");
     check_written(ms_escape_gnuplot_data, "a\"b\\n'c'\t", "\"a?b?n'c'?\"");
 }
 

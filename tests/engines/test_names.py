@@ -16,7 +16,7 @@ MSKIT = os.environ.get("MSKIT", "mskit")
 SHAPES = ("a\nshell touch PWNED\n#", "b');__import__('os').system('touch PWNED')#", "c\" shell touch PWNED", "d & $x ${y}",
           "`touch PWNED`$(touch PWNED)", "=1+1 %d", "O\u2019Brien \u201cx\u201d", "\u00fcmlaut", "\u7c92")
 # Of templates, given by --output.
-TEMPLATES = ("with blank", "it's", "say \"no\"", "d & $x ${y} $(touch PWNED)", "`touch PWNED`", "# % = ' ; | \\n", "=1",
+TEMPLATES = ("it's", "with blank", "say \"no\"", "d & $x ${y} $(touch PWNED)", "`touch PWNED`", "# % = ' ; | \\n", "=1",
              "'; shell touch PWNED")
 FORMATS = {"lammps": ((("lmp", "-in"), ("lammps", "-in")), ".in"), "liggghts": ((("liggghts", "-in"),), ".in"),
            "yade": ((("yade", "-x", "-n", "-j1"), ("yadedaily", "-x", "-n", "-j1")), ".py")}
@@ -70,10 +70,10 @@ class Names(unittest.TestCase):
         self.assertNotIn("Traceback", said, text)
         self.assertNotIn("PWNED", os.listdir(self.dir), text)
 
-    def check(self, ending):
+    def check(self, ending, few=None):
         if not program_of(ending):
             self.skipTest(f"{ending} is not installed")
-        for name in SHAPES:
+        for name in SHAPES[:few]:
             with self.subTest(shape=name):
                 before = set(os.listdir(self.dir))
                 shape = name + ".stl"
@@ -81,7 +81,7 @@ class Names(unittest.TestCase):
                 self.generate(shape, "--format", ending)
                 made = set(os.listdir(self.dir)) - before - {shape}
                 self.run_script(ending, next(f for f in made if f.endswith("." + ending)))
-        for name in TEMPLATES:
+        for name in TEMPLATES[:few]:
             with self.subTest(template=name):
                 self.generate("plain.stl", "-o", f"{name}.{ending}")
                 self.run_script(ending, f"{name}.{ending}")
@@ -93,7 +93,7 @@ class Names(unittest.TestCase):
         self.check("liggghts")
 
     def test_yade(self):
-        self.check("yade")
+        self.check("yade", 3)  # it takes seconds to start
 
 
 if __name__ == "__main__":
