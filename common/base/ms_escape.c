@@ -99,12 +99,15 @@ static void put_gnuplot(FILE *stream, const char *text)
 /* Single quotes will not do: gnuplot 5.4 takes a doubled one in front for the end of the string. */
 void ms_escape_gnuplot(FILE *stream, const char *text)
 {
-    ms_escape_gnuplot_file(stream, text, "");
+    putc('"', stream);
+    put_gnuplot(stream, text);
+    putc('"', stream);
 }
 
+/* Names that begin with a sign can be pipes, arrays or functions. */
 void ms_escape_gnuplot_file(FILE *stream, const char *name, const char *ending)
 {
-    putc('"', stream);
+    fputs("\"./", stream);
     put_gnuplot(stream, name);
     put_gnuplot(stream, ending);
     putc('"', stream);

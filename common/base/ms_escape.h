@@ -19,7 +19,7 @@ void ms_escape_name(FILE *stream, const char *text);
  * bytes that are no UTF-8 become '?'. Markup of text remains: what draws it says noenhanced. */
 void ms_escape_gnuplot(FILE *stream, const char *text);
 
-/** The same of the name of a file and what stands behind it. */
+/** The same of the name of a file in the folder of the script, and what stands behind it. */
 void ms_escape_gnuplot_file(FILE *stream, const char *name, const char *ending);
 
 /** A string in a data file of gnuplot, in double quotes; which it cannot hold, nor a backslash: '?', too. */

@@ -56,6 +56,14 @@ static void test_gnuplot(void **state)
     (void)state;
     check_written(ms_escape_gnuplot, "O'Brien", "\"O\\047Brien\"");
     check_written(ms_escape_gnuplot, "'a\\n\n\"`y` $z@", "\"\\047a\\134n?\\042\\140y\\140 \\044z\\100\"");
+    char *out = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&out, &size);
+    assert_non_null(stream);
+    ms_escape_gnuplot_file(stream, "@a", ".dat");
+    assert_int_equal(fclose(stream), 0);
+    assert_string_equal(out, "\"./\\100a.dat\"");
+    free(out);
     check_written(ms_escape_gnuplot_data, "a\"b\\n'c'\t", "\"a?b?n'c'?\"");
 }
 
