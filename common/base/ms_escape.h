@@ -1,6 +1,6 @@
-/** Text from outside (names of files, labels, options, messages) made safe for the language of the file into which it is
- * written: there it is data, never code. Who writes such text into a file calls one of these; docs/formats.md says what
- * a reader finds. */
+/** Text from outside (names of files, labels, options, messages) made safe for the language of the file into which it
+ * is written: there it is data, never code. Who writes such text into a file calls one of these; docs/formats.md says
+ * what a reader finds. */
 #ifndef MS_ESCAPE_H
 #define MS_ESCAPE_H
 
@@ -31,8 +31,8 @@ void ms_escape_python(FILE *stream, const char *text);
 /** A word of a script of LAMMPS or LIGGGHTS, in quotes. The text is one that fits. */
 void ms_escape_lammps(FILE *stream, const char *text);
 
-/** Zero if no quotes of such a script can hold it: control characters, both kinds of quotes, bytes that are no UTF-8; of
- * LAMMPS, which replaces or breaks it, whatever is beyond ASCII, too. */
+/** Zero if no quotes of such a script can hold it: control characters, both kinds of quotes, bytes that are no UTF-8;
+ * of LAMMPS, which replaces or breaks it, whatever is beyond ASCII, too. */
 int ms_escape_fits_lammps(const char *text);
 int ms_escape_fits_liggghts(const char *text);
 

@@ -38,7 +38,7 @@ MS_API ms_status ms_volume_parse(ms_volume *volume, const ms_bytes *bytes, const
 /**
  * The data file that the header of a volume names.
  *
- * @param[out] data the caller frees it; NULL if the voxels are in the file itself, or if it is no volume that can be read
+ * @param[out] data the caller frees it; NULL if the voxels are in the file itself, or if no volume can be read from it
  * @return MS_OK; MS_ERR_NOMEM
  */
 ms_status ms_volume_data_path(char **data, const char *path, ms_error *err);

@@ -1,5 +1,5 @@
-/** The files that a command reads and those that it writes, held against each other before the work: no input is written
- * over, and no output by another. A file is one file however it is spelt. */
+/** The files that a command reads and those that it writes, held against each other before the work: no input is
+ * written over, and no output by another. A file is one file however it is spelt. */
 #ifndef MS_FILES_H
 #define MS_FILES_H
 

@@ -58,8 +58,8 @@ ms_status ms_outputs_make_folder(const char *path, ms_error *err);
  * name that a script cannot hold; MS_ERR_IO; MS_ERR_NOMEM */
 ms_status ms_outputs_list(ms_files *files, const ms_outputs *outputs, ms_error *err);
 
-/** Where the clump goes if none of the outputs can be written for lack of masses: as CSV, behind the first output's name
- * or to standard output. The caller frees it; NULL without memory. */
+/** Where the clump goes if none of the outputs can be written for lack of masses: as CSV, behind the first output's
+ * name or to standard output. The caller frees it; NULL without memory. */
 char *ms_outputs_spare(const ms_outputs *outputs, ms_error *err);
 
 /**
