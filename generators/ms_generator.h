@@ -11,8 +11,12 @@
 
 MS_C_BEGIN
 
-/** Is told, often, how far a run has come: `spheres` so far, D of the last step (NAN if unknown). */
-typedef void (*ms_progress)(void *context, size_t spheres, double dice);
+/**
+ * Is told, often, how far a run has come: `spheres` so far, D of the last step (NAN if unknown).
+ * @return nonzero: the run is to end. A nested one does with the next sphere, by MS_STOP_INTERRUPTED, and gives those
+ *         so far; another goes on, since what it has is no clump yet
+ */
+typedef int (*ms_progress)(void *context, size_t spheres, double dice);
 
 /** Is told in one sentence what about the input, though allowed, makes the result worse than it could be, and the cure.
  * */

@@ -39,6 +39,7 @@ void ms_option_settings_free(ms_settings *settings)
         free(settings->value);
         free(settings->plane);
         ms_clump_free(&settings->clump);
+        free(settings->clump_file);
         memset(settings, 0, sizeof *settings);
     }
 }
@@ -163,11 +164,14 @@ static ms_status read_clump(ms_settings *settings, const char *path, ms_error *e
     ms_clump clump;
     ms_particle unused;
     const ms_status status = ms_read_clump(&clump, &unused, path, err);
-    if (status == MS_OK) {
-        ms_clump_free(&settings->clump);
-        settings->clump = clump;
+    if (status != MS_OK) {
+        return status;
     }
-    return status;
+    ms_clump_free(&settings->clump);
+    free(settings->clump_file);
+    settings->clump = clump;
+    settings->clump_file = strdup(path);
+    return settings->clump_file ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "%s: no memory for its name", path);
 }
 
 ms_status ms_option_settings_set(ms_settings *settings, const char *name, const char *text, ms_error *err)

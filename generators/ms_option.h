@@ -35,6 +35,7 @@ typedef struct ms_settings {
     size_t n_planes;
     double (*plane)[4]; /* (a, b, c) of unit length, d scaled with it: a x + b y + c z = d */
     ms_clump clump;     /* empty unless given */
+    char *clump_file;   /* from which it was read; NULL unless given */
 } ms_settings;
 
 /** All defaults. @param[out] settings the caller frees it @return MS_OK; MS_ERR_NOMEM */

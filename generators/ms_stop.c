@@ -59,7 +59,8 @@ const char *ms_stop_name(ms_stop_reason reason)
                                         [MS_STOP_SPHERES] = "spheres",
                                         [MS_STOP_RADIUS] = "radius",
                                         [MS_STOP_OFF_VOLUME] = "off-volume",
-                                        [MS_STOP_EXHAUSTED] = "exhausted"};
+                                        [MS_STOP_EXHAUSTED] = "exhausted",
+                                        [MS_STOP_INTERRUPTED] = "interrupted"};
     for (size_t g = 0; g < N_GOALS; g++) {
         if (GOALS[g].reason == reason) {
             return ms_measures[GOALS[g].measure].name;

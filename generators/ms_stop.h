@@ -23,14 +23,15 @@ MS_C_BEGIN
 #define MS_STOP_FIELD_COUNT(name)
 #define MS_STOP_FIELD(kind, CODE, name, ...) MS_STOP_FIELD_##kind(name)
 
-/** Why a run ended: MS_STOP_ETA, ... for a measure that was reached; the last two only a method can say. */
+/** Why a run ended: MS_STOP_ETA, ... for a measure that was reached; those behind MS_STOP_RADIUS only a run can say. */
 typedef enum ms_stop_reason {
     MS_STOP_NOT,
     MS_STOP_SPHERES,
     MS_MEASURE_LIST(MS_STOP_REASON) /* in the order of the table */
     MS_STOP_RADIUS,
     MS_STOP_OFF_VOLUME,
-    MS_STOP_EXHAUSTED
+    MS_STOP_EXHAUSTED,
+    MS_STOP_INTERRUPTED /* by ms_progress */
 } ms_stop_reason;
 
 /**

@@ -35,6 +35,11 @@ static ms_status read_all(ms_bytes *bytes, int fd, size_t size, const char *path
 
 ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err)
 {
+    return ms_file_read_start(bytes, path, SIZE_MAX, err);
+}
+
+ms_status ms_file_read_start(ms_bytes *bytes, const char *path, size_t most, ms_error *err)
+{
     ms_status status = MS_OK;
     struct stat info;
     *bytes = (ms_bytes){0};
@@ -56,7 +61,7 @@ ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err)
         status = ms_fail(err, MS_ERR_NOMEM, "%s: is larger than the memory of this machine", path);
         goto cleanup;
     }
-    status = read_all(bytes, fd, (size_t)info.st_size, path, err);
+    status = read_all(bytes, fd, (size_t)info.st_size < most ? (size_t)info.st_size : most, path, err);
 cleanup:
     if (fd >= 0) {
         close(fd);
@@ -92,14 +97,17 @@ static void free_output(ms_output *output)
 }
 
 /* A link is followed, so that the file it names is replaced and not the link. */
-static char *resolve_link(const char *path)
+static ms_status resolve_link(char **resolved, const char *path, ms_error *err)
 {
     struct stat info;
-    char *target = NULL;
-    if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode)) {
-        target = realpath(path, NULL);
+    const int is_link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
+    *resolved = is_link ? realpath(path, NULL) : strdup(path);
+    if (is_link && !*resolved && errno != ENOMEM) {
+        return ms_fail(err, MS_ERR_IO,
+                       "%s: is a symbolic link that leads to no file: %s; remove it or name another file", path,
+                       strerror(errno));
     }
-    return target ? target : strdup(path);
+    return *resolved ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "%s: no memory to write it", path);
 }
 
 static ms_status open_temporary(ms_output *output, ms_error *err)
@@ -148,9 +156,9 @@ static ms_status open_path(ms_output *output, const char *path, ms_error *err)
     if (path[0] == '\0') {
         return ms_fail(err, MS_ERR_IO, "the name of the file to write is empty; name a file, or - for standard output");
     }
-    output->path = resolve_link(path);
-    if (!output->path) {
-        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to write it", path);
+    const ms_status status = resolve_link(&output->path, path, err);
+    if (status) {
+        return status;
     }
     if (stat(output->path, &info) != 0) {
         return open_temporary(output, err);
@@ -211,8 +219,9 @@ ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err)
         unlink(output->temporary);
     }
     if (!status && !written) {
-        status = ms_fail(err, MS_ERR_IO, "%s: could not be written: %s; is the disk full?",
-                         output->path ? output->path : "standard output", why ? strerror(why) : "a write failed");
+        status =
+            ms_fail(err, MS_ERR_IO, "%s: could not be written: %s; is the disk full, or the size of files limited?",
+                    output->path ? output->path : "standard output", why ? strerror(why) : "a write failed");
     }
     free_output(output);
     return status;

@@ -7,13 +7,18 @@
 typedef struct volume_reader {
     const char *ending;
     ms_status (*parse)(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels, ms_error *err);
+    ms_status (*find_data)(ms_word *file, const ms_bytes *bytes, const char *path,
+                           ms_error *err); /* NULL: never apart */
 } volume_reader;
 
 static const volume_reader *find_reader(const char *path)
 {
     static const volume_reader formats[] = {
-        {"npy", ms_volume_parse_npy},   {"mhd", ms_volume_parse_mhd},   {"mha", ms_volume_parse_mhd},
-        {"nrrd", ms_volume_parse_nrrd}, {"nhdr", ms_volume_parse_nrrd},
+        {"npy", ms_volume_parse_npy, NULL},
+        {"mhd", ms_volume_parse_mhd, ms_volume_find_data_mhd},
+        {"mha", ms_volume_parse_mhd, ms_volume_find_data_mhd},
+        {"nrrd", ms_volume_parse_nrrd, ms_volume_find_data_nrrd},
+        {"nhdr", ms_volume_parse_nrrd, ms_volume_find_data_nrrd},
     };
     char ending[16];
     ms_file_ending(ending, path);
@@ -55,4 +60,22 @@ ms_status ms_volume_read(ms_volume *volume, const char *path, size_t max_voxels,
     }
     ms_file_free(&bytes);
     return status;
+}
+
+ms_status ms_volume_data_path(char **data, const char *path, ms_error *err)
+{
+    enum { MOST = 1 << 20 }; /* a header is no longer */
+    const volume_reader *found = find_reader(path);
+    ms_bytes bytes = {0};
+    ms_word file = {0};
+    *data = NULL;
+    if (!found || !found->find_data || ms_file_read_start(&bytes, path, MOST, NULL) != MS_OK) {
+        return MS_OK;
+    }
+    if (found->find_data(&file, &bytes, path, NULL) == MS_OK && file.length > 0) {
+        *data = ms_volume_path_beside(&file, path);
+    }
+    ms_file_free(&bytes);
+    return file.length == 0 || *data ? MS_OK
+                                     : ms_fail(err, MS_ERR_NOMEM, "%s: no memory for the name of its data", path);
 }

@@ -21,6 +21,10 @@ ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const ch
 ms_status ms_volume_parse_nrrd(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
                                ms_error *err);
 
+/** What the header names as its data file, borrowed; no length without one. @return MS_OK; MS_ERR_FORMAT */
+ms_status ms_volume_find_data_mhd(ms_word *file, const ms_bytes *bytes, const char *path, ms_error *err);
+ms_status ms_volume_find_data_nrrd(ms_word *file, const ms_bytes *bytes, const char *path, ms_error *err);
+
 typedef enum ms_sample_kind { MS_SAMPLE_BOOL, MS_SAMPLE_UNSIGNED, MS_SAMPLE_SIGNED, MS_SAMPLE_FLOAT } ms_sample_kind;
 
 /** How one voxel is stored. */
@@ -68,6 +72,9 @@ ms_status ms_volume_inflate(ms_bytes *out, const uint8_t *data, size_t size, siz
 
 /** The name of the one data file of a header, borrowed; lists and patterns of files are refused. */
 ms_status ms_volume_data_file(ms_word *file, ms_text *value, ms_error *err);
+
+/** Its path, in the folder of the header; the caller frees it; NULL without memory. */
+char *ms_volume_path_beside(const ms_word *file, const char *header);
 
 /**
  * Reads the data file that the present line of a header names, in the folder of the header or below. A path that leads

@@ -68,23 +68,37 @@ static ms_status check_links(const char *path, size_t folder_length, const ms_wo
     return status;
 }
 
+/* How many characters of a header's path are its folder. */
+static size_t measure_folder(const char *header)
+{
+    const char *slash = strrchr(header, '/');
+    return slash ? (size_t)(slash + 1 - header) : 0;
+}
+
+char *ms_volume_path_beside(const ms_word *file, const char *header)
+{
+    const size_t folder = measure_folder(header);
+    char *path = malloc(folder + file->length + 1);
+    if (path) {
+        memcpy(path, header, folder);
+        memcpy(path + folder, file->start, file->length);
+        path[folder + file->length] = '\0';
+    }
+    return path;
+}
+
 ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_text *header, ms_error *err)
 {
     ms_error inner = {{0}};
-    const char *slash = strrchr(header->name, '/');
-    size_t folder = slash ? (size_t)(slash + 1 - header->name) : 0;
     *bytes = (ms_bytes){0};
     if (leads_out(file)) {
         return fail_outside(file, header, err);
     }
-    char *path = malloc(folder + file->length + 1);
+    char *path = ms_volume_path_beside(file, header->name);
     if (!path) {
         return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to read its data file", header->name);
     }
-    memcpy(path, header->name, folder);
-    memcpy(path + folder, file->start, file->length);
-    path[folder + file->length] = '\0';
-    ms_status status = check_links(path, folder, file, header, err);
+    ms_status status = check_links(path, measure_folder(header->name), file, header, err);
     if (status) {
         free(path);
         return status;

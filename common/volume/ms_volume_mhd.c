@@ -279,3 +279,13 @@ ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const ch
     ms_file_free(&beside);
     return status;
 }
+
+ms_status ms_volume_find_data_mhd(ms_word *file, const ms_bytes *bytes, const char *path, ms_error *err)
+{
+    ms_text text;
+    mhd image = {.header = ms_volume_header_start(SIZE_MAX), .packed_size = -1};
+    ms_text_start(&text, bytes, path);
+    const ms_status status = parse_mhd_header(&image, &text, err);
+    *file = status || ms_text_word_is(&image.data_file, "local") ? (ms_word){0} : image.data_file;
+    return status;
+}

@@ -349,3 +349,13 @@ ms_status ms_volume_parse_nrrd(ms_volume *volume, const ms_bytes *bytes, const c
     ms_file_free(&beside);
     return status;
 }
+
+ms_status ms_volume_find_data_nrrd(ms_word *file, const ms_bytes *bytes, const char *path, ms_error *err)
+{
+    ms_text text;
+    nrrd image = {.header = ms_volume_header_start(SIZE_MAX)};
+    ms_text_start(&text, bytes, path);
+    const ms_status status = parse_nrrd_header(&image, &text, err);
+    *file = status ? (ms_word){0} : image.data_file;
+    return status;
+}

@@ -8,7 +8,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/ms_escape.h"
 #include "base/ms_file.h"
+
+const char *const MS_CHART_ENDINGS[] = {".dat", ".gp", ".svg", ".png", NULL};
 
 static double height(const ms_chart *chart, const ms_chart_point *point)
 {
@@ -68,30 +71,6 @@ static int find_ranges(axis_range *x, axis_range *y, const ms_chart *chart)
     return 1;
 }
 
-/* A string of gnuplot in single quotes, of one line. */
-static void put_text(FILE *stream, const char *text)
-{
-    putc('\'', stream);
-    for (; *text; text++) {
-        const unsigned char c = (unsigned char)*text;
-        if (c == '\'') {
-            putc('\'', stream);
-        }
-        putc(c < ' ' ? '?' : c, stream);
-    }
-    putc('\'', stream);
-}
-
-/* A string in a data file, in double quotes, which it cannot hold. */
-static void put_label(FILE *stream, const char *text)
-{
-    putc('"', stream);
-    for (; *text; text++) {
-        putc(*text == '"' || *text == '\\' || (unsigned char)*text < ' ' ? '?' : *text, stream);
-    }
-    putc('"', stream);
-}
-
 /* Nonzero if a point is drawn higher than it is. */
 static int is_lifted(const ms_chart *chart)
 {
@@ -114,12 +93,12 @@ static void put_data(FILE *stream, const ms_chart *chart)
             continue;
         }
         fputs("# x y label: ", stream);
-        put_text(stream, series->name);
+        ms_escape_comment(stream, series->name);
         putc('\n', stream);
         for (size_t p = 0; p < series->count; p++) {
             if (has_place(chart, &series->point[p])) {
                 fprintf(stream, "%.9g %.9g ", series->point[p].x, height(chart, &series->point[p]));
-                put_label(stream, series->point[p].label);
+                ms_escape_gnuplot_data(stream, series->point[p].label);
                 putc('\n', stream);
             }
         }
@@ -143,7 +122,9 @@ static void put_series(FILE *stream, const ms_chart_series *series, int index, i
     static const int POINT[] = {7, 4, 8, 10, 12, 5, 9, 6, 1, 2, 3};
     const char *colour = COLOUR[(size_t)look % (sizeof COLOUR / sizeof *COLOUR)];
     const int type = POINT[(size_t)look % (sizeof POINT / sizeof *POINT)];
-    fprintf(stream, "  '%s.dat' index %d using 1:2 ", name, index);
+    fputs("  ", stream);
+    ms_escape_gnuplot_file(stream, name, ".dat");
+    fprintf(stream, " index %d using 1:2 ", index);
     if (series->style == MS_CHART_FRONT) {
         fputs("with steps lw 6 lc rgb '#bbbbbb'", stream);
     } else if (series->style == MS_CHART_POINTS) {
@@ -152,10 +133,12 @@ static void put_series(FILE *stream, const ms_chart_series *series, int index, i
         fprintf(stream, "with linespoints dt %d pt %d ps 1.3 lw 2 lc rgb '%s'", look % 5 + 1, type, colour);
     }
     fputs(" title ", stream);
-    put_text(stream, series->name);
+    ms_escape_gnuplot(stream, series->name);
     if (has_labels(series)) {
-        fprintf(stream, ", \\\n  '%s.dat' index %d using 1:2:3 with labels offset 0,0.8 font small tc rgb '%s' notitle",
-                name, index, colour);
+        fputs(", \\\n  ", stream);
+        ms_escape_gnuplot_file(stream, name, ".dat");
+        fprintf(stream, " index %d using 1:2:3 with labels offset 0,0.8 font small tc rgb '%s' noenhanced notitle",
+                index, colour);
     }
 }
 
@@ -164,7 +147,7 @@ static void put_axis(FILE *stream, char axis, const char *label, double least, c
     char whole[256];
     snprintf(whole, sizeof whole, "%s (%g: that or less)", label, least);
     fprintf(stream, "set %clabel ", axis);
-    put_text(stream, least > 0 ? whole : label);
+    ms_escape_gnuplot(stream, least > 0 ? whole : label);
     fprintf(stream, " noenhanced\nset %crange [%.9g:%.9g]\n", axis, r->lo, r->hi);
     if (is_log) {
         fprintf(stream, "set logscale %c\nset format %c '%%g'\n", axis, axis);
@@ -181,20 +164,21 @@ static void put_axis(FILE *stream, char axis, const char *label, double least, c
 static void put_script(FILE *stream, const ms_chart *chart, const char *name, const axis_range *x, const axis_range *y)
 {
     int index = 0, look = 0; /* a series looks the same in all charts of a list, with points or without */
-    fprintf(stream,
-            "# `gnuplot %s.gp`, here, draws %s.svg and %s.png from %s.dat\n"
-            "set encoding utf8\nset title ",
-            name, name, name, name);
-    put_text(stream, chart->title);
+    fputs("# Draws ", stream);
+    ms_escape_comment(stream, name);
+    fputs(".svg and .png from its .dat: gnuplot, here, with the name of this file\nset encoding utf8\nset title ",
+          stream);
+    ms_escape_gnuplot(stream, chart->title);
     fputs(" noenhanced\nset grid lc rgb '#cccccc' lw 1 dt 1\n"
           "set key outside below height 1 maxcols 3 noenhanced\n",
           stream);
     put_axis(stream, 'x', chart->x_label, 0, x, chart->x_log);
     put_axis(stream, 'y', chart->y_label, is_lifted(chart) ? chart->y_least : 0, y, chart->y_log);
-    fprintf(stream,
-            "small = ',11'\nset terminal svg size 800,600 dynamic font 'DejaVu Sans,13' background rgb 'white'\n"
-            "set output '%s.svg'\nplot \\\n",
-            name);
+    fputs("small = ',11'\nset terminal svg size 800,600 dynamic font 'DejaVu Sans,13' background rgb 'white'\n"
+          "set output ",
+          stream);
+    ms_escape_gnuplot_file(stream, name, ".svg");
+    fputs("\nplot \\\n", stream);
     for (size_t s = 0; s < chart->n_series; s++) {
         if (count_places(chart, &chart->series[s]) > 0) {
             fputs(index ? ", \\\n" : "", stream);
@@ -202,13 +186,14 @@ static void put_script(FILE *stream, const ms_chart *chart, const char *name, co
         }
         look += chart->series[s].style != MS_CHART_FRONT;
     }
-    fprintf(stream,
-            "\nsmall = ',15'\n"
-            "if (strstrt(GPVAL_TERMINALS, 'pngcairo') > 0) { set terminal pngcairo size 1200,900 font "
-            "'DejaVu Sans,19' }\n"
-            "if (strstrt(GPVAL_TERMINALS, 'pngcairo') == 0) { set terminal png size 1200,900 }\n"
-            "set output '%s.png'\nreplot\n",
-            name);
+    fputs("\nsmall = ',15'\n"
+          "if (strstrt(GPVAL_TERMINALS, 'pngcairo') > 0) { set terminal pngcairo size 1200,900 font "
+          "'DejaVu Sans,19' }\n"
+          "if (strstrt(GPVAL_TERMINALS, 'pngcairo') == 0) { set terminal png size 1200,900 }\n"
+          "set output ",
+          stream);
+    ms_escape_gnuplot_file(stream, name, ".png");
+    fputs("\nreplot\n", stream);
 }
 
 /* Opens STEM.ENDING. */
@@ -270,11 +255,11 @@ static void become_gnuplot(const char *stem, char *script)
 ms_status ms_chart_draw(const char *stem, ms_error *err)
 {
     int end = 0;
-    char *script = malloc(strlen(stem) + 4);
+    char *script = malloc(strlen(stem) + 6);
     if (!script) {
         return ms_fail(err, MS_ERR_NOMEM, "%s: no memory for the chart", stem);
     }
-    sprintf(script, "%s.gp", name_of(stem));
+    sprintf(script, "./%s.gp", name_of(stem)); /* no flag, however it begins */
     const pid_t child = fork();
     if (child == 0) {
         become_gnuplot(stem, script);

@@ -34,6 +34,9 @@ typedef struct ms_chart {
     const ms_chart_series *series; /* borrowed */
 } ms_chart;
 
+/** What ms_chart_write and ms_chart_draw put behind the stem; ends with NULL. */
+extern const char *const MS_CHART_ENDINGS[];
+
 /**
  * Writes STEM.dat and STEM.gp, from which gnuplot makes STEM.svg and STEM.png. A point that has no place (not finite,
  * not above 0 on a log axis) is left out, a series without points stands in neither file.

@@ -4,27 +4,10 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "base/ms_file.h"
-
-void ms_csv_put(FILE *stream, const char *text)
-{
-    const int quoted = strpbrk(text, ",\" ") != NULL;
-    if (quoted) {
-        putc('"', stream);
-    }
-    for (; *text; text++) {
-        if (*text == '"') {
-            putc('"', stream);
-        }
-        putc((unsigned char)*text < ' ' ? '?' : *text, stream);
-    }
-    if (quoted) {
-        putc('"', stream);
-    }
-}
 
 /* Moves a quoted field to where it begins; `at` is behind its first quote. NULL if it is not closed. */
 static char *unquote(char *to, char *at)
@@ -145,7 +128,9 @@ static ms_status add_line(ms_csv *csv, const char *line, ms_error *err)
         return MS_OK;
     }
     const int intact = ftruncate(csv->fd, csv->size) == 0;
-    return ms_fail(err, MS_ERR_IO, "%s: could not be written: %s; is the disk full? The %zu rows before are intact%s",
+    return ms_fail(err, MS_ERR_IO,
+                   "%s: could not be written: %s; is the disk full, or the size of files limited? The %zu rows before "
+                   "are intact%s",
                    csv->path, strerror(why), csv->n_rows, intact ? "" : ", behind them is half a row");
 }
 
@@ -160,27 +145,49 @@ static ms_status read_rows(ms_csv *csv, const char *header, ms_error *err)
     return status;
 }
 
+/* Opens the file and keeps every other run away from it. */
+static ms_status open_locked(ms_csv *csv, int resume, ms_error *err)
+{
+    csv->fd = open(csv->path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | (resume ? 0 : O_EXCL), 0666);
+    if (csv->fd < 0 && errno == EEXIST) {
+        return ms_fail(
+            err, MS_ERR_IO,
+            "%s: exists already, and rows of results are not replaced; name another file (compare --resume goes "
+            "on with one)",
+            csv->path);
+    }
+    if (csv->fd < 0) {
+        return ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s; check that its folder exists and may be written to",
+                       csv->path, strerror(errno));
+    }
+    if (flock(csv->fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        return ms_fail(err, MS_ERR_IO, "%s: another run is writing it; wait for its end, or name another file",
+                       csv->path);
+    }
+    return MS_OK;
+}
+
 ms_status ms_csv_open(ms_csv *csv, const char *path, const char *header, int resume, ms_error *err)
 {
-    struct stat info;
     *csv = (ms_csv){.path = path, .fd = -1};
     if (strcmp(path, "-") == 0) {
         return ms_fail(err, MS_ERR_IO, "-: these results go to a file, so that they can be taken up again; name one");
     }
-    const int exists = stat(path, &info) == 0;
-    if (exists && !resume) {
-        return ms_fail(err, MS_ERR_IO, "%s: exists already; --resume goes on with it, or name another file", path);
+    ms_status status = open_locked(csv, resume, err);
+    if (status == MS_OK) {
+        status = read_rows(csv, header, err);
     }
-    ms_status status = exists ? read_rows(csv, header, err) : MS_OK;
+    if (status != MS_OK || csv->size > 0) {
+        return status == MS_OK && ftruncate(csv->fd, csv->size) != 0
+                   ? ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s", path, strerror(errno))
+                   : status;
+    }
+    status = ftruncate(csv->fd, 0) == 0 ? add_line(csv, header, err)
+                                        : ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s", path, strerror(errno));
     if (status != MS_OK) {
-        return status;
+        unlink(path); /* there was no row in it */
     }
-    csv->fd = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    if (csv->fd < 0 || ftruncate(csv->fd, csv->size) != 0) {
-        return ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s; check that its folder exists and may be written to",
-                       path, strerror(errno));
-    }
-    return csv->size == 0 ? add_line(csv, header, err) : MS_OK;
+    return status;
 }
 
 ms_status ms_csv_add(ms_csv *csv, const char *row, ms_error *err)

@@ -19,6 +19,7 @@ typedef struct ms_csv {
 
 /**
  * Makes the file with its header, or takes up one that is there: what stands behind its last whole line is cut off.
+ * Until it is closed, another run that opens it fails.
  *
  * @param[out] csv    closed by ms_csv_close in any case
  * @param      path   a regular file; borrowed
@@ -32,9 +33,6 @@ ms_status ms_csv_open(ms_csv *csv, const char *path, const char *header, int res
 ms_status ms_csv_add(ms_csv *csv, const char *row, ms_error *err);
 
 void ms_csv_close(ms_csv *csv);
-
-/** Writes a field, in quotes where it has to be; control characters, ends of lines among them, become '?'. */
-void ms_csv_put(FILE *stream, const char *text);
 
 /**
  * Cuts a row into its fields, in place, and takes the quotes off.

@@ -100,6 +100,17 @@ ms_status ms_methods_add_all(ms_methods *methods, ms_error *err)
     return status;
 }
 
+ms_status ms_methods_list_files(ms_files *files, const ms_methods *methods, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t m = 0; m < methods->count && status == MS_OK; m++) {
+        const ms_method *method = &methods->method[m];
+        const char *file = method->generator ? method->settings.clump_file : method->options;
+        status = file ? ms_files_add(files, file, MS_FILE_READ, err) : MS_OK;
+    }
+    return status;
+}
+
 size_t ms_methods_clumps(const ms_methods *methods)
 {
     size_t found = 0;

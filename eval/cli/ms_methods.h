@@ -2,6 +2,7 @@
 #ifndef MS_METHODS_H
 #define MS_METHODS_H
 
+#include "ms_files.h"
 #include "ms_generator.h"
 
 enum { MS_METHODS_MAX = 64 };
@@ -36,6 +37,9 @@ ms_status ms_methods_add_all(ms_methods *methods, ms_error *err);
 
 /** Does each stand there once? Adds every generator if there is none yet. @return MS_OK; MS_ERR_ARG */
 ms_status ms_methods_check(ms_methods *methods, ms_error *err);
+
+/** Adds the files that methods read: clumps of other tools, and those to start from. @return MS_OK; MS_ERR_NOMEM */
+ms_status ms_methods_list_files(ms_files *files, const ms_methods *methods, ms_error *err);
 
 /** Number of clumps among them. */
 size_t ms_methods_clumps(const ms_methods *methods);

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/ms_escape.h"
 #include "base/ms_file.h"
 
 static ms_status take_format(ms_outputs *outputs, const char *name, ms_error *err)
@@ -80,7 +81,12 @@ static ms_status add_default(ms_outputs *outputs, const char *source, const char
     if (!path) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the names of the outputs");
     }
-    snprintf(path, room, "%s%s%.*s%s.%s", folder, folder[0] ? "/" : "", length, base, behind, format->ending);
+    const int start = snprintf(path, room, "%s%s", folder, folder[0] ? "/" : "");
+    snprintf(path + start, room - (size_t)start, "%.*s%s.%s", length, base, behind, format->ending);
+    ms_escape_file_name(path + start);
+    if (ms_write_check_path(path, format, NULL) != MS_OK) {
+        ms_escape_script_name(path + start);
+    }
     outputs->file[outputs->n_files++] = (ms_output_file){path, path, format};
     return MS_OK;
 }
@@ -142,32 +148,6 @@ int ms_outputs_to_stdout(const ms_outputs *outputs)
     return found;
 }
 
-/* Are both the same file? */
-static int same_file(const char *a, const char *b)
-{
-    struct stat first, second;
-    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
-           first.st_ino == second.st_ino;
-}
-
-/* A device or a pipe is not tried, since that would be noticed at its other end. */
-ms_status ms_outputs_try_file(const char *source, const char *path, ms_error *err)
-{
-    ms_output output;
-    struct stat info;
-    if (strcmp(path, "-") == 0 || (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))) {
-        return MS_OK;
-    }
-    if (same_file(source, path)) {
-        return ms_fail(err, MS_ERR_ARG, "%s is the input itself; it is not overwritten", path);
-    }
-    ms_status status = ms_output_open(&output, path, err);
-    if (status == MS_OK) {
-        ms_output_close(&output, MS_ERR_IO, NULL); /* removes it */
-    }
-    return status;
-}
-
 ms_status ms_outputs_make_folder(const char *path, ms_error *err)
 {
     struct stat info;
@@ -176,12 +156,31 @@ ms_status ms_outputs_make_folder(const char *path, ms_error *err)
                : ms_fail(err, MS_ERR_IO, "%s: this folder cannot be made; does the one above it exist?", path);
 }
 
-ms_status ms_outputs_try(const ms_outputs *outputs, const char *source, ms_error *err)
+/* Where the parts of a format go; its folders are made later. */
+typedef struct part_list {
+    ms_files *files;
+    int in_folder;
+} part_list;
+
+static ms_status add_part(void *context, const char *path, int is_frame, ms_error *err)
+{
+    const part_list *list = context;
+    return ms_files_add(list->files, path,
+                        is_frame          ? MS_FILE_FRAME
+                        : list->in_folder ? MS_FILE_LATER
+                                          : MS_FILE_WRITTEN,
+                        err);
+}
+
+ms_status ms_outputs_list(ms_files *files, const ms_outputs *outputs, ms_error *err)
 {
     ms_status status = outputs->folder ? ms_outputs_make_folder(outputs->folder, err) : MS_OK;
     for (size_t f = 0; f < outputs->n_files && status == MS_OK; f++) {
-        if (!ms_write_format_is_folder(outputs->file[f].format)) {
-            status = ms_outputs_try_file(source, outputs->file[f].path, err);
+        const ms_output_file *file = &outputs->file[f];
+        part_list list = {files, ms_write_format_is_folder(file->format)};
+        status = ms_write_check_path(file->path, file->format, err);
+        if (status == MS_OK) {
+            status = ms_write_list(file->path, file->format, add_part, &list, err);
         }
     }
     return status;
@@ -198,38 +197,74 @@ static int pass_over(const ms_outputs *outputs, const ms_output_file *file, cons
     return passed;
 }
 
-static ms_status write_file(const ms_output_file *file, const ms_content *content, FILE *words, ms_error *err)
+static ms_status write_file(const ms_content *content, const char *path, const ms_format *format, FILE *words,
+                            ms_error *err)
 {
     char remark[MS_WRITE_REMARK];
-    ms_status status = ms_write_clump(content, file->path, file->format, err);
-    if (strcmp(file->path, "-") != 0 && status == MS_OK) {
-        fprintf(words, "wrote %s\n", file->path);
+    ms_status status = ms_write_clump(content, path, format, err);
+    if (status == MS_OK && strcmp(path, "-") != 0) {
+        fprintf(words, "wrote %s\n", path);
     }
     if (status == MS_OK) {
-        status = ms_write_remark(remark, content, file->format, err);
+        status = ms_write_remark(remark, content, format, err);
     }
     if (status == MS_OK && remark[0]) {
-        fprintf(stderr, "%s: %s\n", file->path, remark);
+        fprintf(stderr, "%s: %s\n", path, remark);
     }
+    return status;
+}
+
+static ms_need known_of(const ms_content *content)
+{
+    const ms_particle *p = content->particle;
+    const int known = p && p->mass > 0 && p->density > 0;
+    return !known ? MS_NEED_SPHERES : content->clump->mass ? MS_NEED_MASSES : MS_NEED_PARTICLE;
+}
+
+char *ms_outputs_spare(const ms_outputs *outputs, ms_error *err)
+{
+    const char *path = outputs->file[0].path;
+    char *spare = malloc(strlen(path) + 5);
+    if (spare) {
+        sprintf(spare, "%s%s", path, strcmp(path, "-") == 0 ? "" : ".csv");
+    } else {
+        ms_fail(err, MS_ERR_NOMEM, "%s: no memory to write it", path);
+    }
+    return spare;
+}
+
+static ms_status write_spare(const ms_outputs *outputs, const ms_content *content, FILE *words, ms_error *err)
+{
+    char *spare = ms_outputs_spare(outputs, err);
+    const ms_status status =
+        spare ? write_file(content, spare, ms_write_format_find("csv", err), words, err) : MS_ERR_NOMEM;
+    free(spare);
     return status;
 }
 
 ms_status ms_outputs_write(const ms_outputs *outputs, const ms_content *content, FILE *words, ms_error *err)
 {
     ms_status first = MS_OK;
+    size_t tried = 0;
     for (size_t f = 0; f < outputs->n_files; f++) {
+        const ms_output_file *file = &outputs->file[f];
         ms_error cause;
-        if (pass_over(outputs, &outputs->file[f], content)) {
+        if (pass_over(outputs, file, content)) {
             continue;
         }
-        ms_status status = write_file(&outputs->file[f], content, words, &cause);
+        if (file->format->need > known_of(content)) {
+            fprintf(stderr, "%s is not written: a %s template takes masses\n", file->path, file->format->name);
+            continue;
+        }
+        const ms_status status = write_file(content, file->path, file->format, words, &cause);
+        tried++;
         if (status != MS_OK && first == MS_OK) {
             first = ms_fail(err, status, "%s", cause.text);
         } else if (status != MS_OK) {
             fprintf(stderr, "%s\n", cause.text);
         }
     }
-    return first;
+    return outputs->n_files > 0 && tried == 0 ? write_spare(outputs, content, words, err) : first;
 }
 
 void ms_outputs_free(ms_outputs *outputs)

@@ -3,6 +3,7 @@
 #define MS_OUTPUTS_H
 
 #include "clump/formats/ms_write.h"
+#include "ms_files.h"
 #include "ms_flags.h"
 
 enum { MS_OUTPUTS_MAX = 16, MS_OUTPUTS_FORMATS = 16 };
@@ -50,18 +51,22 @@ ms_status ms_outputs_resolve(ms_outputs *outputs, const char *source, const char
 /** Number of files that go to standard output. */
 int ms_outputs_to_stdout(const ms_outputs *outputs);
 
-/** Can this file be made, and is it not the source itself? @return MS_OK; MS_ERR_ARG; MS_ERR_IO */
-ms_status ms_outputs_try_file(const char *source, const char *path, ms_error *err);
-
 /** Makes a folder, if it is not there; the one above it exists. @return MS_OK; MS_ERR_IO */
 ms_status ms_outputs_make_folder(const char *path, ms_error *err);
 
-/** ms_outputs_try_file of all files; makes the folder of --all-formats. */
-ms_status ms_outputs_try(const ms_outputs *outputs, const char *source, ms_error *err);
+/** Adds all files to those that the command writes; makes the folder of --all-formats. @return MS_OK; MS_ERR_ARG for a
+ * name that a script cannot hold; MS_ERR_IO; MS_ERR_NOMEM */
+ms_status ms_outputs_list(ms_files *files, const ms_outputs *outputs, ms_error *err);
+
+/** Where the clump goes if none of the outputs can be written for lack of masses: as CSV, behind the first output's
+  * name or to standard output. The caller frees it; NULL without memory. */
+char *ms_outputs_spare(const ms_outputs *outputs, ms_error *err);
 
 /**
- * Writes all files and says so on `words`. What is off where an engine sums the spheres, and which of all formats
- * cannot hold this clump, goes to stderr. A file that cannot be written does not keep back those after it.
+ * Writes all files and says so on `words`. What is off where an engine sums the spheres, which of all formats cannot
+ * hold this clump, and which take masses that are not known, goes to stderr; if no file is left for lack of masses,
+ * ms_outputs_spare takes the spheres, so that they are not lost. A file that cannot be written does not keep back those
+ * after it.
  *
  * @return MS_OK; as ms_write_clump of the first file that failed
  */

@@ -2,14 +2,24 @@
 
 #include <math.h>
 #include <omp.h>
+#include <signal.h>
 #include <stdio.h>
 #include <unistd.h>
 
-static void show_line(void *context, size_t spheres, double dice)
+/* All that a signal can reach. */
+static volatile sig_atomic_t is_interrupted;
+
+static void note_signal(int number)
+{
+    (void)number;
+    is_interrupted = 1;
+}
+
+static int show_line(void *context, size_t spheres, double dice)
 {
     ms_progress_line *line = context;
     const double now = omp_get_wtime();
-    if (now - line->shown > 0.1) {
+    if (line->is_terminal && now - line->shown > 0.1) {
         line->shown = now;
         if (isnan(dice)) {
             fprintf(stderr, "\r%s: %zu spheres to begin with ", line->name, spheres);
@@ -17,11 +27,13 @@ static void show_line(void *context, size_t spheres, double dice)
             fprintf(stderr, "\r\033[K%s: %zu spheres, D %.4f ", line->name, spheres, dice);
         }
     }
+    return is_interrupted;
 }
 
 void ms_progress_show(ms_run *run, ms_progress_line *line)
 {
-    run->progress = isatty(STDERR_FILENO) ? show_line : NULL;
+    line->is_terminal = isatty(STDERR_FILENO);
+    run->progress = show_line;
     run->progress_context = line;
 }
 
@@ -42,5 +54,18 @@ void ms_progress_clear(const ms_progress_line *line)
 {
     if (line->shown > 0) {
         fputs("\r\033[K", stderr);
+    }
+}
+
+void ms_progress_catch(int is_caught)
+{
+    const int numbers[] = {SIGINT, SIGTERM};
+    for (size_t s = 0; s < sizeof numbers / sizeof *numbers; s++) {
+        struct sigaction before, action = {.sa_flags = (int)SA_RESETHAND};
+        action.sa_handler = is_caught ? note_signal : SIG_DFL;
+        sigemptyset(&action.sa_mask);
+        if (sigaction(numbers[s], NULL, &before) == 0 && before.sa_handler != SIG_IGN) { /* as nohup wants it */
+            sigaction(numbers[s], &action, NULL);
+        }
     }
 }

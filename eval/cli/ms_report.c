@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_escape.h"
 #include "ms_json_object.h"
 
 /* A largest distance, with its root mean square, which is the row behind it; nothing where it does not apply. */
@@ -74,13 +75,9 @@ json_t *ms_report_number(double value)
 
 json_t *ms_report_text(const char *text)
 {
-    json_t *json = json_string(text);
-    char *plain = json ? NULL : strdup(text);
-    for (char *at = plain; at && *at; at++) {
-        *at = (char)(*at & 0x80 ? '?' : *at);
-    }
-    json = plain ? json_string(plain) : json;
-    free(plain);
+    char *valid = ms_escape_utf8(text);
+    json_t *json = valid ? json_string(valid) : NULL;
+    free(valid);
     return json;
 }
 

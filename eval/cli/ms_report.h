@@ -32,7 +32,7 @@ json_t *ms_report_body_json(const ms_body *body, const ms_principal *principal);
 /** A number, or null if it is not finite. */
 json_t *ms_report_number(double value);
 
-/** Text that need not be UTF-8, as a path: what JSON cannot hold becomes '?'. */
+/** Text that need not be UTF-8, as a path (ms_escape_utf8). */
 json_t *ms_report_text(const char *text);
 
 /** Prints and frees a JSON value, indented. @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM if it is NULL */

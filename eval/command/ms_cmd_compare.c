@@ -106,14 +106,26 @@ static ms_status take_compare_flag(void *context, const char *name, const char *
 }
 
 /* What can be known before the work. */
-static ms_status check_files(const ms_comparison *c, ms_error *err)
+static ms_status check_files(const ms_comparison *c, const char *output, ms_error *err)
 {
+    ms_files files = {0};
     for (size_t s = 0; s < c->n_shapes; s++) {
         if (access(c->shape[s], R_OK) != 0) {
             return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s; check the path", c->shape[s], strerror(errno));
         }
     }
-    return c->charts ? ms_outputs_make_folder(c->charts, err) : MS_OK;
+    ms_status status = ms_compare_list_files(&files, c, err);
+    if (status == MS_OK && c->charts) {
+        status = ms_outputs_make_folder(c->charts, err);
+    }
+    if (status == MS_OK) {
+        status = ms_files_add(&files, output, MS_FILE_WRITTEN, err);
+    }
+    if (status == MS_OK) {
+        status = ms_files_check(&files, err);
+    }
+    ms_files_free(&files);
+    return status;
 }
 
 static int execute_compare(const ms_command *command, const compare_arguments *a)
@@ -122,7 +134,7 @@ static int execute_compare(const ms_command *command, const compare_arguments *a
     ms_csv csv;
     char *header = ms_compare_header();
     ms_status status =
-        header ? check_files(&a->comparison, &err) : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
+        header ? check_files(&a->comparison, a->output, &err) : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
     if (status == MS_OK) {
         status = ms_csv_open(&csv, a->output, header, a->resume, &err);
         if (status == MS_OK) {

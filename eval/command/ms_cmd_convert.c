@@ -69,6 +69,23 @@ static ms_status read_clump(ms_clump *clump, ms_particle *particle, const conver
     return status == MS_OK ? complete_particle(particle, a, clump, err) : status;
 }
 
+static ms_status check_convert_files(const convert_arguments *a, ms_error *err)
+{
+    ms_files files = {0};
+    ms_status status = ms_files_add(&files, a->clump, MS_FILE_READ, err);
+    if (status == MS_OK && a->frame) {
+        status = ms_files_add(&files, a->frame, MS_FILE_READ, err);
+    }
+    if (status == MS_OK) {
+        status = ms_outputs_list(&files, &a->outputs, err);
+    }
+    if (status == MS_OK) {
+        status = ms_files_check(&files, err);
+    }
+    ms_files_free(&files);
+    return status;
+}
+
 static ms_status execute_convert(convert_arguments *a, ms_error *err)
 {
     ms_clump clump;
@@ -80,7 +97,7 @@ static ms_status execute_convert(convert_arguments *a, ms_error *err)
         const ms_content content = {.clump = &clump, .particle = particle.mass > 0 ? &particle : NULL};
         status = ms_outputs_resolve(&a->outputs, a->clump, "", need, 0, err);
         if (status == MS_OK) {
-            status = ms_outputs_try(&a->outputs, a->clump, err);
+            status = check_convert_files(a, err);
         }
         if (status == MS_OK) {
             status = ms_outputs_write(&a->outputs, &content, ms_outputs_to_stdout(&a->outputs) ? stderr : stdout, err);

@@ -132,13 +132,43 @@ static ms_status resolve_masses(generate_arguments *a, ms_error *err)
     return ms_mass_resolve(&a->mass, err);
 }
 
+/* The file that is written if no masses are found and all outputs take them. */
+static ms_status list_spare(ms_files *files, const ms_outputs *outputs, ms_error *err)
+{
+    for (size_t f = 0; f < outputs->n_files; f++) {
+        if (outputs->file[f].format->need == MS_NEED_SPHERES) {
+            return MS_OK;
+        }
+    }
+    char *spare = ms_outputs_spare(outputs, err);
+    const ms_status status = spare ? ms_files_add(files, spare, MS_FILE_WRITTEN, err) : MS_ERR_NOMEM;
+    free(spare);
+    return status;
+}
+
 static ms_status try_generate_outputs(const generate_arguments *a, ms_error *err)
 {
-    ms_status status = a->target_grid ? ms_outputs_try_file(a->shape, a->target_grid, err) : MS_OK;
-    if (a->curve && status == MS_OK) {
-        status = ms_outputs_try_file(a->shape, a->curve, err);
+    const struct {
+        const char *path;
+        ms_file_use use;
+    } other[] = {
+        {a->recipe.settings.clump_file, MS_FILE_READ}, {a->target_grid, MS_FILE_WRITTEN}, {a->curve, MS_FILE_WRITTEN}};
+    ms_files files = {0};
+    ms_status status = ms_files_add_shape(&files, a->shape, err);
+    for (size_t f = 0; f < sizeof other / sizeof *other && status == MS_OK; f++) {
+        status = other[f].path ? ms_files_add(&files, other[f].path, other[f].use, err) : MS_OK;
     }
-    return status == MS_OK ? ms_outputs_try(&a->outputs, a->shape, err) : status;
+    if (status == MS_OK) {
+        status = ms_outputs_list(&files, &a->outputs, err);
+    }
+    if (status == MS_OK && a->correct) {
+        status = list_spare(&files, &a->outputs, err);
+    }
+    if (status == MS_OK) {
+        status = ms_files_check(&files, err);
+    }
+    ms_files_free(&files);
+    return status;
 }
 
 /* What the generators are given; a line is shown on a terminal only. */
@@ -157,7 +187,9 @@ static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_
     ms_run run = make_run(a, input, &line);
     ms_progress_say_remarks(&run, &line);
     const double start = omp_get_wtime();
+    ms_progress_catch(a->recipe.generator->nested); /* what others have before their end is no clump */
     ms_status status = ms_generator_run(&r->clump, &r->reason, a->recipe.generator, &run, err);
+    ms_progress_catch(0);
     const double generated = omp_get_wtime();
     ms_progress_clear(&line);
     if (status == MS_OK && r->reason == MS_STOP_EXHAUSTED) {
@@ -170,11 +202,22 @@ static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_
         status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump, ms_input_max_voxels(&a->input), err);
     }
     r->score_seconds = omp_get_wtime() - generated;
-    if (status == MS_OK && a->correct) {
-        status =
-            ms_mass_correct(&r->mass, &r->clump, &a->mass, &input->target.body, ms_input_max_voxels(&a->input), err);
-    }
     r->generate_seconds = generated - start;
+    return status;
+}
+
+/* A clump whose masses are not found is written without them; the failure is kept for the end. */
+static ms_status add_masses(ms_result *r, const generate_arguments *a, const ms_input *input, ms_error *err)
+{
+    if (!a->correct) {
+        return MS_OK;
+    }
+    const ms_status status =
+        ms_mass_correct(&r->mass, &r->clump, &a->mass, &input->target.body, ms_input_max_voxels(&a->input), err);
+    if (status != MS_OK) {
+        free(r->clump.mass);
+        r->clump.mass = NULL;
+    }
     return status;
 }
 
@@ -212,7 +255,7 @@ static ms_status write_outputs(const generate_arguments *a, const ms_input *inpu
                                const char *record, ms_error *err)
 {
     FILE *words = writes_to_stdout(a) ? stderr : stdout;
-    const ms_particle *particle = a->correct ? &r->mass.particle : NULL;
+    const ms_particle *particle = r->mass.corrected ? &r->mass.particle : NULL;
     const ms_content content = {.clump = &r->clump, .particle = particle, .record = record};
     ms_status status = ms_outputs_write(&a->outputs, &content, words, err);
     if (status == MS_OK && a->target_grid) {
@@ -258,6 +301,21 @@ static ms_status report_generate(const generate_arguments *a, const ms_input *in
     return status;
 }
 
+/* The clump is written whatever failed; then it is said. */
+static ms_status write_and_say(const generate_arguments *a, const ms_input *input, ms_result *r, ms_error *err)
+{
+    ms_error cause = {""};
+    const ms_status masses = add_masses(r, a, input, &cause);
+    ms_status status = report_generate(a, input, r, err);
+    if (status == MS_OK && masses != MS_OK) {
+        status = ms_fail(err, masses, "the clump is written without masses, for which this failed: %s", cause.text);
+    }
+    if (status == MS_OK && r->reason == MS_STOP_INTERRUPTED) {
+        status = ms_fail(err, MS_ERR_LIMIT, "interrupted; the %zu spheres so far are written", r->clump.n_spheres);
+    }
+    return status;
+}
+
 static int execute_generate(const ms_command *command, const generate_arguments *a)
 {
     ms_error err;
@@ -276,7 +334,7 @@ static int execute_generate(const ms_command *command, const generate_arguments 
         status = make_clump(&r, a, &input, &err);
     }
     if (status == MS_OK) {
-        status = report_generate(a, &input, &r, &err);
+        status = write_and_say(a, &input, &r, &err);
     }
     ms_clump_free(&r.clump);
     ms_input_free(&input);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "cli/ms_json_object.h"
 #include "cli/ms_outputs.h"
@@ -176,12 +177,14 @@ static char *template_path(const scene_arguments *a, const char *shape)
     const size_t room = strlen(a->folder) + (size_t)length + strlen(a->format->ending) + 3;
     char *path = malloc(room);
     if (path) {
-        snprintf(path, room, "%s/%.*s.%s", a->folder, length, base, a->format->ending);
+        const int start = snprintf(path, room, "%s/", a->folder);
+        snprintf(path + start, room - (size_t)start, "%.*s.%s", length, base, a->format->ending);
+        ms_escape_file_name(path + start);
     }
     return path;
 }
 
-/* Names the file of each template and tries it. Without a folder there are none. */
+/* Names the file of each template. Without a folder there are none. */
 static ms_status plan_outputs(ms_outputs *outputs, const scene_arguments *a, const ms_manifest *manifest, ms_error *err)
 {
     ms_status status = MS_OK;
@@ -199,13 +202,29 @@ static ms_status plan_outputs(ms_outputs *outputs, const scene_arguments *a, con
                             manifest->row[before].path, shape, path);
             }
         }
+    }
+    return status;
+}
+
+static ms_status check_scene_files(const ms_outputs *outputs, const scene_arguments *a, const ms_manifest *manifest,
+                                   ms_error *err)
+{
+    const char *refined = a->recipe.settings.clump_file;
+    ms_files files = {0};
+    ms_status status = ms_files_add(&files, a->source, MS_FILE_READ, err);
+    if (status == MS_OK && refined) {
+        status = ms_files_add(&files, refined, MS_FILE_READ, err);
+    }
+    for (size_t r = 0; r < manifest->count && status == MS_OK; r++) {
+        status = ms_files_add_shape(&files, manifest->row[r].path, err);
         if (status == MS_OK) {
-            status = ms_outputs_try(&outputs[r], shape, err);
-        }
-        if (status == MS_OK) {
-            status = ms_outputs_try_file(a->source, path, err);
+            status = ms_outputs_list(&files, &outputs[r], err);
         }
     }
+    if (status == MS_OK) {
+        status = ms_files_check(&files, err);
+    }
+    ms_files_free(&files);
     return status;
 }
 
@@ -251,6 +270,9 @@ static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, 
     ms_scene scene;
     const ms_scene_run run = {&a->recipe, &a->input, (size_t)a->max_spheres, a->min_radius};
     ms_status status = plan_outputs(outputs, a, manifest, err);
+    if (status == MS_OK && a->folder) {
+        status = check_scene_files(outputs, a, manifest, err);
+    }
     if (status == MS_OK) {
         status = ms_scene_make(&scene, manifest, &run, &a->goal, err);
     }

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "chart/ms_csv.h"
 #include "cli/ms_methods.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_report.h"
@@ -46,7 +47,8 @@ typedef struct stability_arguments {
 
 /* What has been done so far. */
 typedef struct stability_progress {
-    FILE *rows;
+    int to_stdout;
+    ms_csv csv; /* unless to_stdout */
     ms_stability_run *run;
     size_t n_runs, planned;
 } stability_progress;
@@ -172,13 +174,27 @@ static ms_status try_shapes(const stability_arguments *a, ms_error *err)
     return status;
 }
 
-static ms_status try_stability_outputs(const stability_arguments *a, ms_error *err)
+static ms_status check_stability_files(const stability_arguments *a, ms_error *err)
 {
-    ms_status status = strcmp(a->output, "-") == 0 ? MS_OK : ms_outputs_try_file("", a->output, err);
+    ms_files files = {0};
+    ms_status status = a->charts ? ms_outputs_make_folder(a->charts, err) : MS_OK;
     for (int s = 0; s < a->n_shapes && status == MS_OK; s++) {
-        status = ms_outputs_try_file(a->shape[s], a->output, err); /* not the shape itself */
+        status = ms_files_add(&files, a->shape[s], MS_FILE_READ, err); /* a mesh: no data file */
     }
-    return status == MS_OK && a->charts ? ms_outputs_make_folder(a->charts, err) : status;
+    if (status == MS_OK) {
+        status = ms_methods_list_files(&files, &a->methods, err);
+    }
+    if (status == MS_OK && a->charts) {
+        status = ms_stability_charts_list(&files, a->charts, &a->methods, err);
+    }
+    if (status == MS_OK) {
+        status = ms_files_add(&files, a->output, MS_FILE_WRITTEN, err);
+    }
+    if (status == MS_OK) {
+        status = ms_files_check(&files, err);
+    }
+    ms_files_free(&files);
+    return status;
 }
 
 static void show_run(const stability_progress *p, const ms_stability *s, const ms_change *change)
@@ -203,6 +219,40 @@ static void say_misfit(const stability_progress *p, const ms_stability *s, const
     }
 }
 
+/* The row of a run, or the header; the caller frees it; NULL without memory. */
+static char *make_line(const ms_stability_run *run)
+{
+    char *line = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&line, &size);
+    if (!stream) {
+        return NULL;
+    }
+    if (run) {
+        ms_stability_row(stream, run);
+    } else {
+        ms_stability_header(stream);
+    }
+    return fclose(stream) == 0 ? line : NULL;
+}
+
+/* The same into the file, at once. */
+static ms_status add_line(stability_progress *p, const ms_stability_run *run, ms_error *err)
+{
+    char *line = make_line(run);
+    ms_status status = MS_OK;
+    if (!line) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for a row");
+    }
+    if (!p->to_stdout) {
+        status = ms_csv_add(&p->csv, line, err);
+    } else if (puts(line) == EOF || fflush(stdout) != 0) {
+        status = ms_fail(err, MS_ERR_IO, "standard output cannot be written; is the disk full?");
+    }
+    free(line);
+    return status;
+}
+
 static ms_status add_run(stability_progress *p, const ms_stability *s, const ms_change *change, int number,
                          ms_error *err)
 {
@@ -211,8 +261,7 @@ static ms_status add_run(stability_progress *p, const ms_stability *s, const ms_
     ms_stability_try(run, s, change, number);
     say_misfit(p, s, run);
     p->n_runs++;
-    ms_stability_row(p->rows, run);
-    return fflush(p->rows) == 0 ? MS_OK : ms_fail(err, MS_ERR_IO, "a row could not be written; is the disk full?");
+    return add_line(p, run, err);
 }
 
 static ms_status try_shape(stability_progress *p, const stability_arguments *a, const char *name, ms_error *err)
@@ -246,7 +295,6 @@ static ms_status try_shape(stability_progress *p, const stability_arguments *a, 
 static ms_status try_all(stability_progress *p, const stability_arguments *a, ms_error *err)
 {
     ms_status status = MS_OK;
-    ms_stability_header(p->rows);
     for (int s = 0; s < a->n_shapes && status == MS_OK; s++) {
         status = try_shape(p, a, a->shape[s], err);
     }
@@ -267,7 +315,7 @@ static ms_status report_stability(const stability_arguments *a, const stability_
     if (status == MS_OK && a->json) {
         status = ms_report_print(stdout, ms_statistics_json(groups, count), err);
     } else if (status == MS_OK) {
-        FILE *words = p->rows == stdout ? stderr : stdout;
+        FILE *words = p->to_stdout ? stderr : stdout;
         ms_statistics_print(words, groups, count, a->until_dice > 0);
     }
     free(groups);
@@ -286,25 +334,32 @@ static size_t count_runs(const stability_arguments *a)
     return each * shapes * a->methods.count;
 }
 
-/* The rows are written in place, so that a run that is killed leaves those there are. */
+/* Each row is on the disk before the next run, so that one that is killed leaves those there are. */
 static ms_status open_rows(stability_progress *p, const stability_arguments *a, ms_error *err)
 {
     p->planned = count_runs(a);
+    p->to_stdout = strcmp(a->output, "-") == 0;
     p->run = malloc(p->planned * sizeof *p->run);
     if (!p->run) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu runs; fewer --runs need less", p->planned);
     }
-    p->rows = strcmp(a->output, "-") == 0 ? stdout : fopen(a->output, "w");
-    return p->rows ? MS_OK : ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s", a->output, strerror(errno));
+    if (p->to_stdout) {
+        return add_line(p, NULL, err);
+    }
+    char *header = make_line(NULL);
+    const ms_status status = header ? ms_csv_open(&p->csv, a->output, header, 0, err)
+                                    : ms_fail(err, MS_ERR_NOMEM, "no memory for the header");
+    free(header);
+    return status;
 }
 
 static int execute_stability(const ms_command *command, const stability_arguments *a)
 {
     ms_error err;
-    stability_progress p = {0};
+    stability_progress p = {.csv = {.fd = -1}};
     ms_status status = try_shapes(a, &err);
     if (status == MS_OK) {
-        status = try_stability_outputs(a, &err);
+        status = check_stability_files(a, &err);
     }
     if (status != MS_OK) {
         return ms_flags_fail(command, &err);
@@ -316,9 +371,7 @@ static int execute_stability(const ms_command *command, const stability_argument
     if (status == MS_OK) {
         status = report_stability(a, &p, &err);
     }
-    if (p.rows && p.rows != stdout && fclose(p.rows) != 0 && status == MS_OK) {
-        status = ms_fail(&err, MS_ERR_IO, "%s: could not be written; is the disk full?", a->output);
-    }
+    ms_csv_close(&p.csv);
     free(p.run);
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/ms_escape.h"
 #include "base/ms_text.h"
 
 #define COLUMN_NAME(code, name) [MS_COLUMN_##code] = (name),
@@ -28,6 +29,12 @@ ms_compare_row ms_compare_empty(void)
     return row;
 }
 
+/* Options begin with a letter; those of a clump are its file. */
+static int is_path(int column)
+{
+    return column == MS_COLUMN_SHAPE || column == MS_COLUMN_OPTIONS;
+}
+
 /* The first fields of a row, a comma behind each but the last of all. */
 static char *make_text(const ms_compare_row *row, int columns)
 {
@@ -39,7 +46,7 @@ static char *make_text(const ms_compare_row *row, int columns)
     }
     for (int c = 0; c < columns; c++) {
         if (row->text[c]) {
-            ms_csv_put(stream, row->text[c]);
+            (is_path(c) ? ms_escape_csv_path : ms_escape_csv)(stream, row->text[c]);
         } else if (isfinite(row->number[c])) {
             fputs(ms_text_of_number(row->number[c]).text, stream);
         }
@@ -74,4 +81,5 @@ void ms_compare_name(char *out, size_t size, const char *shape, const char *labe
     const char *slash = strrchr(shape, '/'), *base = slash ? slash + 1 : shape, *dot = strrchr(base, '.');
     const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
     snprintf(out, size, "%.*s%s%s", length, base, label[0] ? "-" : "", label);
+    ms_escape_file_name(out);
 }

@@ -255,22 +255,6 @@ static ms_status draw_compare_chart(const records *all, const record *shape, con
     return status;
 }
 
-static ms_status check_names(const records *all, ms_error *err)
-{
-    char one[256], other[256];
-    for (size_t r = 0; r < all->count; r++) {
-        name_shape(one, sizeof one, &all->record[r]);
-        for (size_t q = 0; is_first(all, r, 0) && q < r; q++) {
-            name_shape(other, sizeof other, &all->record[q]);
-            if (strcmp(one, other) == 0) {
-                return ms_fail(err, MS_ERR_ARG, "two shapes are called %s, and so would be their charts; rename one",
-                               one);
-            }
-        }
-    }
-    return MS_OK;
-}
-
 /* One chart of a shape; a failure is kept if it is the first. */
 static void draw_kind(ms_status *status, const records *all, const record *shape, const chart_kind *k, ms_error *err)
 {
@@ -288,10 +272,7 @@ static void draw_kind(ms_status *status, const records *all, const record *shape
 /* Without gnuplot all scripts are written nevertheless; the first failure is reported. */
 static ms_status draw_compare_charts(const records *all, ms_error *err)
 {
-    ms_status status = check_names(all, err);
-    if (status != MS_OK) {
-        return status;
-    }
+    ms_status status = MS_OK;
     for (size_t r = 0; r < all->count; r++) {
         const record *shape = &all->record[r];
         for (int m = 0; is_first(all, r, 0) && m < MS_MEASURES; m++) {
@@ -303,6 +284,18 @@ static ms_status draw_compare_charts(const records *all, ms_error *err)
         for (size_t k = 0; is_first(all, r, 0) && k < sizeof KINDS / sizeof *KINDS; k++) {
             draw_kind(&status, all, shape, &KINDS[k], err);
         }
+    }
+    return status;
+}
+
+ms_status ms_compare_charts_list(ms_files *files, const char *folder, const char *shape, ms_error *err)
+{
+    char name[512];
+    ms_status status = MS_OK;
+    for (size_t k = 0; k < MS_MEASURES + sizeof KINDS / sizeof *KINDS && status == MS_OK; k++) {
+        const chart_kind kind = k < MS_MEASURES ? describe_measure((ms_measure_code)k) : KINDS[k - MS_MEASURES];
+        snprintf(name, sizeof name, "%s-%s", shape, kind.name);
+        status = kind.y_label ? ms_files_add_charts(files, folder, name, MS_CHART_ENDINGS, err) : MS_OK;
     }
     return status;
 }

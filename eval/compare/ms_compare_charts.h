@@ -3,6 +3,7 @@
 #define MS_COMPARE_CHARTS_H
 
 #include "chart/ms_csv.h"
+#include "cli/ms_files.h"
 
 /**
  * Draws for each shape, as FOLDER/SHAPE-KIND.svg and .png with data and script beside them, by the rows of the finest
@@ -14,8 +15,11 @@
  *
  * @param csv    rows of ms_compare_header
  * @param folder exists
- * @return MS_OK; MS_ERR_ARG if two shapes would write the same files; as ms_chart_write, ms_chart_draw
+ * @return MS_OK; as ms_chart_write, ms_chart_draw
  */
 ms_status ms_compare_charts(const ms_csv *csv, const char *folder, ms_error *err);
+
+/** Adds the files of all charts that there can be of a shape, by its name (ms_compare_name). */
+ms_status ms_compare_charts_list(ms_files *files, const char *folder, const char *shape, ms_error *err);
 
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "chart/ms_chart.h"
 #include "chart/ms_render.h"
@@ -48,6 +49,21 @@ ms_status ms_compare_sheet_keep(const ms_compare_sheet *sheet, const ms_method *
     const ms_status status =
         path ? ms_write_clump(&content, path, ms_write_format_find("csv", err), err) : MS_ERR_NOMEM;
     free(path);
+    return status;
+}
+
+ms_status ms_compare_sheet_list(ms_files *files, const ms_compare_sheet *sheet, ms_error *err)
+{
+    static const char *const ENDINGS[] = {"-sheet.gp", "-sheet.png", "-tiles.png", NULL};
+    ms_status status = ms_files_add_charts(files, sheet->folder, sheet->shape, ENDINGS, err);
+    for (size_t m = 0; m < sheet->methods->count; m++) {
+        const ms_method *method = &sheet->methods->method[m];
+        for (size_t k = 0; method->generator && k < sheet->n_asked && status == MS_OK; k++) {
+            char *path = clump_path(sheet, method, sheet->asked[k], err);
+            status = path ? ms_files_add(files, path, MS_FILE_LATER, err) : MS_ERR_NOMEM;
+            free(path);
+        }
+    }
     return status;
 }
 
@@ -105,25 +121,26 @@ static ms_status draw_tiles(ms_picture *picture, const ms_compare_sheet *sheet, 
 
 static void put_sheet_label(FILE *stream, const char *text, double x, double y, const char *align)
 {
-    fputs("set label '", stream);
-    for (; *text; text++) {
-        fputs(*text == '\'' ? "''" : (char[2]){(unsigned char)*text < ' ' ? '?' : *text, 0}, stream);
-    }
-    fprintf(stream, "' at %g,%g %s front noenhanced\n", x, y, align);
+    fputs("set label ", stream);
+    ms_escape_gnuplot(stream, text);
+    fprintf(stream, " at %g,%g %s front noenhanced\n", x, y, align);
 }
 
 /* Puts words to the tiles; y of gnuplot's picture goes upward. */
 static void put_sheet_script(FILE *stream, const ms_compare_sheet *sheet, const ms_picture *picture)
 {
+    const int width = picture->width, height = picture->height + HEAD;
+    fputs("# Draws the contact sheet of ", stream);
+    ms_escape_comment(stream, sheet->shape);
     fprintf(stream,
-            "# `gnuplot %s-sheet.gp`, here, draws %s-sheet.png from %s-tiles.png\n"
-            "set encoding utf8\n"
+            ": gnuplot, here, with the name of this file\nset encoding utf8\n"
             "if (strstrt(GPVAL_TERMINALS, 'pngcairo') > 0) { set terminal pngcairo size %d,%d font 'DejaVu Sans,11' }\n"
-            "if (strstrt(GPVAL_TERMINALS, 'pngcairo') == 0) { set terminal png size %d,%d }\n"
-            "set output '%s-sheet.png'\nunset border\nunset tics\nunset key\nset margins 0,0,0,0\n"
-            "set xrange [0:%d]\nset yrange [0:%d]\n",
-            sheet->shape, sheet->shape, sheet->shape, picture->width, picture->height + HEAD, picture->width,
-            picture->height + HEAD, sheet->shape, picture->width, picture->height + HEAD);
+            "if (strstrt(GPVAL_TERMINALS, 'pngcairo') == 0) { set terminal png size %d,%d }\nset output ",
+            width, height, width, height);
+    ms_escape_gnuplot_file(stream, sheet->shape, "-sheet.png");
+    fprintf(stream,
+            "\nunset border\nunset tics\nunset key\nset margins 0,0,0,0\nset xrange [0:%d]\nset yrange [0:%d]\n", width,
+            height);
     put_sheet_label(stream, sheet->shape, 0.5 * TILE, picture->height + 0.5 * HEAD, "center");
     for (size_t m = 0; m < sheet->methods->count; m++) {
         char name[256];
@@ -137,7 +154,9 @@ static void put_sheet_script(FILE *stream, const ms_compare_sheet *sheet, const 
         snprintf(number, sizeof number, "n = %g", row_number(sheet, row));
         put_sheet_label(stream, number, TILE - 8, picture->height - (double)row * TILE - 16, "right");
     }
-    fprintf(stream, "plot '%s-tiles.png' binary filetype=png with rgbimage\n", sheet->shape);
+    fputs("plot ", stream);
+    ms_escape_gnuplot_file(stream, sheet->shape, "-tiles.png");
+    fputs(" binary filetype=png with rgbimage\n", stream);
 }
 
 static ms_status write_script(const ms_compare_sheet *sheet, const ms_picture *picture, ms_error *err)

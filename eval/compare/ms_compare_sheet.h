@@ -2,6 +2,7 @@
 #ifndef MS_COMPARE_SHEET_H
 #define MS_COMPARE_SHEET_H
 
+#include "cli/ms_files.h"
 #include "cli/ms_methods.h"
 #include "voxel/ms_target.h"
 
@@ -16,6 +17,9 @@ typedef struct ms_compare_sheet {
 /** Keeps a clump for the sheet as FOLDER/SHAPE-METHOD-N.csv. @return as ms_write_clump */
 ms_status ms_compare_sheet_keep(const ms_compare_sheet *sheet, const ms_method *method, double asked,
                                 const ms_clump *clump, ms_error *err);
+
+/** Adds the files of a sheet, those of its clumps among them. */
+ms_status ms_compare_sheet_list(ms_files *files, const ms_compare_sheet *sheet, ms_error *err);
 
 /**
  * Draws FOLDER/SHAPE-sheet.png: the shape, then a column for each method, a row for each number of spheres, four rows

@@ -245,17 +245,20 @@ static void draw_sheet(compare_walk *w)
     }
 }
 
+/* The sheet of a shape of that name. */
+static ms_compare_sheet plan_sheet(const ms_comparison *a, const char *name)
+{
+    return (ms_compare_sheet){
+        .folder = a->charts, .shape = name, .methods = &a->methods, .asked = a->asked.value, .n_asked = a->asked.count};
+}
+
 static ms_status compare_shape(compare_walk *w, const char *shape, ms_error *err)
 {
     const ms_numbers *cells = &w->a->cells;
     ms_status status = MS_OK;
     w->shape = shape;
     ms_compare_name(w->name, sizeof w->name, shape, w->label);
-    w->sheet = (ms_compare_sheet){.folder = w->a->charts,
-                                  .shape = w->name,
-                                  .methods = &w->a->methods,
-                                  .asked = w->a->asked.value,
-                                  .n_asked = w->a->asked.count};
+    w->sheet = plan_sheet(w->a, w->name);
     const ms_status read = ms_input_read(&w->input, shape, &w->a->input, &w->cause);
     snprintf(w->checksum, sizeof w->checksum, "%016llx", (unsigned long long)w->input.checksum);
     const int is_volume = w->input.volume.label != NULL;
@@ -286,15 +289,46 @@ static ms_status compare_shapes(compare_walk *w, ms_error *err)
     return status;
 }
 
+static void print_label(char out[20], const ms_comparison *a)
+{
+    snprintf(out, 20, a->input.label ? "%lu" : "", (unsigned long)a->input.label);
+}
+
+static ms_status list_charts(ms_files *files, const ms_comparison *a, size_t s, ms_error *err)
+{
+    char name[256], other[256], label[20];
+    print_label(label, a);
+    ms_compare_name(name, sizeof name, a->shape[s], label);
+    for (size_t before = 0; before < s; before++) {
+        ms_compare_name(other, sizeof other, a->shape[before], label);
+        if (strcmp(name, other) == 0) {
+            return ms_fail(err, MS_ERR_ARG, "two shapes are called %s, and so would be their charts; rename one", name);
+        }
+    }
+    const ms_compare_sheet sheet = plan_sheet(a, name);
+    const ms_status status = ms_compare_sheet_list(files, &sheet, err);
+    return status == MS_OK ? ms_compare_charts_list(files, a->charts, name, err) : status;
+}
+
+ms_status ms_compare_list_files(ms_files *files, const ms_comparison *a, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t s = 0; s < a->n_shapes && status == MS_OK; s++) {
+        status = ms_files_add_shape(files, a->shape[s], err);
+        if (status == MS_OK && a->charts) {
+            status = list_charts(files, a, s, err);
+        }
+    }
+    return status == MS_OK ? ms_methods_list_files(files, &a->methods, err) : status;
+}
+
 ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error *err)
 {
     compare_walk w = {.a = comparison, .csv = csv};
     if (comparison->input.threads) {
         omp_set_num_threads(comparison->input.threads);
     }
-    if (comparison->input.label) {
-        snprintf(w.label, sizeof w.label, "%lu", (unsigned long)comparison->input.label);
-    }
+    print_label(w.label, comparison);
     const ms_status status = compare_shapes(&w, err);
     if (status != MS_OK) {
         return status;

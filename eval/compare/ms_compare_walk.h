@@ -3,6 +3,7 @@
 #define MS_COMPARE_WALK_H
 
 #include "chart/ms_csv.h"
+#include "cli/ms_files.h"
 #include "cli/ms_input.h"
 #include "cli/ms_methods.h"
 
@@ -24,6 +25,10 @@ typedef struct ms_comparison {
     double repeats, seed;
     const char *charts; /* folder, which exists; NULL for none */
 } ms_comparison;
+
+/** Adds what is read, shapes and clumps, and the files of the charts. @return MS_OK; MS_ERR_ARG for two shapes of one
+ * name, whose charts would be the same; MS_ERR_NOMEM */
+ms_status ms_compare_list_files(ms_files *files, const ms_comparison *comparison, ms_error *err);
 
 /**
  * Walks through the comparison in a fixed order and adds a row for each run; those that are there already must be its

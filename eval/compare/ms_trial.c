@@ -55,7 +55,7 @@ typedef struct trial_watch {
     int terminal;
 } trial_watch;
 
-static void note_progress(void *context, size_t spheres, double dice)
+static int note_progress(void *context, size_t spheres, double dice)
 {
     trial_watch *w = context;
     const double now = omp_get_wtime();
@@ -70,6 +70,7 @@ static void note_progress(void *context, size_t spheres, double dice)
         }
         fputc(' ', stderr);
     }
+    return 0;
 }
 
 /* One run; a clump from before is replaced. */

@@ -5,9 +5,9 @@
 #include <omp.h>
 #include <string.h>
 
+#include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "base/ms_text.h"
-#include "chart/ms_csv.h"
 
 #define OUTCOME_NAME(code, name) name,
 static const char *const OUTCOMES[] = {MS_OUTCOME_LIST(OUTCOME_NAME)};
@@ -172,7 +172,7 @@ void ms_stability_header(FILE *stream)
     for (size_t m = 0; m < count; m++) {
         fprintf(stream, ",%s", ms_measure_column(listed[m], listed[m]->in_stability));
     }
-    fputs(",n_until,seconds,spheres_fnv1a,cause\n", stream);
+    fputs(",n_until,seconds,spheres_fnv1a,cause", stream);
 }
 
 /* Empty where there is none. */
@@ -206,11 +206,11 @@ static void put_results(FILE *stream, const ms_stability_run *run)
 
 void ms_stability_row(FILE *stream, const ms_stability_run *run)
 {
-    ms_csv_put(stream, run->shape);
+    ms_escape_csv_path(stream, run->shape);
     fprintf(stream, ",%016" PRIx64 ",", run->shape_checksum);
-    ms_csv_put(stream, run->method->name);
+    ms_escape_csv(stream, run->method->name);
     fputc(',', stream);
-    ms_csv_put(stream, run->method->options);
+    ms_escape_csv(stream, run->method->options);
     fprintf(stream, ",%s", run->change->name);
     put_field(stream, run->level);
     fprintf(stream, ",%" PRIu64, run->seed);
@@ -218,6 +218,5 @@ void ms_stability_row(FILE *stream, const ms_stability_run *run)
     fprintf(stream, ",%d,%zu,%s", run->threads, run->asked, OUTCOMES[run->outcome]);
     put_results(stream, run);
     fputc(',', stream);
-    ms_csv_put(stream, run->cause.text);
-    fputc('\n', stream);
+    ms_escape_csv(stream, run->cause.text);
 }

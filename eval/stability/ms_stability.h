@@ -80,7 +80,7 @@ int ms_stability_gave(const ms_stability_run *run);
  */
 const ms_stability_run *ms_stability_unchanged(const ms_stability_run *runs, const ms_stability_run *run);
 
-/** The columns of the CSV. */
+/** The columns of the CSV, and a run as its row, without the end of the line. */
 void ms_stability_header(FILE *stream);
 void ms_stability_row(FILE *stream, const ms_stability_run *run);
 

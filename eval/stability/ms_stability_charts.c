@@ -39,24 +39,27 @@ static void add_point(album *a, double x, double y, const char *label)
     a->series[a->n_series - 1].count++;
 }
 
+enum { NAME_SIZE = 128 };
+
 /* Letters, digits and dashes of what the user called the method. */
-static void make_stem(char *stem, size_t size, const album *a, const char *kind)
+static void name_chart(char name[NAME_SIZE], int number, const ms_method *method, const char *kind)
 {
-    const int folder = snprintf(stem, size, "%s/", a->folder);
-    snprintf(stem + folder, size - (size_t)folder, "%d-%.40s-%s", a->number, ms_stability_label(a->method).text, kind);
-    for (char *at = stem + folder; *at; at++) {
+    snprintf(name, NAME_SIZE, "%d-%.40s-%s", number, ms_stability_label(method).text, kind);
+    for (char *at = name; *at; at++) {
         *at = (char)(isalnum((unsigned char)*at) ? *at : '-');
     }
 }
 
 static ms_status draw_album_chart(album *a, const char *kind, ms_chart chart, ms_error *err)
 {
-    const size_t size = strlen(a->folder) + 128;
+    char name[NAME_SIZE];
+    const size_t size = strlen(a->folder) + sizeof name + 1;
     char *stem = malloc(size);
     if (!stem) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for a chart");
     }
-    make_stem(stem, size, a, kind);
+    name_chart(name, a->number, a->method, kind);
+    snprintf(stem, size, "%s/%s", a->folder, name);
     const ms_label label = ms_stability_label(a->method);
     chart.title = label.text;
     chart.series = a->series;
@@ -147,5 +150,20 @@ ms_status ms_stability_charts(const char *folder, const ms_stability_run *runs, 
     }
     free(a.point);
     free(a.series);
+    return status;
+}
+
+ms_status ms_stability_charts_list(ms_files *files, const char *folder, const ms_methods *methods, ms_error *err)
+{
+    char name[NAME_SIZE];
+    ms_status status = MS_OK;
+    for (size_t m = 0; m < methods->count && status == MS_OK; m++) {
+        name_chart(name, (int)m + 1, &methods->method[m], "all");
+        status = ms_files_add_charts(files, folder, name, MS_CHART_ENDINGS, err);
+        for (const ms_change *change = ms_changes; change->name && status == MS_OK; change++) {
+            name_chart(name, (int)m + 1, &methods->method[m], change->name);
+            status = change->axis ? ms_files_add_charts(files, folder, name, MS_CHART_ENDINGS, err) : MS_OK;
+        }
+    }
     return status;
 }

@@ -2,6 +2,7 @@
 #ifndef MS_STABILITY_CHARTS_H
 #define MS_STABILITY_CHARTS_H
 
+#include "cli/ms_files.h"
 #include "ms_stability.h"
 
 /**
@@ -13,5 +14,8 @@
  * @return MS_OK; as ms_chart_write and ms_chart_draw
  */
 ms_status ms_stability_charts(const char *folder, const ms_stability_run *runs, size_t n_runs, ms_error *err);
+
+/** Adds the files of all charts that there can be of these methods. @return MS_OK; MS_ERR_NOMEM */
+ms_status ms_stability_charts_list(ms_files *files, const char *folder, const ms_methods *methods, ms_error *err);
 
 #endif

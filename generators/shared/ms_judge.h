@@ -10,11 +10,12 @@ MS_C_BEGIN
 /**
  * Asks the stop rule of a run about a union of n spheres, and reports how far the run is.
  *
- * @param[out] score all but the inertia; NULL if not wanted
- * @param      sum   of the tallies of the n spheres
+ * @param[out] score       all but the inertia; NULL if not wanted
+ * @param[out] interrupted what ms_progress returned; NULL if not wanted
+ * @param      sum         of the tallies of the n spheres
  * @return as ms_stop_reached
  */
-ms_stop_reason ms_judge_sum(ms_score *score, const ms_run *run, const ms_tally *sum, size_t n);
+ms_stop_reason ms_judge_sum(ms_score *score, int *interrupted, const ms_run *run, const ms_tally *sum, size_t n);
 
 /**
  * The same of spheres that are all new, for methods whose n spheres are not among those for n + 1.

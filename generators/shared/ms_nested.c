@@ -6,10 +6,14 @@ ms_status ms_nested_accept(ms_clump *clump, ms_stop_reason *reason, ms_tally *su
                            const ms_ball *ball, const ms_tally *adds, ms_error *err)
 {
     const ms_sphere sphere = ms_grid_sphere(&run->target->grid, ball);
+    int interrupted;
     const ms_status status = ms_clump_add(clump, &sphere, err);
     if (status == MS_OK) {
         ms_tally_add(sum, adds);
-        *reason = ms_judge_sum(NULL, run, sum, clump->n_spheres);
+        *reason = ms_judge_sum(NULL, &interrupted, run, sum, clump->n_spheres);
+        if (interrupted && *reason == MS_STOP_NOT) {
+            *reason = MS_STOP_INTERRUPTED;
+        }
     }
     return status;
 }

@@ -11,7 +11,7 @@ MS_C_BEGIN
  * Adds one sphere to a clump.
  *
  * @param[in,out] sum    of the spheres before, then with this one
- * @param[out]    reason as ms_stop_reached
+ * @param[out]    reason as ms_stop_reached; MS_STOP_INTERRUPTED
  * @param         ball   in voxels
  * @param         adds   what it covers first
  * @return MS_OK; as ms_clump_add

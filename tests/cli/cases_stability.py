@@ -18,6 +18,8 @@ def rows_of(text):
 class Stability(Case):
     def rows(self, *args, **more):
         """The rows of a run as dictionaries of text."""
+        if "s.csv" in self.files():
+            os.unlink(self.path("s.csv"))
         self.mskit("stability", *args, "-o", "s.csv", **more)
         return rows_of(self.read("s.csv").decode())
 

@@ -6,13 +6,13 @@
 static void reasons_have_names(void **state)
 {
     (void)state;
-    static const char *const names[] = {"not",     "spheres", "eta",        "dice",     "coverage",
-                                        "inertia", "radius",  "off-volume", "exhausted"};
-    for (int reason = 0; reason < 9; reason++) {
+    static const char *const names[] = {"not",     "spheres", "eta",        "dice",      "coverage",
+                                        "inertia", "radius",  "off-volume", "exhausted", "interrupted"};
+    for (int reason = 0; reason < 10; reason++) {
         assert_string_equal(ms_stop_name((ms_stop_reason)reason), names[reason]);
     }
-    assert_int_equal(MS_STOP_EXHAUSTED, 8);
-    assert_string_equal(ms_stop_name((ms_stop_reason)9), "unknown");
+    assert_int_equal(MS_STOP_INTERRUPTED, 9);
+    assert_string_equal(ms_stop_name((ms_stop_reason)10), "unknown");
 }
 
 static void measures_are_set_by_name(void **state)

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_escape.h"
 #include "base/ms_text.h"
 #include "base/ms_version.h"
 #include "ms_fields.h"
@@ -243,8 +244,8 @@ ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *er
     const ms_script_drop d = ms_script_drop_of(content);
     ms_number a, b;
     (void)err;
-    fprintf(stream, "# Drops %s into a box: lmp -in %s.in; fifty of them by -var n 50\nvariable n index 1\n\n",
-            content->name, content->name);
+    ms_script_title(stream, content->name, "lmp -in", ".in", "-var n 50");
+    fputs("variable n index 1\n\n", stream);
     fputs("units si\natom_style sphere\natom_modify map array\nboundary f f f\nnewton off\n", stream);
     write_lammps_places(stream, &d);
     fprintf(stream, "comm_modify vel yes cutoff %s\n", ms_script_number(2 * d.reach, &a));
@@ -256,8 +257,9 @@ ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *er
     fprintf(stream, "timestep %s\n", ms_script_number(d.step, &b));
     fputs("fix gravity all gravity 9.81 vector 0 0 -1 disable\n\n", stream);
     fputs("# The template: its mass and inertia are kept (reinit no) and gravity acts on the body.\n", stream);
-    fprintf(stream, "molecule clump %s\n", content->name);
-    fputs("fix move all rigid/small molecule mol clump reinit no gravity gravity\n", stream);
+    fputs("molecule clump ", stream);
+    ms_escape_lammps(stream, content->name);
+    fputs("\nfix move all rigid/small molecule mol clump reinit no gravity gravity\n", stream);
     fputs("# Without near they may be inserted into each other, and LAMMPS loses atoms.\n", stream);
     fprintf(stream,
             "fix insert all deposit ${n} 0 1 32452843 region above mol clump rigid move near %s attempt 500\n\n",

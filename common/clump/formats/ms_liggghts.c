@@ -1,6 +1,7 @@
 /* LIGGGHTS: a sphere file and a script with its particletemplate/multisphere. */
 #include <math.h>
 
+#include "base/ms_escape.h"
 #include "ms_fields.h"
 #include "ms_formats.h"
 #include "ms_script.h"
@@ -53,8 +54,10 @@ static void write_liggghts_particle(FILE *stream, const ms_content *content)
     fputs("# The template: mass and inertia about its origin, along its axes.\n", stream);
     fprintf(stream,
             "fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 "
-            "density constant %s nspheres %zu ntry 1000 spheres file %s scale 1.0 type 1 mass %s inertia_tensor",
-            ms_script_number(p->density, &a), content->clump->n_spheres, content->name, ms_script_number(p->mass, &b));
+            "density constant %s nspheres %zu ntry 1000 spheres file ",
+            ms_script_number(p->density, &a), content->clump->n_spheres);
+    ms_escape_lammps(stream, content->name);
+    fprintf(stream, " scale 1.0 type 1 mass %s inertia_tensor", ms_script_number(p->mass, &b));
     for (int k = 0; k < 6; k++) {
         fprintf(stream, " %s", k == 0 || k == 3 || k == 5 ? ms_script_number(p->inertia[k / 2][k / 2], &c) : "0");
     }
@@ -66,8 +69,8 @@ ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *
     const ms_script_drop d = ms_script_drop_of(content);
     ms_number a;
     (void)err;
-    fprintf(stream, "# Drops %s into a box: liggghts -in %s.in; fifty of them by -var n 50\nvariable n index 1\n\n",
-            content->name, content->name);
+    ms_script_title(stream, content->name, "liggghts -in", ".in", "-var n 50");
+    fputs("variable n index 1\n\n", stream);
     fputs("atom_style granular\natom_modify map array\ncommunicate single vel yes\nboundary f f f\nnewton off\n"
           "units si\n",
           stream);

@@ -17,6 +17,9 @@ typedef struct ms_script_drop {
 
 ms_script_drop ms_script_drop_of(const ms_content *content);
 
+/** The first line, a comment: "Drops NAME into a box: COMMAND NAME", the suffix of the script, and what drops fifty. */
+void ms_script_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *fifty);
+
 /** The number as text, which stands in `room`. */
 const char *ms_script_number(double value, ms_number *room);
 

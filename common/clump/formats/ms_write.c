@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "ms_formats.h"
 
@@ -88,17 +89,27 @@ static ms_status make_folders(char *path, size_t from, ms_error *err)
     return MS_OK;
 }
 
-/* The path that is written to is the first `stem` characters of `path` and the suffix. */
+/* The first `stem` characters of `path` and the suffix; the caller frees it. */
+static char *name_part(const char *path, size_t stem, const ms_part *part, ms_error *err)
+{
+    const size_t room = stem + strlen(part->suffix) + 1;
+    char *name = malloc(room);
+    if (name) {
+        snprintf(name, room, "%.*s%s", (int)stem, path, part->suffix);
+    } else {
+        ms_fail(err, MS_ERR_NOMEM, "%s: no memory to write it", path);
+    }
+    return name;
+}
+
 static ms_status write_part(const ms_content *content, const char *path, size_t stem, const ms_part *part,
                             ms_error *err)
 {
     ms_output output;
-    const size_t room = stem + strlen(part->suffix) + 1;
-    char *name = malloc(room);
+    char *name = name_part(path, stem, part, err);
     if (!name) {
-        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to write it", path);
+        return MS_ERR_NOMEM;
     }
-    snprintf(name, room, "%.*s%s", (int)stem, path, part->suffix);
     ms_status status = part->suffix[0] == '/' ? make_folders(name, stem, err) : MS_OK;
     if (status == MS_OK) {
         status = ms_output_open(&output, name, err);
@@ -117,9 +128,10 @@ static size_t stem_length(const char *path)
     return dot && dot > base ? (size_t)(dot - path) : strlen(path);
 }
 
+static const ms_part FRAME = {".frame.json", ms_json_write_frame};
+
 static ms_status write_template(const ms_content *content, const char *path, const ms_format *format, ms_error *err)
 {
-    static const ms_part FRAME = {".frame.json", ms_json_write_frame};
     const int alone = strcmp(path, "-") == 0;
     ms_template made;
     ms_status status = ms_template_make(&made, content->clump, content->particle, err);
@@ -160,6 +172,40 @@ ms_status ms_write_check(const ms_content *content, const ms_format *format, ms_
     return MS_OK;
 }
 
+ms_status ms_write_list(const char *path, const ms_format *format,
+                        ms_status (*take)(void *context, const char *path, int is_frame, ms_error *err), void *context,
+                        ms_error *err)
+{
+    const int is_template = format->need != MS_NEED_SPHERES;
+    ms_status status = MS_OK;
+    for (const ms_part *part = format->part; status == MS_OK && strcmp(path, "-") != 0;) {
+        const int is_frame = part == &FRAME;
+        char *name = name_part(path, is_frame ? stem_length(path) : strlen(path), part, err);
+        status = name ? take(context, name, is_frame, err) : MS_ERR_NOMEM;
+        free(name);
+        if (is_frame || (!part[1].suffix && !is_template)) {
+            break;
+        }
+        part = part[1].suffix ? part + 1 : &FRAME;
+    }
+    return status;
+}
+
+ms_status ms_write_check_path(const char *path, const ms_format *format, ms_error *err)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    int fits = 1;
+    for (const ms_part *part = format->part; part->suffix; part++) {
+        fits = fits && (part->write != ms_lammps_script || ms_escape_fits_lammps(name)) &&
+               (part->write != ms_liggghts_script || ms_escape_fits_liggghts(name));
+    }
+    return fits ? MS_OK
+                : ms_fail(err, MS_ERR_ARG,
+                          "%s: no script of %s can name this file, which has control characters, both kinds of quotes, "
+                          "or letters that it does not take; name another",
+                          path, format->name);
+}
+
 ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err)
 {
     const char *slash = strrchr(path, '/');
@@ -170,6 +216,9 @@ ms_status ms_write_clump(const ms_content *content, const char *path, const ms_f
     }
     named.name = slash ? slash + 1 : path;
     ms_status status = ms_write_check(content, format, err);
+    if (status == MS_OK) {
+        status = ms_write_check_path(path, format, err);
+    }
     if (status != MS_OK) {
         return status;
     }

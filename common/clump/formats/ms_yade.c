@@ -1,6 +1,7 @@
 /* YADE: a file for ymport.textClumps, and a script. */
 #include <math.h>
 
+#include "base/ms_escape.h"
 #include "ms_fields.h"
 #include "ms_formats.h"
 #include "ms_script.h"
@@ -25,7 +26,9 @@ static void write_yade_particle(FILE *stream, const ms_content *content)
     fputs("def particle(position):\n"
           "    \"\"\"Adds a particle; its axes are those of the template. Returns the id of the clump.\"\"\"\n",
           stream);
-    fprintf(stream, "    spheres = ymport.text('%s', shift=position, material='weightless')\n", content->name);
+    fputs("    spheres = ymport.text(", stream);
+    ms_escape_python(stream, content->name);
+    fputs(", shift=position, material='weightless')\n", stream);
     fprintf(stream, "    arms = [Vector3(%s, 0, 0), Vector3(0, %s, 0)]\n", ms_script_number(arm, &a),
             ms_script_number(arm / 2, &b));
     fputs("    cross = [sphere(position + side * arm, ", stream);
@@ -68,8 +71,7 @@ ms_status ms_yade_script(FILE *stream, const ms_content *content, ms_error *err)
     const ms_script_drop d = ms_script_drop_of(content);
     ms_number a, b;
     (void)err;
-    fprintf(stream, "# Drops %s into a box: yade -x -n %s.py; fifty of them by a number behind it\n", content->name,
-            content->name);
+    ms_script_title(stream, content->name, "yade -x -n", ".py", "50");
     fputs("import math\nimport random\nimport sys\nfrom yade import ymport\n\n"
           "n = int(sys.argv[1]) if len(sys.argv) > 1 else 1\n",
           stream);

@@ -173,7 +173,7 @@ ms_status ms_mesh_write(const ms_mesh *mesh, const char *path, ms_error *err)
     }
     status = found->write(mesh, output.stream, err);
     if (status == MS_ERR_IO) {
-        ms_fail(err, MS_ERR_IO, "%s: cannot be written; is the disk full?", path);
+        ms_fail(err, MS_ERR_IO, "%s: could not be written; is the disk full, or the size of files limited?", path);
     }
     return ms_output_close(&output, status, err);
 }

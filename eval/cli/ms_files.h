@@ -1,0 +1,51 @@
+/** The files that a command reads and those that it writes, held against each other before the work: no input is
+ * written over, and no output by another. A file is one file however it is spelt. */
+#ifndef MS_FILES_H
+#define MS_FILES_H
+
+#include <stddef.h>
+
+#include "base/ms_error.h"
+
+typedef enum ms_file_use {
+    MS_FILE_READ,
+    MS_FILE_WRITTEN, /* is tried: can it be made? */
+    MS_FILE_LATER,   /* the same, not tried: its folder may be still to be made */
+    MS_FILE_FRAME    /* likewise: that beside templates of one clump, which may be written with each of them */
+} ms_file_use;
+
+/** One of them. */
+typedef struct ms_file {
+    char *path; /* as it was given */
+    char *key;  /* the same for the same file */
+    ms_file_use use;
+} ms_file;
+
+/** A zeroed struct has none. */
+typedef struct ms_files {
+    ms_file *file;
+    size_t count, capacity;
+} ms_files;
+
+/** Adds a file; standard output, devices and pipes are passed over. @return MS_OK; MS_ERR_NOMEM */
+ms_status ms_files_add(ms_files *files, const char *path, ms_file_use use, ms_error *err);
+
+/** Adds FOLDER/NAMEENDING as MS_FILE_LATER for each of a NULL-ended list of endings. @return MS_OK; MS_ERR_NOMEM */
+ms_status ms_files_add_charts(ms_files *files, const char *folder, const char *name, const char *const *endings,
+                              ms_error *err);
+
+/** Adds a shape that is read, and the data file that its header names, if it does. @return MS_OK; MS_ERR_NOMEM */
+ms_status ms_files_add_shape(ms_files *files, const char *path, ms_error *err);
+
+/**
+ * Is each output another file than all inputs and outputs, and can it be made? A regular file that is there may be
+ * replaced.
+ *
+ * @return MS_OK; MS_ERR_ARG; MS_ERR_IO
+ * Cost: O(files log files).
+ */
+ms_status ms_files_check(ms_files *files, ms_error *err);
+
+void ms_files_free(ms_files *files);
+
+#endif
