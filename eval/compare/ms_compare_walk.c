@@ -291,7 +291,10 @@ static ms_status compare_shapes(compare_walk *w, ms_error *err)
 
 static void print_label(char out[20], const ms_comparison *a)
 {
-    snprintf(out, 20, a->input.label ? "%lu" : "", (unsigned long)a->input.label);
+    out[0] = '\0';
+    if (a->input.label) {
+        snprintf(out, 20, "%lu", (unsigned long)a->input.label);
+    }
 }
 
 static ms_status list_charts(ms_files *files, const ms_comparison *a, size_t s, ms_error *err)
