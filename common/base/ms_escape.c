@@ -81,6 +81,18 @@ static int is_plain_of_gnuplot(character c)
     return (is_plain(c) && c.code != '@') || (c.code > 0 && c.code < 0x80 && strchr(" ()|:", (int)c.code));
 }
 
+static int is_all_plain(const char *text)
+{
+    while (*text) {
+        const character c = read_character(text);
+        if (!is_plain_of_gnuplot(c)) {
+            return 0;
+        }
+        text += c.length;
+    }
+    return 1;
+}
+
 static void put_gnuplot(FILE *stream, const char *text)
 {
     while (*text) {
@@ -96,21 +108,23 @@ static void put_gnuplot(FILE *stream, const char *text)
     }
 }
 
-/* Single quotes will not do: gnuplot 5.4 takes a doubled one in front for the end of the string. */
+/* Single quotes will not do for all: gnuplot 5.4 takes a doubled one in front for the end of the string. */
 void ms_escape_gnuplot(FILE *stream, const char *text)
 {
-    putc('"', stream);
+    const char quote = is_all_plain(text) ? '\'' : '"';
+    putc(quote, stream);
     put_gnuplot(stream, text);
-    putc('"', stream);
+    putc(quote, stream);
 }
 
 /* Names that begin with a sign can be pipes, arrays or functions. */
 void ms_escape_gnuplot_file(FILE *stream, const char *name, const char *ending)
 {
-    fputs("\"./", stream);
+    const char quote = is_all_plain(name) ? '\'' : '"';
+    fprintf(stream, "%c./", quote);
     put_gnuplot(stream, name);
     put_gnuplot(stream, ending);
-    putc('"', stream);
+    putc(quote, stream);
 }
 
 static int is_datum(character c)

@@ -15,8 +15,8 @@ void ms_escape_comment(FILE *stream, const char *text);
 /** A word that is a name in an engine's file and of no other use (PFC, Kratos): as in a comment, but '_'. */
 void ms_escape_name(FILE *stream, const char *text);
 
-/** A string of gnuplot, in double quotes; what means anything to it stands as its octal number. Control characters and
- * bytes that are no UTF-8 become '?'. Markup of text remains: what draws it says noenhanced. */
+/** A string of gnuplot, in double quotes where it has to be; what means anything there stands as its octal number.
+ * Control characters and bytes that are no UTF-8 become '?'. Markup of text remains: what draws it says noenhanced. */
 void ms_escape_gnuplot(FILE *stream, const char *text);
 
 /** The same of the name of a file in the folder of the script, and what stands behind it. */

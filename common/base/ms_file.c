@@ -154,7 +154,9 @@ static ms_status open_path(ms_output *output, const char *path, ms_error *err)
 {
     struct stat info;
     if (path[0] == '\0') {
-        return ms_fail(err, MS_ERR_IO, "the name of the file to write is empty; name a file, or - for standard output");
+        return ms_fail(
+            err, MS_ERR_IO,
+            "the name of the file to write is empty, and it cannot be written; name a file, or - for standard output");
     }
     const ms_status status = resolve_link(&output->path, path, err);
     if (status) {

@@ -93,7 +93,7 @@ static void put_data(FILE *stream, const ms_chart *chart)
             continue;
         }
         fputs("# x y label: ", stream);
-        ms_escape_comment(stream, series->name);
+        ms_escape_gnuplot(stream, series->name);
         putc('\n', stream);
         for (size_t p = 0; p < series->count; p++) {
             if (has_place(chart, &series->point[p])) {

@@ -42,8 +42,7 @@ static char *make_key(const char *path)
     return key;
 }
 
-/* Standard output, a device or a pipe: it holds nothing that could be lost. */
-static int is_stream(const char *path)
+int ms_files_is_stream(const char *path)
 {
     struct stat info;
     return strcmp(path, "-") == 0 || (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode));
@@ -63,7 +62,7 @@ static ms_status make_room(ms_files *files, ms_error *err)
 
 ms_status ms_files_add(ms_files *files, const char *path, ms_file_use use, ms_error *err)
 {
-    if (is_stream(path)) {
+    if (ms_files_is_stream(path)) {
         return MS_OK;
     }
     const ms_status status = make_room(files, err);

@@ -27,6 +27,9 @@ typedef struct ms_files {
     size_t count, capacity;
 } ms_files;
 
+/** Nonzero for standard output, a device or a pipe: it holds nothing that could be lost. */
+int ms_files_is_stream(const char *path);
+
 /** Adds a file; standard output, devices and pipes are passed over. @return MS_OK; MS_ERR_NOMEM */
 ms_status ms_files_add(ms_files *files, const char *path, ms_file_use use, ms_error *err);
 

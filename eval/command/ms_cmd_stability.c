@@ -47,8 +47,8 @@ typedef struct stability_arguments {
 
 /* What has been done so far. */
 typedef struct stability_progress {
-    int to_stdout;
-    ms_csv csv; /* unless to_stdout */
+    FILE *stream; /* standard output, a device or a pipe; NULL: the table */
+    ms_csv csv;
     ms_stability_run *run;
     size_t n_runs, planned;
 } stability_progress;
@@ -244,10 +244,10 @@ static ms_status add_line(stability_progress *p, const ms_stability_run *run, ms
     if (!line) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for a row");
     }
-    if (!p->to_stdout) {
+    if (!p->stream) {
         status = ms_csv_add(&p->csv, line, err);
-    } else if (puts(line) == EOF || fflush(stdout) != 0) {
-        status = ms_fail(err, MS_ERR_IO, "standard output cannot be written; is the disk full?");
+    } else if (fprintf(p->stream, "%s\n", line) < 0 || fflush(p->stream) != 0) {
+        status = ms_fail(err, MS_ERR_IO, "a row could not be written: %s; is the disk full?", strerror(errno));
     }
     free(line);
     return status;
@@ -315,7 +315,7 @@ static ms_status report_stability(const stability_arguments *a, const stability_
     if (status == MS_OK && a->json) {
         status = ms_report_print(stdout, ms_statistics_json(groups, count), err);
     } else if (status == MS_OK) {
-        FILE *words = p->to_stdout ? stderr : stdout;
+        FILE *words = p->stream == stdout ? stderr : stdout;
         ms_statistics_print(words, groups, count, a->until_dice > 0);
     }
     free(groups);
@@ -338,13 +338,14 @@ static size_t count_runs(const stability_arguments *a)
 static ms_status open_rows(stability_progress *p, const stability_arguments *a, ms_error *err)
 {
     p->planned = count_runs(a);
-    p->to_stdout = strcmp(a->output, "-") == 0;
     p->run = malloc(p->planned * sizeof *p->run);
     if (!p->run) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu runs; fewer --runs need less", p->planned);
     }
-    if (p->to_stdout) {
-        return add_line(p, NULL, err);
+    if (ms_files_is_stream(a->output)) {
+        p->stream = strcmp(a->output, "-") == 0 ? stdout : fopen(a->output, "w");
+        return p->stream ? add_line(p, NULL, err)
+                         : ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s", a->output, strerror(errno));
     }
     char *header = make_line(NULL);
     const ms_status status = header ? ms_csv_open(&p->csv, a->output, header, 0, err)
@@ -372,6 +373,9 @@ static int execute_stability(const ms_command *command, const stability_argument
         status = report_stability(a, &p, &err);
     }
     ms_csv_close(&p.csv);
+    if (p.stream && p.stream != stdout) {
+        fclose(p.stream); /* each row was flushed */
+    }
     free(p.run);
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }

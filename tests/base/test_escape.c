@@ -54,6 +54,7 @@ static void test_bytes_that_are_no_utf8(void **state)
 static void test_gnuplot(void **state)
 {
     (void)state;
+    check_written(ms_escape_gnuplot, "mss:a=1, D (b)", "'mss:a=1, D (b)'");
     check_written(ms_escape_gnuplot, "O'Brien", "\"O\\047Brien\"");
     check_written(ms_escape_gnuplot, "'a\\n\n\"`y` $z@", "\"\\047a\\134n?\\042\\140y\\140 \\044z\\100\"");
     char *out = NULL;

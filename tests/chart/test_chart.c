@@ -92,12 +92,12 @@ static void what_the_files_hold(void **state)
                             .series = series};
     assert_int_equal(ms_chart_write(&chart, "test-chart", &err), MS_OK);
     read_text(text, sizeof text, "test-chart.dat");
-    assert_string_equal(text, "# x y label: o?ne?\n1 0.125 \"a\"\n10 0.25 \"i?t\"\n\n\n");
+    assert_string_equal(text, "# x y label: \"o\\047ne?\"\n1 0.125 \"a\"\n10 0.25 \"i?t\"\n\n\n");
     read_text(text, sizeof text, "test-chart.gp");
     assert_non_null(strstr(text, "set xrange [0.8:12.5]"));
     assert_non_null(strstr(text, "set yrange [0.1:0.3125]"));
     assert_non_null(strstr(text, "title \"o\\047ne?\""));
-    assert_non_null(strstr(text, "set ylabel \"y (0.125: that or less)\""));
+    assert_non_null(strstr(text, "set ylabel 'y (0.125: that or less)'"));
     assert_null(strstr(text, "nothing"));
 }
 

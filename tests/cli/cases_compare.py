@@ -346,8 +346,9 @@ class Charts(Compare):
                 is_there = row == 0 or 0 < column < columns - 1
                 self.assertEqual(dark > 2000, is_there, f"tile {column}, {row}")
         script = self.read("charts/box-sheet.gp").decode()
-        for word in ("mss:boost=2,confine", "setcover", "o''dd", "n = 3", "n = 6", "n = 9"):
+        for word in ("mss:boost=2,confine", "setcover", "n = 3", "n = 6", "n = 9"):
             self.assertIn(f"set label '{word}'", script)
+        self.assertIn(r'set label "o\047dd"', script)
 
     def test_without_gnuplot(self):
         """A clear error; results and scripts are there."""

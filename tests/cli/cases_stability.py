@@ -263,6 +263,7 @@ class Stability(Case):
         with open(path, encoding="utf-8") as f:
             text = f.read()
         row = self.rows("speck", "-g", "mss", "-n", "1", "--perturb", "seed", "--runs", "1")[0]
+        os.unlink(self.path("s.csv"))
         groups = self.mskit("stability", "speck", "cube", "-g", "mss", "-n", "1", "--cells", "8", "--perturb", "seed",
                             "--runs", "1", "--json", "-o", "s.csv").json
         keys = set(row).union(*(set(g) | set(g["inertia_error_spread"]) for g in groups))
