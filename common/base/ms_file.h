@@ -24,7 +24,7 @@ typedef struct ms_bytes {
 MS_API ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err);
 
 /** The same of the first `most` bytes, or of all if there are fewer. */
-ms_status ms_file_read_start(ms_bytes *bytes, const char *path, size_t most, ms_error *err);
+MS_API ms_status ms_file_read_start(ms_bytes *bytes, const char *path, size_t most, ms_error *err);
 
 MS_API void ms_file_free(ms_bytes *bytes);
 

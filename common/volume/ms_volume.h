@@ -41,7 +41,7 @@ MS_API ms_status ms_volume_parse(ms_volume *volume, const ms_bytes *bytes, const
  * @param[out] data the caller frees it; NULL if the voxels are in the file itself, or if no volume can be read from it
  * @return MS_OK; MS_ERR_NOMEM
  */
-ms_status ms_volume_data_path(char **data, const char *path, ms_error *err);
+MS_API ms_status ms_volume_data_path(char **data, const char *path, ms_error *err);
 
 /** Nonzero if the path ends like a volume that ms_volume_read takes. */
 MS_API int ms_volume_is_volume_path(const char *path);

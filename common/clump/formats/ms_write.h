@@ -89,12 +89,12 @@ MS_API ms_status ms_write_remark(char text[MS_WRITE_REMARK], const ms_content *c
  * @param take told of each; `is_frame` of the frame beside a template, which is that of the clump, whatever the format
  * @return MS_OK; MS_ERR_NOMEM; as take
  */
-ms_status ms_write_list(const char *path, const ms_format *format,
-                        ms_status (*take)(void *context, const char *path, int is_frame, ms_error *err), void *context,
-                        ms_error *err);
+MS_API ms_status ms_write_list(const char *path, const ms_format *format,
+                               ms_status (*take)(void *context, const char *path, int is_frame, ms_error *err),
+                               void *context, ms_error *err);
 
 /** Can the script of LAMMPS or LIGGGHTS beside a template name it (ms_escape.h)? @return MS_OK; MS_ERR_ARG */
-ms_status ms_write_check_path(const char *path, const ms_format *format, ms_error *err);
+MS_API ms_status ms_write_check_path(const char *path, const ms_format *format, ms_error *err);
 
 /**
  * Writes a clump, each file under a temporary name that is then renamed. Beside a template stands the way back to the
