@@ -166,7 +166,7 @@ static void shapes_of_the_paper(void **state)
     make_shape(&mesh, "ellipsoid", "a=6.585 b=6.585 c=3.395");
     target_of_deq(&target, &mesh, 100);
     ms_clump clump = run_setcover(&target, 181, "skeleton-deq=100");
-    /* His 181 spheres cover 99 %; ours 98.98 % of voxels (docs/methods/setcover.md says why his count differs). */
+    /* His 181 spheres cover 99 %; ours 98.98 % of voxels (docs/validation.md: a stricter count than his). */
     assert_true(coverage_of(&clump, &target, 48) >= 0.95 && coverage_of(&clump, &target, 181) >= 0.9897);
     ms_clump_free(&clump);
     ms_target_free(&target);
