@@ -255,7 +255,7 @@ static ms_status write_outputs(const generate_arguments *a, const ms_input *inpu
                                const char *record, ms_error *err)
 {
     FILE *words = writes_to_stdout(a) ? stderr : stdout;
-    const ms_particle *particle = r->mass.corrected ? &r->mass.particle : NULL;
+    const ms_particle *particle = r->mass.particle.mass > 0 ? &r->mass.particle : NULL; /* with masses or without */
     const ms_content content = {.clump = &r->clump, .particle = particle, .record = record};
     ms_status status = ms_outputs_write(&a->outputs, &content, words, err);
     if (status == MS_OK && a->target_grid) {

@@ -232,6 +232,8 @@ class Unfinished(Lost):
         self.assertEqual(self.read("a.csv"), self.read("plain.csv"))
         self.assertEqual(len(json.loads(self.read("a.json"))["spheres"]), 2)
         self.assertNotIn("a.lammps", self.files())
+        self.mskit(*run, *hopeless, "-o", "p.liggghts", code=1)
+        self.assertIn(b" mass 15900 ", self.read("p.liggghts.in"), "the body's own mass does not hang on the spheres'")
         self.mskit(*run, *hopeless, "-o", "b.lammps", code=1)
         self.assertEqual(self.read("b.lammps.csv"), self.read("plain.csv"), "where no output takes it, behind the first")
         self.assertEqual(self.mskit(*run, *hopeless, "--json", "-o", "c.csv", code=1).json["scores"]["spheres"], 2)
