@@ -4,7 +4,7 @@
 
 #include "base/ms_vector.h"
 
-/* Spheres larger than the mean radius times this are few. */
+/* Spheres larger than the mean radius times this are few. Of the time alone: 1.2 to 2.5 no difference seen. */
 static const double LARGE = 1.5;
 
 static int compare_ends(const void *a, const void *b)

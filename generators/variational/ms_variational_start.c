@@ -6,7 +6,8 @@
 #include "shared/ms_cover.h"
 
 /* A voxel lies on the ridge unless the distance rises by this much of the way to a neighbour: no
- * direction is more than 27 degrees from one. */
+ * direction is more than 27 degrees from one. Femur with 70 and bunny with 30 spheres, 60 cells, mean of two seeds:
+ * 0.0210, 0.0428; 0.7: 0.0210, 0.0429; 0.95: the same spheres. */
 static const double RISING = 0.85;
 
 /* Coarse voxels per edge of the cube that is a sphere's share of the volume, about. D of the femur with 70 spheres and
