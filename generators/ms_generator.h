@@ -18,8 +18,8 @@ MS_C_BEGIN
  */
 typedef int (*ms_progress)(void *context, size_t spheres, double dice);
 
-/** Is told in one sentence what about the input, though allowed, makes the result worse than it could be, and the cure.
- * */
+/** Is told in one sentence what about the input, though allowed, makes the result worse than it could be, and how to
+ * mend it. */
 typedef void (*ms_remark)(void *context, const char *sentence);
 
 /** All that a generator is given. Everything is borrowed. */

@@ -63,7 +63,12 @@ static size_t join_rings(ms_mesh *mesh, size_t at, int n, int m, int south)
     return at;
 }
 
-ms_status ms_shape_octahedral(ms_mesh *mesh, int n, const double *step, ms_error *err)
+/*
+ * The lattice points with |i| + |j| + |k| = n, each placed at (sign i step[|i|], sign j step[|j|], sign k step[|k|]);
+ * 8 n^2 triangles. All 48 symmetries of the cube are exact. `step` has n + 1 values from step[0] = 0 up; on failure the
+ * mesh is empty.
+ */
+static ms_status make_octahedral_grid(ms_mesh *mesh, int n, const double *step, ms_error *err)
 {
     size_t squared = (size_t)n * (size_t)n;
     ms_status status = ms_mesh_alloc(mesh, 4 * squared + 2, 8 * squared, err);
@@ -107,7 +112,7 @@ ms_status ms_shape_unit_ball(ms_mesh *mesh, int n, ms_error *err)
     for (int i = 0; i <= n; i++) {
         step[i] = sin(M_PI_2 * i / n);
     }
-    ms_status status = ms_shape_octahedral(mesh, n, step, err);
+    ms_status status = make_octahedral_grid(mesh, n, step, err);
     for (size_t v = 0; v < mesh->n_vertices; v++) {
         double length = length_of(mesh->vertex[v]);
         for (int axis = 0; axis < 3; axis++) {
@@ -213,7 +218,7 @@ ms_status ms_shape_octahedron(ms_mesh *mesh, const double *value, ms_error *err)
     for (int i = 0; i <= n; i++) {
         step[i] = value[0] * ((double)i / n);
     }
-    ms_status status = ms_shape_octahedral(mesh, n, step, err);
+    ms_status status = make_octahedral_grid(mesh, n, step, err);
     free(step);
     return status;
 }

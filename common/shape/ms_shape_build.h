@@ -4,16 +4,6 @@
 
 #include "mesh/ms_mesh.h"
 
-/**
- * Octahedral grid: the lattice points with |i| + |j| + |k| = n, each placed at
- * (sign i step[|i|], sign j step[|j|], sign k step[|k|]); 8 n^2 triangles. All 48 symmetries
- * of the cube are exact.
- *
- * @param[out] mesh empty on failure
- * @param      step n + 1 values from step[0] = 0 up
- */
-ms_status ms_shape_octahedral(ms_mesh *mesh, int n, const double *step, ms_error *err);
-
 /** Unit ball on an octahedral grid: n segments along a quarter turn. */
 ms_status ms_shape_unit_ball(ms_mesh *mesh, int n, ms_error *err);
 

@@ -34,7 +34,7 @@ typedef struct plane_work {
     int32_t *lines;  /* rows of voxels: what each is covered by, as steps along the row */
     uint32_t *start; /* of each ray, into sorted; one more at the end */
     ms_crossing *found, *sorted;
-    size_t count, capacity;
+    size_t count, capacity; /* before the first crossing there is no array of them to point into */
     int out_of_memory;
 } plane_work;
 
@@ -251,9 +251,6 @@ static void sort_crossings(plane_work *w, size_t rays)
 static void cover_rays(plane_work *w, const sweep *s)
 {
     const size_t across = (size_t)s->grid->n[s->b] * (size_t)s->rays, row_length = (size_t)s->grid->n[s->a] + 1;
-    if (w->count == 0) {
-        return; /* before the first crossing there is no array of them to point into */
-    }
     sort_crossings(w, rays_of_plane(s));
     for (size_t ray = 0; ray < rays_of_plane(s); ray++) {
         int32_t *row = w->lines + ray % across / (size_t)s->rays * row_length;
@@ -377,11 +374,13 @@ static void sweep_plane(plane_work *w, const sweep *s, int plane)
         return;
     }
     if (s->take) {
-        sort_crossings(w, rays_of_plane(s));
-        s->take(s->context, plane, w->sorted, w->start);
+        if (w->count > 0) {
+            sort_crossings(w, rays_of_plane(s));
+            s->take(s->context, plane, w->sorted, w->start);
+        }
         return;
     }
-    if (!s->parity) {
+    if (w->count > 0) {
         cover_rays(w, s);
     }
     emit_plane(w->lines, s, plane);

@@ -34,7 +34,7 @@ typedef struct ms_crossing {
 
 /**
  * Takes the crossings of a plane of cells across z: rays x rays for each cell of a row, those
- * of one height after another. Called from several threads, once for each plane.
+ * of one height after another. Called from several threads, once for each plane that has any.
  *
  * @param crossing in the order of the rays, and of each along it
  * @param start    of each ray, in `crossing`; one more at the end

@@ -144,7 +144,9 @@ static ms_status try_file(const char *path, ms_error *err)
 ms_status ms_files_check(ms_files *files, ms_error *err)
 {
     ms_status status = MS_OK;
-    qsort(files->file, files->count, sizeof *files->file, by_key);
+    if (files->count > 0) { /* else there is no array */
+        qsort(files->file, files->count, sizeof *files->file, by_key);
+    }
     for (size_t f = 1; f < files->count && status == MS_OK; f++) {
         if (strcmp(files->file[f - 1].key, files->file[f].key) == 0) {
             status = check_pair(&files->file[f - 1], &files->file[f], err);

@@ -91,7 +91,8 @@ ms_status ms_methods_add_clump(ms_methods *methods, const char *text, ms_error *
     return status == MS_OK ? ms_read_clump(&m->clump, &unused, m->options, err) : status;
 }
 
-ms_status ms_methods_add_all(ms_methods *methods, ms_error *err)
+/* By default options. */
+static ms_status add_all_generators(ms_methods *methods, ms_error *err)
 {
     ms_status status = MS_OK;
     for (const ms_generator *const *g = ms_generators; *g && status == MS_OK; g++) {
@@ -124,7 +125,7 @@ ms_status ms_methods_check(ms_methods *methods, ms_error *err)
 {
     ms_status status = MS_OK;
     if (methods->count == ms_methods_clumps(methods)) {
-        status = ms_methods_add_all(methods, err);
+        status = add_all_generators(methods, err);
     }
     for (size_t m = 0; m < methods->count && status == MS_OK; m++) {
         for (size_t k = 0; k < m && status == MS_OK; k++) {

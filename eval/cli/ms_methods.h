@@ -32,10 +32,10 @@ ms_status ms_methods_add(ms_methods *methods, const char *text, ms_error *err);
 /** Adds a clump from "NAME=FILE", which is read at once. @return MS_OK; MS_ERR_ARG; as ms_read_clump */
 ms_status ms_methods_add_clump(ms_methods *methods, const char *text, ms_error *err);
 
-/** Adds every generator, by default options. */
-ms_status ms_methods_add_all(ms_methods *methods, ms_error *err);
-
-/** Does each stand there once? Adds every generator if there is none yet. @return MS_OK; MS_ERR_ARG */
+/**
+ * Does each stand there once? Adds every generator, by default options, if there is none yet.
+ * @return MS_OK; MS_ERR_ARG; as ms_methods_add
+ */
 ms_status ms_methods_check(ms_methods *methods, ms_error *err);
 
 /** Adds the files that methods read: clumps of other tools, and those to start from. @return MS_OK; MS_ERR_NOMEM */

@@ -37,7 +37,7 @@ typedef struct ms_outputs {
 ms_status ms_outputs_flag(int *taken, ms_outputs *outputs, const char *name, const char *value, ms_error *err);
 
 /**
- * Settles which files are written; may be done again, when more is known.
+ * Decides which files are written; may be done again, when more is known.
  *
  * @param source   the file that the clump comes from; its name without folder and ending begins default names
  * @param behind   follows it in default names, as "-mss"

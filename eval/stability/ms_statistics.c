@@ -9,7 +9,8 @@
 #include "cli/ms_json_object.h"
 #include "cli/ms_report.h"
 
-ms_statistics ms_statistics_of(double *values, size_t count)
+/* Leaves out what is not finite; sorts `values`. */
+static ms_statistics summarise_values(double *values, size_t count)
 {
     size_t n = 0;
     for (size_t v = 0; v < count; v++) {
@@ -79,9 +80,9 @@ static void measure_group(ms_statistics_group *g, const ms_stability_run *runs, 
             until[n++] = run->spheres_until ? (double)run->spheres_until : (double)NAN;
         }
     }
-    g->dice = ms_statistics_of(dice, n);
-    g->inertia = ms_statistics_of(inertia, n);
-    g->until = ms_statistics_of(until, n);
+    g->dice = summarise_values(dice, n);
+    g->inertia = summarise_values(inertia, n);
+    g->until = summarise_values(until, n);
 }
 
 /* The groups that the runs fall into, not yet measured. @return how many */

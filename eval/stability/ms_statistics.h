@@ -14,9 +14,6 @@ typedef struct ms_statistics {
     double deviation; /* standard deviation, of a sample; 0 of a single value */
 } ms_statistics;
 
-/** Leaves out what is not finite; sorts `values`. */
-ms_statistics ms_statistics_of(double *values, size_t count);
-
 /** The runs of one method with one change, on one shape or on all. */
 typedef struct ms_statistics_group {
     const char *shape;       /* borrowed; NULL: all */

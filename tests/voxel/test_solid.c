@@ -134,6 +134,20 @@ static void boxes_that_overlap_unite(void **state)
     }
 }
 
+/* So far off a third box that most planes of rays between meet nothing. */
+static void boxes_far_apart_unite(void **state)
+{
+    static const box_sample boxes[3] = {
+        {{0, 0, 0}, {1, 1, 1}}, {{0.5, 0.3, 0.2}, {1.5, 1.4, 1.3}}, {{0, 0, 6}, {1, 1, 7}}};
+    (void)state;
+    ms_mesh mesh = boxes_together(boxes, 3, upright);
+    const ms_body exact = union_body(boxes, 3);
+    const ms_solid solid = solid_of(&mesh);
+    assert_int_equal(solid.overlapping, 1);
+    expect_body(&solid.body, &exact, 2e-4);
+    ms_mesh_free(&mesh);
+}
+
 /* Two balls of radius 1 whose centres are d apart have a lens of pi (4 + d) (2 - d)^2 / 12 in common. */
 static void balls_that_overlap_unite(void **state)
 {
@@ -247,11 +261,9 @@ static void what_encloses_nothing_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(boxes_that_overlap_unite),
-        cmocka_unit_test(balls_that_overlap_unite),
-        cmocka_unit_test(bodies_that_touch_keep_their_integrals),
-        cmocka_unit_test(what_is_inside_out_is_left_out),
-        cmocka_unit_test(threads_change_no_bit),
+        cmocka_unit_test(boxes_that_overlap_unite),         cmocka_unit_test(boxes_far_apart_unite),
+        cmocka_unit_test(balls_that_overlap_unite),         cmocka_unit_test(bodies_that_touch_keep_their_integrals),
+        cmocka_unit_test(what_is_inside_out_is_left_out),   cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(what_encloses_nothing_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

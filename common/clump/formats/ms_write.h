@@ -69,8 +69,10 @@ MS_API const ms_format *ms_write_format_of_path(const char *path, ms_error *err)
 /** Nonzero if its files stand in a folder of the path's name. */
 MS_API int ms_write_format_is_folder(const ms_format *format);
 
-/** Can the format hold this clump? @return MS_OK; MS_ERR_ARG where it needs what is not known, or takes no one sphere
- * */
+/**
+ * Can the format hold this clump?
+ * @return MS_OK; MS_ERR_ARG where it needs what is not known, or takes no clump of one sphere
+ */
 MS_API ms_status ms_write_check(const ms_content *content, const ms_format *format, ms_error *err);
 
 /**
