@@ -42,19 +42,19 @@ ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, doub
     return check_particle(particle, err);
 }
 
-/* Adds the tensor of a solid sphere about the centre, in the clump's unit. */
+/* Adds the tensor of a solid sphere about the centre, in the clump's unit; nothing is taken away from the diagonal, so
+ * that a row of specks has some inertia about its axis. */
 static void add_solid(double inertia[3][3], const ms_sphere *sphere, double mass, const double centre[3])
 {
-    double p[3], square = 0;
+    double p[3];
     for (int k = 0; k < 3; k++) {
         p[k] = sphere->centre[k] - centre[k];
-        square += p[k] * p[k];
     }
     for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            inertia[i][j] -= mass * p[i] * p[j];
-        }
-        inertia[i][i] += mass * (square + 0.4 * sphere->radius * sphere->radius);
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        inertia[i][i] += mass * (p[j] * p[j] + p[k] * p[k] + 0.4 * sphere->radius * sphere->radius);
+        inertia[j][k] -= mass * p[j] * p[k];
+        inertia[k][j] -= mass * p[j] * p[k];
     }
 }
 

@@ -7,18 +7,23 @@
 #include <unistd.h>
 
 /* All that a signal can reach. */
-static volatile sig_atomic_t is_interrupted;
+static volatile sig_atomic_t is_interrupted, has_spheres;
 
+/* Without spheres there is nothing to keep, and it may be long until the first: the signal does what it would without
+ * this, as SA_RESETHAND has put that back. */
 static void note_signal(int number)
 {
-    (void)number;
     is_interrupted = 1;
+    if (!has_spheres) {
+        raise(number);
+    }
 }
 
 static int show_line(void *context, size_t spheres, double dice)
 {
     ms_progress_line *line = context;
     const double now = omp_get_wtime();
+    has_spheres = spheres > 0;
     if (line->is_terminal && now - line->shown > 0.1) {
         line->shown = now;
         if (isnan(dice)) {
@@ -60,6 +65,7 @@ void ms_progress_clear(const ms_progress_line *line)
 void ms_progress_catch(int is_caught)
 {
     const int numbers[] = {SIGINT, SIGTERM};
+    has_spheres = 0;
     for (size_t s = 0; s < sizeof numbers / sizeof *numbers; s++) {
         struct sigaction before, action = {.sa_flags = (int)SA_RESETHAND};
         action.sa_handler = is_caught ? note_signal : SIG_DFL;

@@ -18,8 +18,9 @@ void ms_progress_show(ms_run *run, ms_progress_line *line);
 /** Has the run's remarks printed on standard error, behind the name of the line. The line is borrowed. */
 void ms_progress_say_remarks(ms_run *run, ms_progress_line *line);
 /**
- * Nonzero: the first SIGINT (Ctrl-C) or SIGTERM ends the run with the spheres so far, the second one the program. Zero:
- * the first one the program, as without this. Signals that are ignored remain so.
+ * Nonzero: the first SIGINT (Ctrl-C) or SIGTERM ends the run with the spheres so far; the second one, or the first
+ * where there are none yet, the program. Zero: the first one the program, as without this. Signals that are ignored
+ * remain so.
  */
 void ms_progress_catch(int is_caught);
 

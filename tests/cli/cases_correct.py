@@ -175,6 +175,14 @@ class Correct(Case):
         for row in self.rows("m.csv"):
             self.assert_close(row[4], run["particle"]["mass"] / 2, 1e-6)
 
+    def test_specks_in_all_formats(self):
+        """What MFiX would sum of them vanishes; the templates have the mass of the body all the same."""
+        for r, says in (("1e-9", "MFiX sums the spheres"), ("1e-90", "no mass or inertia")):
+            self.write("specks.csv", f"x,y,z,r\n2,2,1.5,{r}\n3,2,1.5,{r}\n")
+            run = self.mskit("correct", "specks.csv", "--target", "box.obj", "--density", "1000", "--all-formats", "out" + r)
+            self.assert_says(run, says)
+            self.assertIn(b" mass 6000 ", self.read(f"out{r}/specks.liggghts.in"))
+
     def test_one_sphere_in_all_formats(self):
         self.write("one.csv", "0,0,0,1\n")
         ball = self.shape("ball")

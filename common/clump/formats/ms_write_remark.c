@@ -61,6 +61,9 @@ ms_status ms_write_remark(char text[MS_WRITE_REMARK], const ms_content *content,
     status = sum_spheres(&sum, &made, format->sum, err);
     if (status == MS_OK) {
         put_errors(text, format, &sum, &made.particle);
+    } else if (status == MS_ERR_ARG) { /* so small are the spheres: the template is no worse for it */
+        snprintf(text, MS_WRITE_REMARK, "%s: what it finds has no mass or inertia", format->sums);
+        status = MS_OK;
     }
     ms_template_free(&made);
     return status;
