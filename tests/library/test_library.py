@@ -12,7 +12,7 @@ BUILD = os.environ["MSKIT_BUILD"]
 DOCS = os.environ["MSKIT_DOCS"]
 CC = shlex.split(os.environ["MSKIT_CC"])  # with the flags that a sanitizer takes
 CXX = shlex.split(os.environ["MSKIT_CXX"])  # empty: there is none
-COMPILER = ("__", ".gomp_critical_user_.")  # names of sanitizers, coverage, unnamed locks of clang
+COMPILER = ("__", "mangle_path", ".gomp_critical_user_.")  # sanitizers, coverage, unnamed locks of clang
 STRICT = ["-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
 
 
