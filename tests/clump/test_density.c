@@ -171,7 +171,7 @@ static void ten_spheres_have_one_solution(void **state)
     (void)state;
     for (int frame = 0; frame < 2; frame++) {
         double mass[10];
-        const ms_density_options options = {.input_frame = frame};
+        const ms_density_options options = {.input_frame = frame, .centre_tolerance = DBL_MIN};
         ms_clump clump = random_clump(10, &seed);
         for (int s = 0; s < 10; s++) {
             mass[s] = between(&seed, 0.5, 1.5);
@@ -180,7 +180,8 @@ static void ten_spheres_have_one_solution(void **state)
         const ms_density_report r = solve(&clump, &particle, &options);
         expect_exact(&r);
         for (int s = 0; s < 10; s++) {
-            expect_close(clump.mass[s], mass[s], 1e-7); /* the condition of the equations */
+            /* What expect_exact allows, times the condition of the equations: 5.5e-7 seen for sums off by 4e-11. */
+            expect_close(clump.mass[s], mass[s], 1e-9 * 1.4e4);
         }
         ms_clump_free(&clump);
     }
