@@ -180,8 +180,8 @@ static void ten_spheres_have_one_solution(void **state)
         const ms_density_report r = solve(&clump, &particle, &options);
         expect_exact(&r);
         for (int s = 0; s < 10; s++) {
-            /* What expect_exact allows, times the condition of the equations: 5.5e-7 seen for sums off by 4e-11. */
-            expect_close(clump.mass[s], mass[s], 1e-9 * 1.4e4);
+            /* Sums are exact to 1e-9, the equations are not well conditioned: built by clang 5.5e-7 was seen. */
+            expect_close(clump.mass[s], mass[s], 1e-5);
         }
         ms_clump_free(&clump);
     }
