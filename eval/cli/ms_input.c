@@ -303,15 +303,24 @@ static void say_pieces(const ms_input *input)
     }
 }
 
-static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags, ms_error *err)
+/* Voxels of the grid of a label along each axis; 0 if it has none. */
+static int measure_label(double n[3], const ms_input *input, const ms_input_flags *flags)
 {
     int lo[3], hi[3];
     uint32_t other;
+    const int has_voxels = ms_target_label_box(lo, hi, &other, &input->volume, flags->label);
+    for (int a = 0; a < 3 && has_voxels; a++) {
+        n[a] = hi[a] - lo[a] + 2 * MS_GRID_HULL;
+    }
+    return has_voxels;
+}
+
+static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags, ms_error *err)
+{
+    double n[3];
     ms_error cause;
     ms_status status = MS_OK;
-    if (ms_target_label_box(lo, hi, &other, &input->volume, flags->label)) { /* without voxels the target says why */
-        const double n[3] = {hi[0] - lo[0] + 2 * MS_GRID_HULL, hi[1] - lo[1] + 2 * MS_GRID_HULL,
-                             hi[2] - lo[2] + 2 * MS_GRID_HULL};
+    if (measure_label(n, input, flags)) { /* without voxels the target says why */
         status = check_memory(n, flags, err);
     }
     if (status == MS_OK) {
@@ -340,6 +349,20 @@ ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flag
         return ms_fail(err, MS_ERR_ARG, "%s is a mesh; --label is for volumes", input->path);
     }
     return MS_OK;
+}
+
+double ms_input_bytes(const ms_input *input, const ms_input_flags *flags)
+{
+    double h, n[3];
+    ms_error ignored;
+    if (input->volume.label) {
+        return measure_label(n, input, flags) ? ms_target_bytes(n) : 0;
+    }
+    if (choose_voxel_size(&h, input, flags, &ignored) != MS_OK) {
+        return 0;
+    }
+    ms_voxelize_extents(n, &input->mesh, h);
+    return ms_target_bytes(n);
 }
 
 ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err)

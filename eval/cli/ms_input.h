@@ -62,6 +62,9 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
 /** Refuses flags that do not apply to what was read. @return MS_OK; MS_ERR_ARG */
 ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flags, ms_error *err);
 
+/** Bytes of the target that ms_input_target would make, and of a generator on it; 0 where it would fail before. */
+double ms_input_bytes(const ms_input *input, const ms_input_flags *flags);
+
 /**
  * Makes the target; says the size of the grid on stderr, and if its voxels do not hold the shape. Refuses open meshes
  * unless allowed.

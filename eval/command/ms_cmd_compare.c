@@ -160,6 +160,9 @@ static ms_status resolve_compare(ms_comparison *c, ms_error *err)
     if (ms_methods_clumps(&c->methods) > 0 && c->n_shapes > 1) {
         return ms_fail(err, MS_ERR_ARG, "--clump belongs to one shape; compare the others by themselves");
     }
+    if (c->input.label) {
+        snprintf(c->label, sizeof c->label, "%lu", (unsigned long)c->input.label);
+    }
     return ms_methods_check(&c->methods, err);
 }
 
