@@ -152,7 +152,7 @@ static ms_status open_locked(ms_csv *csv, int resume, ms_error *err)
     if (csv->fd < 0 && errno == EEXIST) {
         return ms_fail(
             err, MS_ERR_IO,
-            "%s: exists already, and rows of results are not replaced; name another file (compare --resume goes "
+            "%s: exists already, and rows of results are not replaced; name another file (--resume goes "
             "on with one)",
             csv->path);
     }

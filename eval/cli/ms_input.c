@@ -189,7 +189,7 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
 
 enum { DEFAULT_CELLS = 100 };
 
-static double shortest_side(const ms_mesh *mesh)
+double ms_input_shortest_side(const ms_mesh *mesh)
 {
     double lo[3], hi[3];
     ms_mesh_box(lo, hi, mesh);
@@ -245,16 +245,16 @@ static double cells_to_try(double cells, double misfit)
     return ceil(cells * fmin(MOST_TIMES, fabs(misfit) / AIM) - 1e-9);
 }
 
-void ms_input_say_misfit(const char *name, double misfit, double voxel_size, const ms_mesh *mesh)
+void ms_input_say_misfit(const char *name, double misfit, double voxel_size, double shortest_side)
 {
     if (!(fabs(misfit) >= MS_INPUT_MISFIT)) {
         return;
     }
-    const double cells = shortest_side(mesh) / voxel_size, more = cells_to_try(cells, misfit);
+    const double cells = shortest_side / voxel_size, more = cells_to_try(cells, misfit);
     fprintf(stderr,
             "%s: the voxels hold %.3g %% %s than the shape: they are too coarse for it, and measures on them are of "
             "another body; try --cells %.0f (now %.3g) or --voxel-size %.4g\n",
-            name, 100 * fabs(misfit), misfit > 0 ? "more" : "less", more, cells, shortest_side(mesh) / more);
+            name, 100 * fabs(misfit), misfit > 0 ? "more" : "less", more, cells, shortest_side / more);
 }
 
 static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, ms_error *err)
@@ -286,7 +286,7 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
                 "inertia are those of the voxels\n",
                 input->path, input->report.open_edges, input->target.disagree, input->target.voxels);
     } else if (status == MS_OK) {
-        ms_input_say_misfit(input->path, ms_target_misfit(&input->target), h, &input->mesh);
+        ms_input_say_misfit(input->path, ms_target_misfit(&input->target), h, ms_input_shortest_side(&input->mesh));
     }
     return status;
 }

@@ -75,9 +75,12 @@ ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error
  * Says on stderr that the voxels do not hold the shape, with the figures and a number of cells to try, if they are
  * off by 1 % or more of its volume.
  *
- * @param misfit as ms_target_misfit
+ * @param misfit        as ms_target_misfit
+ * @param shortest_side of the shape's box
  */
-void ms_input_say_misfit(const char *name, double misfit, double voxel_size, const ms_mesh *mesh);
+void ms_input_say_misfit(const char *name, double misfit, double voxel_size, double shortest_side);
+
+double ms_input_shortest_side(const ms_mesh *mesh);
 
 /** The largest grid that the memory allowed admits. */
 size_t ms_input_max_voxels(const ms_input_flags *flags);
