@@ -18,7 +18,8 @@ static ms_status make_input(ms_shared_input *shared, ms_queue_place *place)
 {
     ms_status status = shared->read(&shared->input, shared->name, &shared->flags, &shared->cause);
     if (status == MS_OK) {
-        ms_queue_need_memory(place, ms_input_bytes(&shared->input, &shared->flags), shared->flags.max_memory);
+        shared->bytes = ms_input_bytes(&shared->input, &shared->flags);
+        ms_queue_need_memory(place, shared->bytes, shared->flags.max_memory);
         status = ms_input_target(&shared->input, &shared->flags, &shared->cause);
     }
     return status;
@@ -31,13 +32,16 @@ ms_status ms_shared_input_need(ms_shared_input *shared, ms_queue_place *place)
         pthread_mutex_lock(&shared->lock);
         pthread_mutex_unlock(&shared->lock);
         ms_queue_resume(place); /* not under the lock, which the run that is alone may need */
-        return shared->status;
+    } else {
+        if (!shared->is_made) {
+            shared->status = make_input(shared, place);
+            shared->is_made = 1;
+        }
+        pthread_mutex_unlock(&shared->lock);
     }
-    if (!shared->is_made) {
-        shared->status = make_input(shared, place);
-        shared->is_made = 1;
+    if (shared->status == MS_OK) { /* each run on it takes memory of its own */
+        ms_queue_need_memory(place, shared->bytes, shared->flags.max_memory);
     }
-    pthread_mutex_unlock(&shared->lock);
     return shared->status;
 }
 

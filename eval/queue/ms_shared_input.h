@@ -19,6 +19,7 @@ typedef struct ms_shared_input {
     int is_made;
     ms_status status;
     ms_error cause; /* where status is not MS_OK */
+    double bytes;   /* of the target and a run on it */
     ms_input input; /* without a target: what is known of the file */
     pthread_mutex_t lock;
 } ms_shared_input;

@@ -142,11 +142,11 @@ static void work_run(void *context, size_t at, ms_queue_place *place)
     stability_walk *w = context;
     ms_shared_input *shared = w->job[at].shared;
     ms_stability_run *run = &w->run[w->job[at].run];
-    run->beside = ms_queue_beside(place);
     if (ms_shared_input_need(shared, place) == MS_OK) {
         const ms_stability s = {
             .input = &shared->input, .seed = w->plan->seed, .flags = w->plan->flags, .place = place};
         ms_stability_try(run, &s);
+        run->beside = ms_queue_beside(place);
     } else {
         run->cause = shared->cause;
         run->outcome = MS_OUTCOMES;
