@@ -173,7 +173,8 @@ static ms_status open_rows(ms_stability_rows *rows, const stability_arguments *a
     if (status == MS_OK && ms_files_is_stream(a->output)) {
         rows->stream = strcmp(a->output, "-") == 0 ? stdout : fopen(a->output, "w");
         if (!rows->stream || fprintf(rows->stream, "%s\n", header) < 0 || fflush(rows->stream) != 0) {
-            status = ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s; is the disk full?", a->output, strerror(errno));
+            status =
+                ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s; is the disk full?", a->output, strerror(errno));
         }
     } else if (status == MS_OK) {
         status = ms_csv_open(&rows->csv, a->output, header, a->resume, err);

@@ -29,8 +29,8 @@ void ms_shared_input_begin(ms_shared_input *shared, const char *name, ms_shared_
                            const ms_input_flags *flags, size_t users);
 
 /**
- * Has it made, if it is not yet, or waits until another run has made it. A target too large for one of several runs side
- * by side has this run wait until it is alone (ms_queue_need_memory, by --max-memory).
+ * Has it made, if it is not yet, or waits until another run has made it. A target too large for one of several runs
+ * side by side has this run wait until it is alone (ms_queue_need_memory, by --max-memory).
  *
  * @param place of the run
  * @return whether there is a target: shared->status

@@ -32,7 +32,8 @@ ms_status ms_stability_try_shapes(const ms_stability_plan *plan, ms_error *err);
 
 /**
  * Does the runs side by side (ms_queue.h) and adds a row of each as soon as those before are there, so that a run that
- * is killed can be taken up: rows that the table has already must be the first ones of this plan, and are not run again.
+ * is killed can be taken up: rows that the table has already must be the first ones of this plan, and are not run
+ * again.
  *
  * @param[out] run ms_stability_count values, in the order of the rows
  * @return MS_OK, also where runs failed; MS_ERR_ARG for rows of another plan; of a shape, as ms_input_read and
