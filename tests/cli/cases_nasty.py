@@ -22,7 +22,7 @@ class Names(Case):
                 self.assertEqual(self.mskit("info", "--json", "--", shape).json["path"], shape)
                 self.mskit("score", "--target", shape, "--cells", "20", "--", clump)
                 self.mskit("generate", *RUN, "--", shape)
-                self.assertIn(re.sub('[\n"$\\\\*|]', "_", name) + "-mss.csv", self.files())
+                self.assertIn(re.sub('[\n"$\\\\*|]', "_", name) + "-variational.csv", self.files())
                 result = self.assert_refused("info", "--", name + "missing.stl", code=1)
                 self.assertIn(name + "missing.stl: cannot be opened", result.err)
 
