@@ -15,7 +15,7 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 import zlib
 
-from support import MSKIT, Case, box_obj, fnv1a, npy
+from support import MSKIT, TIMEOUT, Case, box_obj, fnv1a, npy
 
 TIMES = ("seconds_read", "seconds_voxelize", "seconds_distance", "seconds_generate", "seconds_score",
          "seconds_correct", "peak_memory_kb", "beside")
@@ -173,7 +173,7 @@ class Resume(Compare):
         for rows_there in (1, 4):
             process = subprocess.Popen([MSKIT, *args, "-o", "killed.csv"], cwd=self.dir, stdout=subprocess.DEVNULL,
                                        stderr=subprocess.DEVNULL)
-            deadline = time.monotonic() + 30
+            deadline = time.monotonic() + TIMEOUT
             while time.monotonic() < deadline and process.poll() is None:
                 if os.path.exists(self.path("killed.csv")) and self.read("killed.csv").count(b"\n") > rows_there:
                     break
