@@ -1,10 +1,12 @@
 /* mskit info SHAPE */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/ms_input.h"
 #include "cli/ms_json_object.h"
+#include "cli/ms_label_list.h"
 #include "cli/ms_report.h"
 #include "ms_commands.h"
 
@@ -173,13 +175,58 @@ static json_t *facts_json(const info_facts *f)
     return json;
 }
 
+/* Of a volume of several labels, of which none was chosen. */
+static ms_status list_labels(const ms_input *input, const ms_labels *labels, int as_json, ms_error *err)
+{
+    const ms_volume *v = &input->volume;
+    ms_label_row *row;
+    ms_status status = ms_label_list_make(&row, labels, v, err);
+    if (status == MS_OK && as_json) {
+        status =
+            ms_report_print(stdout,
+                            json_pack("{s:o,s:[i,i,i],s:f,s:[f,f,f],s:o}", "path", ms_report_text(input->path), "n",
+                                      v->n[0], v->n[1], v->n[2], "spacing", v->spacing, "origin", v->origin[0],
+                                      v->origin[1], v->origin[2], "labels", ms_label_list_json(row, labels->count)),
+                            err);
+    } else if (status == MS_OK) {
+        printf("%s: %dx%dx%d voxels of %.9g, %zu labels; --label L tells more of one\n", input->path, v->n[0], v->n[1],
+               v->n[2], v->spacing, labels->count);
+        ms_label_list_print(stdout, row, labels->count);
+    }
+    free(row);
+    return status;
+}
+
+static ms_status tell_shape(ms_input *input, const ms_input_flags *flags, int as_json, ms_error *err)
+{
+    info_facts f;
+    const ms_status status = gather(&f, input, flags, err);
+    if (status == MS_OK && as_json) {
+        return ms_report_print(stdout, facts_json(&f), err);
+    }
+    if (status == MS_OK) {
+        print_facts(&f);
+    }
+    return status;
+}
+
+static ms_status tell_volume(ms_input *input, const ms_input_flags *flags, int as_json, ms_error *err)
+{
+    ms_labels labels;
+    ms_status status = ms_labels_find(&labels, &input->volume, err);
+    if (status == MS_OK) {
+        status = labels.count > 1 ? list_labels(input, &labels, as_json, err) : tell_shape(input, flags, as_json, err);
+        ms_labels_free(&labels);
+    }
+    return status;
+}
+
 static int run_info(const ms_command *command, int argc, char **argv)
 {
     info_arguments a = {0};
     int first;
     ms_error err;
     ms_input input;
-    info_facts f;
     ms_input_defaults(&a.input);
     const int code = ms_flags_parse(&first, command, 0, argc, argv, take_info_flag, &a);
     if (code != MS_FLAGS_GO_ON) {
@@ -192,19 +239,14 @@ static int run_info(const ms_command *command, int argc, char **argv)
     if (status != MS_OK) {
         return ms_flags_fail(command, &err);
     }
-    status = gather(&f, &input, &a.input, &err);
-    if (status == MS_OK && a.json) {
-        status = ms_report_print(stdout, facts_json(&f), &err);
-    } else if (status == MS_OK) {
-        print_facts(&f);
-    }
+    status = (input.volume.label && !a.input.label ? tell_volume : tell_shape)(&input, &a.input, a.json, &err);
     ms_input_free(&input);
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
 const ms_command ms_command_info = {
     .name = "info",
-    .summary = "what a shape is: closed or not, volume, inertia, principal frame",
+    .summary = "what a shape is: closed or not, volume, inertia, principal frame; the labels of a volume",
     .usage = "SHAPE [--json] [--label L]",
     .example = "mskit info grain.stl",
     .flags = FLAGS,

@@ -31,7 +31,7 @@ class Volume(Case):
 
     def test_several_labels_need_a_choice(self):
         self.write("c.csv", "10,10,8,3\n")
-        for command in (("info", "two.npy"), ("generate", "two.npy"), ("score", "c.csv", "--target", "two.npy")):
+        for command in (("generate", "two.npy"), ("score", "c.csv", "--target", "two.npy")):
             self.assert_refused(*command, code=1, says=("several labels", "--label"))
 
     def test_a_label_that_is_not_there(self):
@@ -51,6 +51,23 @@ class Volume(Case):
             others = [side[a] ** 2 for a in range(3) if a != axis]
             self.assert_close(info["inertia"][axis][axis], VOXELS[2] * sum(others) / 12, 1e-12, "moment of a cuboid")
         self.assertIsNone(info["area"])
+
+    def test_info_lists_the_labels(self):
+        """Of several labels each has a line: voxels, box, pieces, and whether the border cuts it."""
+        listed = labels()
+        listed[0] = 2  # a voxel in the corner, apart from the others
+        self.write("cut.npy", npy(listed, SIZE[::-1]))
+        info = self.mskit("info", "cut.npy", "--json").json
+        self.assertEqual((info["n"], info["spacing"], info["origin"]), (list(SIZE), 1, [0, 0, 0]))
+        (lo, hi), first = zip(*BOXES[1]), {"label": 1, "voxels": VOXELS[1], "pieces": 1, "largest_piece": VOXELS[1]}
+        self.assertEqual(info["labels"][0], {**first, "box_lo": list(lo), "box_hi": list(hi), "cut_by_border": False})
+        self.assertEqual(info["labels"][1], {"label": 2, "voxels": VOXELS[2] + 1, "box_lo": [0, 0, 0],
+                                             "box_hi": [hi for _, hi in BOXES[2]], "pieces": 2,
+                                             "largest_piece": VOXELS[2], "cut_by_border": True})
+        out = self.mskit("info", "cut.npy").out
+        self.assertIn("2 labels", out)
+        self.assertRegex(out, f"(?m)^ +2 +{VOXELS[2] + 1} +0,0,0 +20,16,12 +2 +cuts it$")
+        self.assertRegex(out, f"(?m)^ +1 +{VOXELS[1]} +1,1,1 +4,3,2 +1 +$")
 
     def test_a_label_in_pieces(self):
         """A grain is one piece: what touches nowhere is said, with the size of the largest piece."""
