@@ -224,7 +224,9 @@ static ms_status check_memory(const double n[3], const ms_input_flags *flags, ms
                        "cells or raise --max-memory",
                        n[0], n[1], n[2], bytes / 1e9, flags->max_memory / 1e9);
     }
-    fprintf(stderr, "grid: %.0fx%.0fx%.0f voxels, about %.3g MB\n", n[0], n[1], n[2], bytes / 1e6);
+    if (!flags->quiet) {
+        fprintf(stderr, "grid: %.0fx%.0fx%.0f voxels, about %.3g MB\n", n[0], n[1], n[2], bytes / 1e6);
+    }
     return MS_OK;
 }
 

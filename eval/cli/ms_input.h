@@ -21,6 +21,7 @@ typedef struct ms_input_flags {
     uint32_t label;
     double max_memory; /* bytes */
     int threads;       /* 0: all */
+    int quiet;         /* nonzero: the size of the grid is not said */
 } ms_input_flags;
 
 /* clang-format off */

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ms_text.h"
 #include "cli/ms_input.h"
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
@@ -12,17 +11,13 @@
 #include "cli/ms_recipe.h"
 #include "cli/ms_record.h"
 #include "cli/ms_report.h"
+#include "cli/ms_until.h"
 #include "ms_commands.h"
 #include "ms_curve.h"
 
-enum { DEFAULT_SPHERES = 50 };
-
 static const ms_flag FLAGS[] = {
     MS_RECIPE_FLAGS,
-    {"spheres", 'n', "N", "at most N spheres (50, if no --until is given)"},
-    {"until", 0, "MEASURE=VALUE",
-     "end when " MS_MEASURE_GOAL_NAMES
-     "whichever is named, is as good, or spheres would be smaller than radius; may be repeated"},
+    MS_UNTIL_FLAGS,
     MS_OUTPUT_FLAGS,
     {"correct", 0, NULL, "give the spheres masses that sum to the true mass and inertia; takes --density"},
     MS_MASS_FLAGS,
@@ -48,28 +43,9 @@ typedef struct generate_arguments {
     int json;
 } generate_arguments;
 
-static ms_status take_until(generate_arguments *a, const char *text, ms_error *err)
-{
-    char name[64];
-    const char *value = NULL;
-    double number;
-    ms_status status = ms_recipe_assignment(name, &value, text, err);
-    if (status != MS_OK) {
-        return status;
-    }
-    const ms_word word = {value, value ? strlen(value) : 0};
-    ms_stop known = {0};
-    status = ms_stop_set(&known, name, 1, err); /* is there such a measure? */
-    if (status == MS_OK && (word.length == 0 || !ms_text_to_double(&number, &word))) {
-        return ms_fail(err, MS_ERR_ARG, "--until '%s' is not of the form MEASURE=VALUE, as %s=0.05", text, name);
-    }
-    return status == MS_OK ? ms_stop_set(&a->stop, name, number, err) : status;
-}
-
 static ms_status take_generate_flag(void *context, const char *name, const char *value, ms_error *err)
 {
     generate_arguments *a = context;
-    double number;
     int taken;
     ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
     if (!taken) {
@@ -78,12 +54,10 @@ static ms_status take_generate_flag(void *context, const char *name, const char 
     if (!taken) {
         status = ms_outputs_flag(&taken, &a->outputs, name, value, err);
     }
-    if (taken) {
-        return status;
+    if (!taken) {
+        status = ms_until_flag(&taken, &a->stop, name, value, err);
     }
-    if (strcmp(name, "spheres") == 0) {
-        status = ms_flags_whole(&number, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
-        a->stop.spheres = status == MS_OK ? (size_t)number : 0;
+    if (taken) {
         return status;
     }
     if (strcmp(name, "target-grid") == 0) {
@@ -97,9 +71,6 @@ static ms_status take_generate_flag(void *context, const char *name, const char 
     if (strcmp(name, "json") == 0 || strcmp(name, "correct") == 0) {
         *(name[0] == 'j' ? &a->json : &a->correct) = 1;
         return MS_OK;
-    }
-    if (strcmp(name, "until") == 0) {
-        return take_until(a, value, err);
     }
     return ms_recipe_flag(&taken, &a->recipe, name, value, err);
 }
@@ -346,9 +317,7 @@ static int execute_generate(const ms_command *command, const generate_arguments 
 /* What follows from all flags together. */
 static ms_status resolve_generate(generate_arguments *a, ms_error *err)
 {
-    if (ms_stop_is_none(&a->stop)) {
-        a->stop.spheres = DEFAULT_SPHERES;
-    }
+    ms_until_resolve(&a->stop);
     ms_status status = ms_recipe_resolve(&a->recipe, err);
     if (status == MS_OK) {
         status = resolve_masses(a, err);

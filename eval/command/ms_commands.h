@@ -9,6 +9,7 @@ extern const ms_command ms_command_convert;
 extern const ms_command ms_command_correct;
 extern const ms_command ms_command_generate;
 extern const ms_command ms_command_generators;
+extern const ms_command ms_command_grains;
 extern const ms_command ms_command_help;
 extern const ms_command ms_command_info;
 extern const ms_command ms_command_scene;

@@ -1,0 +1,244 @@
+/* mskit grains SOURCE... -o DIR */
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/ms_text.h"
+#include "cli/ms_outputs.h"
+#include "cli/ms_report.h"
+#include "cli/ms_until.h"
+#include "grains/ms_grain_merge.h"
+#include "grains/ms_grains.h"
+#include "ms_commands.h"
+
+static const ms_flag FLAGS[] = {
+    MS_RECIPE_FLAGS,
+    MS_UNTIL_FLAGS,
+    {"output", 'o', "DIR", "the clumps, a folder for each thousand, and the table grains.csv"},
+    {"format", 0, "F", "format of the clumps; may be repeated (csv)"},
+    MS_MASS_FLAGS,
+    {"skip-border", 0, NULL, "leave out grains that the border of their volume cuts"},
+    {"least-voxels", 0, "N", "leave out labels of fewer voxels"},
+    {"resume", 0, NULL, "go on with the table that is in DIR"},
+    {"part", 0, "K/N", "make the K-th of N parts alone, of about the same work, with a table of its own"},
+    {"merge", 0, NULL, "join the tables of all parts in the folders DIR..., which stand in the place of sources"},
+    {"dry-run", 0, NULL, "say what would be done, and how long it would take by three of the grains"},
+    {"json", 0, NULL, "the sums as JSON on standard output"},
+    MS_INPUT_FLAGS,
+    {0},
+};
+
+typedef struct grains_arguments {
+    ms_grain_how how;
+    ms_mass_flags mass;
+    ms_grains grains;
+    const char *folder;
+    int resume, merge, dry_run, json;
+} grains_arguments;
+
+static ms_status take_part(ms_grains *g, const char *text, ms_error *err)
+{
+    int64_t part = 0, parts = 0;
+    const char *slash = strchr(text, '/');
+    const ms_word first = {text, slash ? (size_t)(slash - text) : 0},
+                  second = {slash + 1, slash ? strlen(slash + 1) : 0};
+    if (!slash || !ms_text_to_integer(&part, &first) || !ms_text_to_integer(&parts, &second) || part < 1 ||
+        parts < part || parts > 1000000) {
+        return ms_fail(err, MS_ERR_ARG, "--part '%.40s' is not of the form K/N, as 3/16, with K from 1 to N", text);
+    }
+    g->part = (size_t)part;
+    g->parts = (size_t)parts;
+    return MS_OK;
+}
+
+static ms_status take_format(ms_grains *g, const char *name, ms_error *err)
+{
+    const ms_format *format = ms_write_format_find(name, err);
+    for (size_t f = 0; f < g->n_formats && format; f++) {
+        if (g->format[f] == format) {
+            return ms_fail(err, MS_ERR_ARG, "--format %s is given twice", name);
+        }
+    }
+    if (format) {
+        g->format[g->n_formats++] = format; /* there are fewer formats than room */
+    }
+    return format ? MS_OK : MS_ERR_ARG;
+}
+
+static ms_status take_grains_flag(void *context, const char *name, const char *value, ms_error *err)
+{
+    grains_arguments *a = context;
+    const struct {
+        const char *name;
+        int *is_set;
+    } words[] = {{"skip-border", &a->grains.skip_border},
+                 {"resume", &a->resume},
+                 {"merge", &a->merge},
+                 {"dry-run", &a->dry_run},
+                 {"json", &a->json}};
+    int taken;
+    ms_status status = ms_mass_flag(&taken, &a->mass, name, value, err);
+    if (taken) {
+        return status;
+    }
+    for (size_t w = 0; w < sizeof words / sizeof *words; w++) {
+        if (strcmp(name, words[w].name) == 0) {
+            *words[w].is_set = 1;
+            return MS_OK;
+        }
+    }
+    if (strcmp(name, "output") == 0) {
+        a->folder = value;
+        return MS_OK;
+    }
+    if (strcmp(name, "format") == 0) {
+        return take_format(&a->grains, value, err);
+    }
+    if (strcmp(name, "least-voxels") == 0) {
+        return ms_flags_whole(&a->grains.least_voxels, name, value, 1, 9007199254740992.0, err);
+    }
+    return strcmp(name, "part") == 0 ? take_part(&a->grains, value, err)
+                                     : ms_grain_how_flag(&taken, &a->how, name, value, err);
+}
+
+static ms_status resolve_formats(grains_arguments *a, ms_error *err)
+{
+    ms_grains *g = &a->grains;
+    if (g->n_formats == 0) {
+        g->format[g->n_formats++] = ms_write_format_find("csv", err);
+    }
+    for (size_t f = 0; f < g->n_formats; f++) {
+        if (g->format[f]->need != MS_NEED_SPHERES && !g->mass) {
+            return ms_fail(err, MS_ERR_ARG, "a %s template takes the mass of the grain: give --density RHO beside it",
+                           g->format[f]->name);
+        }
+        for (size_t before = 0; before < f; before++) {
+            if (strcmp(g->format[f]->ending, g->format[before]->ending) == 0) {
+                return ms_fail(err, MS_ERR_ARG, "files of %s and %s would have the same names; choose one of them",
+                               g->format[f]->name, g->format[before]->name);
+            }
+        }
+    }
+    return MS_OK;
+}
+
+/* What follows from all flags together. */
+static ms_status resolve_grains(grains_arguments *a, ms_error *err)
+{
+    if (!a->folder || a->folder[0] == '\0') {
+        return ms_fail(err, MS_ERR_ARG, "takes -o DIR, a folder for the clumps and their table");
+    }
+    if (a->mass.any && !(a->mass.density > 0)) {
+        return ms_fail(err, MS_ERR_ARG, "flags about masses take --density RHO beside them, in kg/m^3");
+    }
+    ms_status status = ms_mass_resolve(&a->mass, err);
+    a->grains.mass = a->mass.density > 0 ? &a->mass : NULL;
+    a->grains.folder = a->folder;
+    a->grains.threads = a->how.input.threads;
+    if (status == MS_OK) {
+        status = resolve_formats(a, err);
+    }
+    return status == MS_OK ? ms_grain_how_resolve(&a->how, err) : status;
+}
+
+static ms_status report_sum(const ms_grains_sum *sum, const char *table, int as_json, ms_error *err)
+{
+    if (as_json) {
+        return ms_report_print(stdout,
+                               json_pack("{s:o,s:I,s:I,s:I,s:I,s:f}", "table", ms_report_text(table), "grains",
+                                         (json_int_t)sum->grains, "ok", (json_int_t)sum->ok, "left_out",
+                                         (json_int_t)sum->left_out, "failed", (json_int_t)sum->failed, "spheres",
+                                         sum->spheres),
+                               err);
+    }
+    printf("wrote %s: %zu grains, %zu with a clump, %.0f spheres in all", table, sum->grains, sum->ok, sum->spheres);
+    printf("%s%zu left out, %zu failed%s\n", "; ", sum->left_out, sum->failed,
+           sum->failed + sum->left_out ? ": see the column cause" : "");
+    return MS_OK;
+}
+
+static ms_status make_all(const grains_arguments *a, ms_error *err)
+{
+    char table[4096];
+    ms_csv csv = {.fd = -1};
+    ms_grains_sum sum;
+    char *header = ms_grain_row_line(NULL);
+    ms_status status =
+        header ? ms_outputs_make_folder(a->folder, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the header");
+    ms_grains_table(table, sizeof table, &a->grains);
+    if (status == MS_OK) {
+        status = ms_csv_open(&csv, table, header, a->resume, err);
+    }
+    free(header);
+    if (status == MS_OK) {
+        status = ms_grains_make(&sum, &csv, &a->grains, err);
+    }
+    ms_csv_close(&csv);
+    if (status == MS_OK) {
+        status = report_sum(&sum, table, a->json, err);
+    }
+    if (status == MS_OK && sum.ok == 0 && sum.failed > 0) {
+        status = ms_fail(err, MS_ERR_SHAPE, "%s: not one grain has a clump; the column cause says why", table);
+    }
+    return status;
+}
+
+static ms_status try_three(const grains_arguments *a, ms_error *err)
+{
+    double seconds;
+    int tried;
+    const int threads = a->grains.threads ? a->grains.threads : omp_get_max_threads();
+    const ms_status status = ms_grains_try(&seconds, &tried, &a->grains, err);
+    if (status == MS_OK) {
+        printf("%zu grains of %zu sources into %s, in all about %.3g s of one thread, %.3g s of %d, by three of them "
+               "(%d made a clump); nothing is written\n",
+               a->grains.list->count, a->grains.list->n_sources, a->folder, seconds, seconds / threads, threads, tried);
+    }
+    return status;
+}
+
+static ms_status execute_grains(grains_arguments *a, char *const *words, size_t count, ms_error *err)
+{
+    ms_grain_list list;
+    ms_status status = ms_grain_list_make(&list, words, count, &a->how, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    a->grains.list = &list;
+    status = a->dry_run ? try_three(a, err) : make_all(a, err);
+    ms_grain_list_free(&list);
+    return status;
+}
+
+static int run_grains(const ms_command *command, int argc, char **argv)
+{
+    grains_arguments a = {.how = ms_grain_how_default(), .grains = {.part = 1, .parts = 1}};
+    int first;
+    ms_error err;
+    int code = ms_flags_parse(&first, command, 1, argc, argv, take_grains_flag, &a);
+    if (code == MS_FLAGS_GO_ON && first >= argc) {
+        code = ms_flags_wrong_usage(command, "takes volumes, meshes, folders, patterns or manifests");
+    }
+    if (code == MS_FLAGS_GO_ON) {
+        const size_t count = (size_t)(argc - first);
+        ms_status status = resolve_grains(&a, &err);
+        if (status != MS_OK) {
+            code = ms_flags_refuse(command, status, &err);
+        } else {
+            status = a.merge ? ms_grain_merge(a.folder, argv + first, count, &err)
+                             : execute_grains(&a, argv + first, count, &err);
+            code = status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
+        }
+    }
+    ms_grain_how_free(&a.how);
+    return code;
+}
+
+const ms_command ms_command_grains = {
+    .name = "grains",
+    .summary = "a clump for every grain of volumes, folders or a manifest",
+    .usage = "SOURCE... -o DIR [-g NAME] [-n N] [--until MEASURE=VALUE]... [--format F]... [--part K/N] [--resume]",
+    .example = "mskit grains scan.npy -n 20 --least-voxels 100 --skip-border -o clumps",
+    .flags = FLAGS,
+    .run = run_grains,
+};

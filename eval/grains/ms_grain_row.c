@@ -1,0 +1,186 @@
+#include "ms_grain_row.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/ms_escape.h"
+#include "base/ms_file.h"
+#include "base/ms_text.h"
+#include "chart/ms_csv.h"
+
+#define STATUS_NAME(code, name) name,
+static const char *const STATUS[] = {MS_GRAIN_STATUS_LIST(STATUS_NAME)};
+
+enum { A_THOUSAND = 1000 };
+
+void ms_grain_row_path(char *out, size_t size, const char *folder, const ms_grain_row *row)
+{
+    snprintf(out, size, "%s%s%04zu/%s", folder, folder[0] ? "/" : "", (row->number - 1) / A_THOUSAND, row->grain->name);
+}
+
+/* Empty where there is none. */
+static void put_number(FILE *stream, double value)
+{
+    fprintf(stream, ",%s", isfinite(value) ? ms_text_of_number(value).text : "");
+}
+
+static void put_options(FILE *stream, const ms_recipe *recipe)
+{
+    char text[1024] = "";
+    for (int w = 0; w < recipe->n_wishes; w++) {
+        const ms_wish *wish = &recipe->wish[w];
+        const size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, "%s%s%s%s", used ? "," : "", wish->name ? wish->name : "",
+                 wish->name && wish->text ? "=" : "", wish->text ? wish->text : "");
+    }
+    fputc(',', stream);
+    ms_escape_csv(stream, text);
+}
+
+/* The stop rule, as eta=0.1 dice=0.05. */
+static void put_until(FILE *stream, const ms_stop *stop)
+{
+    const char *before = "";
+    fputc(',', stream);
+    for (const ms_measure *m = ms_measures; m->name; m++) {
+        if (ms_stop_asked(stop, m) > 0) {
+            fprintf(stream, "%s%s=%s", before, m->name, ms_text_of_number(ms_stop_asked(stop, m)).text);
+            before = " ";
+        }
+    }
+    if (stop->radius > 0) {
+        fprintf(stream, "%sradius=%s", before, ms_text_of_number(stop->radius).text);
+    }
+}
+
+static void print_key(FILE *stream, const ms_grain_row *row)
+{
+    const ms_grain_how *how = row->grain->how;
+    fprintf(stream, "%zu,%zu,", row->number, row->count);
+    ms_escape_csv_path(stream, row->grain->source->path);
+    fprintf(stream, ",%016" PRIx64 ",", row->checksum);
+    if (row->grain->label) {
+        fprintf(stream, "%lu", (unsigned long)row->grain->label);
+    }
+    fprintf(stream, ",%s", how->recipe.generator->name);
+    put_options(stream, &how->recipe);
+    put_number(stream, how->recipe.seed);
+    put_number(stream, how->stop.spheres ? (double)how->stop.spheres : (double)NAN);
+    put_until(stream, &how->stop);
+    fputc(',', stream);
+}
+
+static void print_masses(FILE *stream, const ms_mass *mass)
+{
+    const int corrected = mass && mass->corrected;
+    put_number(stream, corrected ? mass->report.epsilon : (double)NAN);
+    put_number(stream, corrected ? mass->report.products : (double)NAN);
+    put_number(stream, corrected ? mass->report.centre : (double)NAN);
+}
+
+static void print_results(FILE *stream, const ms_grain_row *row)
+{
+    const ms_result *r = row->result;
+    char path[512] = "";
+    const ms_label_entry *entry = ms_labels_entry(&row->grain->source->labels, row->grain->label);
+    if (r) {
+        ms_grain_row_path(path, sizeof path, "", row);
+        snprintf(path + strlen(path), sizeof path - strlen(path), ".%s", row->ending);
+    }
+    fprintf(stream, "%s,%s", STATUS[row->status], path);
+    put_number(stream, r ? (double)r->clump.n_spheres : (double)NAN);
+    fprintf(stream, ",%s", r ? ms_stop_name(r->reason) : "");
+    put_number(stream, entry ? (double)entry->voxels : (double)NAN);
+    put_number(stream, row->pieces);
+    put_number(stream, entry ? (double)entry->cut : (double)NAN);
+    put_number(stream, row->voxel_size);
+    put_number(stream, row->volume);
+    put_number(stream, cbrt(6 * row->volume / acos(-1.0)));
+    for (const ms_measure *m = ms_measures; m->name; m++) {
+        put_number(stream, r ? m->of_metrics(&r->metrics) : (double)NAN);
+    }
+    print_masses(stream, r ? &r->mass : NULL);
+    put_number(stream, row->seconds);
+    fprintf(stream, ",%d,", row->beside);
+    if (r) {
+        const ms_bytes bytes = {(uint8_t *)r->clump.sphere, r->clump.n_spheres * sizeof *r->clump.sphere};
+        fprintf(stream, "%016" PRIx64, ms_file_checksum(&bytes));
+    }
+    fputc(',', stream);
+    ms_escape_csv(stream, row->cause.text);
+}
+
+static void print_header(FILE *stream)
+{
+    fputs("grain,grains,source,checksum,label,generator,options,seed,n_asked,until,status,file,n,stopped_by,voxels,"
+          "pieces,"
+          "cut_by_border,voxel_size,volume,equivalent_diameter",
+          stream);
+    for (const ms_measure *m = ms_measures; m->name; m++) {
+        fprintf(stream, ",%s", ms_measure_column(m, m->in_compare));
+    }
+    fputs(",epsilon,products_epsilon,centre_epsilon,seconds,beside,spheres_fnv1a,cause", stream);
+}
+
+char *ms_grain_row_line(const ms_grain_row *row)
+{
+    char *line = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&line, &size);
+    if (!stream) {
+        return NULL;
+    }
+    if (row) {
+        print_key(stream, row);
+        print_results(stream, row);
+    } else {
+        print_header(stream);
+    }
+    return fclose(stream) == 0 ? line : NULL;
+}
+
+enum { MOST_COLUMNS = 64 + MS_MEASURES };
+
+/* The field of a column in a line that is cut; NULL if it is not there. */
+static const char *find_field(char *const *field, size_t count, const char *column)
+{
+    char *name[MOST_COLUMNS], *header = ms_grain_row_line(NULL);
+    const size_t columns = header ? ms_csv_split(name, MOST_COLUMNS, header) : 0;
+    const char *found = NULL;
+    for (size_t c = 0; c < columns && columns == count; c++) {
+        found = strcmp(name[c], column) == 0 ? field[c] : found;
+    }
+    free(header);
+    return found;
+}
+
+ms_status ms_grain_row_read(ms_grain_status *status, double *spheres, const char *line, ms_error *err)
+{
+    char *field[MOST_COLUMNS], *copy = strdup(line);
+    const size_t count = copy ? ms_csv_split(field, MOST_COLUMNS, copy) : 0;
+    const char *named = find_field(field, count, "status"), *n = find_field(field, count, "n");
+    int found = 0;
+    for (int s = 0; s < MS_GRAIN_STATUSES && named; s++) {
+        if (strcmp(named, STATUS[s]) == 0) {
+            *status = (ms_grain_status)s;
+            found = 1;
+        }
+    }
+    *spheres = n ? strtod(n, NULL) : 0;
+    free(copy);
+    return found ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "has no status of a grain");
+}
+
+char *ms_grain_row_key(const ms_grain_row *row)
+{
+    char *key = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&key, &size);
+    if (!stream) {
+        return NULL;
+    }
+    print_key(stream, row);
+    return fclose(stream) == 0 ? key : NULL;
+}
