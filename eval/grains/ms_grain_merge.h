@@ -7,12 +7,12 @@
 #include "base/ms_error.h"
 
 /**
- * Joins the tables grains-K-of-N.csv of folders into FOLDER/grains.csv, with rows in the order of the grains. Parts must
- * be of one run and complete: 1 to N each once, and every grain once. Where a part is of another folder than the table,
- * its files get the folder in front.
+ * Joins the tables grains-K-of-N.csv of folders into FOLDER/grains.csv, with rows in the order of the grains. Parts
+ * must be of one run and complete: 1 to N each once, and every grain once. Where a part is of another folder than the
+ * table, its files get the folder in front.
  *
- * @return MS_OK; MS_ERR_ARG for parts that are missing, do not fit together or lack rows; MS_ERR_IO, also for a part that
- *         another process is still writing; MS_ERR_FORMAT; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for parts that are missing, do not fit together or lack rows; MS_ERR_IO, also for a part
+ *         that another process is still writing; MS_ERR_FORMAT; MS_ERR_NOMEM
  */
 ms_status ms_grain_merge(const char *folder, char *const *parts, size_t count, ms_error *err);
 

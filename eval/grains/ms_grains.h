@@ -31,9 +31,9 @@ typedef struct ms_grains_sum {
 void ms_grains_table(char *out, size_t size, const ms_grains *grains);
 
 /**
- * Makes the clumps of a part and adds their rows. Grains are dealt out by size, largest first, to and fro, so that parts
- * take about as long; rows of a part are in the order of the list. Rows that are there must be the first of this part,
- * and are not made again. A fault in one grain is its row, not the end.
+ * Makes the clumps of a part and adds their rows. Grains are dealt out by size, largest first, to and fro, so that
+ * parts take about as long; rows of a part are in the order of the list. Rows that are there must be the first of this
+ * part, and are not made again. A fault in one grain is its row, not the end.
  *
  * @param csv with the header of ms_grain_row_line
  * @return MS_OK; MS_ERR_ARG for rows of another run; MS_ERR_IO for rows that cannot be written; MS_ERR_NOMEM

@@ -52,7 +52,7 @@ ROOMS = {
     "eval/compare": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
                      "common/volume", "common/voxel", "generators", "eval/chart", "eval/cli", "eval/queue"],
     "eval/grains": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh/formats",
-                    "common/volume", "common/voxel", "generators", "eval/chart", "eval/cli", "eval/queue"],
+                    "common/volume", "generators", "eval/chart", "eval/cli", "eval/queue"],
     "eval/queue": ["common/base", "eval/cli"],
     "eval/scene": ["common/base", "common/clump", "common/measure", "generators", "eval/cli", "eval/queue"],
     "eval/stability": ["common/base", "common/clump", "common/measure", "common/mesh", "common/shape", "common/voxel",
