@@ -102,11 +102,11 @@ static size_t count_with_images(const solver *s)
 }
 
 /* All steps that are sure to come: rounds may be fewer, idle spheres bring more. */
-static double count_steps(const solver *s, int has_surplus)
+static double count_steps(const solver *s, double surplus)
 {
-    const double prune = DROP_STEPS / DROP;
-    return (has_surplus ? START_STEPS + prune : 0) + LONG_STEPS + LAST_STEPS +
-           s->settings->rounds * (DROP_STEPS + prune + LAST_STEPS);
+    const double batches = surplus > 0 ? ceil(surplus / ceil(DROP * surplus)) : 0;
+    return (surplus > 0 ? START_STEPS + DROP_STEPS * batches : 0) + LONG_STEPS + LAST_STEPS +
+           s->settings->rounds * (DROP_STEPS + DROP_STEPS / DROP + LAST_STEPS);
 }
 
 /* A measure is sought by several runs, whose number is not known. */
@@ -383,9 +383,9 @@ static ms_status replace_idle(solver *s, ms_error *err)
 static ms_status run_stages(solver *s, ms_error *err)
 {
     ms_status status = MS_OK;
-    const int has_surplus = count_with_images(s) > s->wanted;
-    s->planned = count_steps(s, has_surplus);
-    if (has_surplus) {
+    const double surplus = (double)count_with_images(s) - (double)s->wanted;
+    s->planned = count_steps(s, surplus);
+    if (surplus > 0) {
         status = fit_spheres(s, START_STEPS, 0.8, 0.2, err);
     }
     if (status == MS_OK) {
