@@ -18,8 +18,8 @@ MS_C_BEGIN
  */
 typedef int (*ms_progress)(void *context, size_t spheres, double dice);
 
-/** Is told what a run is at, in a word or two, and how much of it all is done: from 0 to 1, NAN where that is not known.
- * The thread that called the generator calls this. */
+/** Is told what a run is at, in a word or two, and how much of it all is done: from 0 to 1, NAN where that is not
+ * known. The thread that called the generator calls this. */
 typedef void (*ms_stage)(void *context, const char *stage, double share);
 
 /** Is told in one sentence what about the input, though allowed, makes the result worse than it could be, and how to
