@@ -25,7 +25,7 @@ static struct terminal {
     pthread_t thread;
     ms_progress_line line;
     char stage[48];
-    double opened, share, told; /* share of the part, NAN if not known, and when that was told */
+    double opened, share, told;     /* share of the part, NAN if not known, and when that was told */
     int is_open, is_drawn, is_left; /* to another who draws */
 } terminal = {.lock = PTHREAD_MUTEX_INITIALIZER, .closed = PTHREAD_COND_INITIALIZER};
 
