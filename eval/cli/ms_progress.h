@@ -18,8 +18,8 @@ typedef struct ms_progress_line {
  */
 void ms_progress_open(const ms_progress_line *line);
 
-/** Nonzero: runs are side by side, who has the line draws it, and none is opened until zero is given. By the thread that
- * starts the others, before it does and when they have ended. */
+/** Nonzero: runs are side by side, who has the line draws it, and none is opened until zero is given. By the thread
+ * that starts the others, before it does and when they have ended. */
 void ms_progress_leave(int is_left);
 
 /** What is at work now, how much of it being unknown. */
