@@ -47,6 +47,7 @@ static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump
     one.settings = &settings;
     one.stop = (ms_stop){0};
     one.stop.radius = run->stop.radius;
+    one.stage = NULL; /* the share told is that of all runs */
     ms_status status = ms_option_settings_init(&defaults, generator->options, err);
     settings = run->settings ? *run->settings : defaults;
     if (status == MS_OK) {
@@ -62,6 +63,7 @@ static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump
             break;
         }
         one.stop.spheres = n - 1;
+        ms_generator_stage(run, "curve", (double)(clump->n_spheres - n) / (double)clump->n_spheres);
         if (takes_clump(generator)) {
             settings.clump = *larger;
         }

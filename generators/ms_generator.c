@@ -7,6 +7,13 @@
 
 #include "voxel/ms_raster.h"
 
+void ms_generator_stage(const ms_run *run, const char *stage, double share)
+{
+    if (run->stage) {
+        run->stage(run->stage_context, stage, share);
+    }
+}
+
 void ms_generator_remark(const ms_run *run, const char *format, ...)
 {
     char sentence[512];

@@ -18,6 +18,10 @@ MS_C_BEGIN
  */
 typedef int (*ms_progress)(void *context, size_t spheres, double dice);
 
+/** Is told what a run is at, in a word or two, and how much of it all is done: from 0 to 1, NAN where that is not
+ * known. The thread that called the generator calls this. */
+typedef void (*ms_stage)(void *context, const char *stage, double share);
+
 /** Is told in one sentence what about the input, though allowed, makes the result worse than it could be, and how to
  * mend it. */
 typedef void (*ms_remark)(void *context, const char *sentence);
@@ -30,6 +34,8 @@ typedef struct ms_run {
     uint64_t seed;               /* for generators that draw random numbers */
     ms_progress progress;        /* NULL: nobody listens */
     void *progress_context;
+    ms_stage stage; /* NULL: nobody listens */
+    void *stage_context;
     ms_remark remark; /* NULL: nobody listens */
     void *remark_context;
 } ms_run;
@@ -86,6 +92,9 @@ MS_API const ms_generator *ms_generator_find(const char *name, ms_error *err);
  */
 MS_API ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
                                   const ms_run *run, ms_error *err);
+
+/** For generators: tells the run's listener, if there is one, what the run is at. */
+MS_API void ms_generator_stage(const ms_run *run, const char *stage, double share);
 
 /** For generators: tells the run's listener, if there is one, a sentence. */
 MS_API void ms_generator_remark(const ms_run *run, const char *format, ...) MS_PRINTF(2, 3);

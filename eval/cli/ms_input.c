@@ -9,6 +9,7 @@
 #include "base/ms_file.h"
 #include "base/ms_text.h"
 #include "mesh/formats/ms_mesh_read.h"
+#include "ms_progress.h"
 
 void ms_input_defaults(ms_input_flags *flags)
 {
@@ -81,8 +82,16 @@ ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, con
     return status;
 }
 
+static void open_line(const ms_input *input, const char *stage)
+{
+    const ms_progress_line line = {.name = input->path};
+    ms_progress_open(&line);
+    ms_progress_stage(stage);
+}
+
 static void say_repairs(const char *path, const ms_mesh_report *r)
 {
+    ms_progress_wipe();
     if (r->dropped_degenerate || r->dropped_duplicate) {
         fprintf(stderr, "%s: dropped %zu degenerate and %zu duplicate triangles\n", path, r->dropped_degenerate,
                 r->dropped_duplicate);
@@ -97,6 +106,7 @@ static void say_bodies(const ms_input *input)
 {
     const ms_solid *solid = &input->solid;
     const size_t bodies = input->report.bodies;
+    ms_progress_wipe();
     if (solid->overlapping) {
         const double whole = 0.01 * solid->body.volume;
         fprintf(
@@ -164,8 +174,10 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
     if (path[0] == '\0') {
         return ms_fail(err, MS_ERR_IO, "the name of the shape is empty; name a mesh or a volume");
     }
+    open_line(input, "reading");
     ms_status status = ms_file_read(&bytes, path, err);
     if (status != MS_OK) {
+        ms_progress_close();
         return status;
     }
     input->checksum = ms_file_checksum(&bytes);
@@ -180,6 +192,7 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
                          path);
     }
     ms_file_free(&bytes);
+    ms_progress_close();
     input->read_seconds = omp_get_wtime() - start;
     if (status != MS_OK) {
         ms_input_free(input);
@@ -234,6 +247,7 @@ static ms_status check_memory(const double n[3], const ms_input_flags *flags, ms
 static ms_status finish_target(ms_input *input, double start, ms_error *cause)
 {
     const double voxels = omp_get_wtime();
+    ms_progress_stage("distances");
     const ms_status status = ms_target_add_distance(&input->target, cause);
     input->voxelize_seconds = voxels - start;
     input->distance_seconds = omp_get_wtime() - voxels;
@@ -277,9 +291,11 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
     status = check_memory(n, flags, err);
     if (status == MS_OK) {
         const double start = omp_get_wtime();
+        open_line(input, "voxels");
         status = ms_target_voxels_from_solid(&input->target, &input->mesh, input->report.closed ? &input->solid : NULL,
                                              h, flags->rule, &cause);
         status = status == MS_OK ? finish_target(input, start, &cause) : status;
+        ms_progress_close();
         status = name_file(err, status, input, &cause);
     }
     if (status == MS_OK && !input->report.closed) {
@@ -327,8 +343,10 @@ static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags
     }
     if (status == MS_OK) {
         const double start = omp_get_wtime();
+        open_line(input, "voxels");
         status = ms_target_voxels_from_volume(&input->target, &input->volume, flags->label, &cause);
         status = status == MS_OK ? finish_target(input, start, &cause) : status;
+        ms_progress_close();
         status = name_file(err, status, input, &cause);
         input->target.rule = flags->rule; /* for the union; the voxels of the shape are given */
         say_pieces(input);

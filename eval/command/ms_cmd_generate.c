@@ -144,27 +144,28 @@ static ms_status try_generate_outputs(const generate_arguments *a, ms_error *err
     return status;
 }
 
-/* What the generators are given; a line is shown on a terminal only. */
-static ms_run make_run(const generate_arguments *a, const ms_input *input, ms_progress_line *line)
+/* What the generators are given. */
+static ms_run make_run(const generate_arguments *a, const ms_input *input)
 {
     ms_run run = {
         .target = &input->target, .stop = a->stop, .settings = &a->recipe.settings, .seed = (uint64_t)a->recipe.seed};
-    ms_progress_show(&run, line);
+    ms_progress_show(&run);
     return run;
 }
 
 static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_input *input, ms_error *err)
 {
     const char *name = a->recipe.generator->name;
-    ms_progress_line line = {.name = name};
-    ms_run run = make_run(a, input, &line);
+    ms_progress_line line = {.name = name, .goal = a->recipe.generator->nested ? a->stop.spheres : 0};
+    ms_run run = make_run(a, input);
     ms_progress_say_remarks(&run, &line);
+    ms_progress_open(&line);
     const double start = omp_get_wtime();
     ms_progress_catch(a->recipe.generator->nested); /* what others have before their end is no clump */
     ms_status status = ms_generator_run(&r->clump, &r->reason, a->recipe.generator, &run, err);
     ms_progress_catch(0);
     const double generated = omp_get_wtime();
-    ms_progress_clear(&line);
+    ms_progress_close();
     if (status == MS_OK && r->reason == MS_STOP_EXHAUSTED) {
         fprintf(stderr,
                 "%s: found no place for a further sphere after %zu; more cells may help, or its options (mskit help "
@@ -197,13 +198,14 @@ static ms_status add_masses(ms_result *r, const generate_arguments *a, const ms_
 static ms_status write_curve(const generate_arguments *a, const ms_input *input, const ms_clump *clump, ms_error *err)
 {
     ms_output output;
-    ms_progress_line line = {.name = "curve"};
-    const ms_run run = make_run(a, input, &line);
+    const ms_progress_line line = {.name = a->curve};
+    const ms_run run = make_run(a, input);
     ms_score *curve = malloc((clump->n_spheres + 1) * sizeof *curve);
     const size_t max_voxels = ms_input_max_voxels(&a->input);
+    ms_progress_open(&line);
     ms_status status = curve ? ms_curve_compute(curve, clump, a->recipe.generator, &run, max_voxels, err)
                              : ms_fail(err, MS_ERR_NOMEM, "no memory for the scores of %zu clumps", clump->n_spheres);
-    ms_progress_clear(&line);
+    ms_progress_close();
     if (status == MS_OK && (status = ms_output_open(&output, a->curve, err)) == MS_OK) {
         ms_report_curve(output.stream, curve, clump->n_spheres);
         status = ms_output_close(&output, MS_OK, err);

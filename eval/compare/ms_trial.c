@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
+#include "cli/ms_progress.h"
 #include "clump/ms_density.h"
 #include "measure/ms_metrics.h"
 
@@ -46,13 +46,14 @@ static double peak_memory(void)
     return isnan(peak) ? (double)usage.ru_maxrss : peak;
 }
 
-/* Notes when each number of spheres was there, and shows on a terminal how far the run is. */
+/* Notes when each number of spheres was there, and passes on how far the run is. */
 typedef struct trial_watch {
     const ms_trial_run *run;
-    double start, shown;
+    double start;
     size_t next;
     double *seconds;
-    int terminal;
+    ms_progress pass; /* NULL: the queue has the line */
+    void *context;
 } trial_watch;
 
 static int note_progress(void *context, size_t spheres, double dice)
@@ -62,34 +63,31 @@ static int note_progress(void *context, size_t spheres, double dice)
     while (w->next < w->run->n_asked && spheres >= w->run->asked[w->next]) {
         w->seconds[w->next++] = now - w->start;
     }
-    if (w->terminal && now - w->shown > 0.1) {
-        w->shown = now;
-        fprintf(stderr, "\r\033[K%s: %zu spheres", w->run->title, spheres);
-        if (!isnan(dice)) {
-            fprintf(stderr, ", D %.4f", dice);
-        }
-        fputc(' ', stderr);
-    }
-    return 0;
+    return w->pass ? w->pass(w->context, spheres, dice) : 0;
 }
 
 /* One run; a clump from before is replaced. */
 static ms_status run_once(ms_trial *trial, double *seconds, const ms_trial_run *run, const ms_target *target,
                           ms_error *err)
 {
-    trial_watch w = {
-        .run = run, .start = omp_get_wtime(), .seconds = seconds, .terminal = !run->beside && isatty(STDERR_FILENO)};
-    ms_run one = {.target = target,
-                  .settings = run->settings,
-                  .seed = run->seed,
-                  .progress = note_progress,
-                  .progress_context = &w};
+    trial_watch w = {.run = run, .seconds = seconds};
+    ms_run one = {.target = target, .settings = run->settings, .seed = run->seed};
     one.stop.spheres = run->asked[run->n_asked - 1];
     ms_clump_free(&trial->clump);
+    if (!run->beside) {
+        const ms_progress_line line = {.name = run->title, .goal = run->generator->nested ? one.stop.spheres : 0};
+        ms_progress_show(&one);
+        ms_progress_open(&line);
+    }
+    w.pass = one.progress;
+    w.context = one.progress_context;
+    one.progress = note_progress;
+    one.progress_context = &w;
+    w.start = omp_get_wtime();
     const ms_status status = ms_generator_run(&trial->clump, &trial->reason, run->generator, &one, err);
     const double whole = omp_get_wtime() - w.start;
-    if (w.shown > 0) {
-        fputs("\r\033[K", stderr);
+    if (!run->beside) {
+        ms_progress_close();
     }
     for (size_t k = 0; k < run->n_asked; k++) {
         if (k >= w.next || run->asked[k] >= trial->clump.n_spheres) {

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "cli/ms_progress.h"
+
 /* Shared by all places, under the lock. */
 typedef struct queue_state {
     const ms_queue *queue;
@@ -137,7 +139,9 @@ ms_status ms_queue_run(const ms_queue *queue, ms_error *err)
     }
     pthread_mutex_init(&s.lock, NULL);
     pthread_cond_init(&s.changed, NULL);
+    ms_progress_leave(s.places > 1);
     work_side_by_side(&s);
+    ms_progress_leave(0);
     clear_line(&s);
     pthread_cond_destroy(&s.changed);
     pthread_mutex_destroy(&s.lock);

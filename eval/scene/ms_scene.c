@@ -124,7 +124,7 @@ static ms_status make_templates(ms_scene_shape *shape, const char *title, const 
                                 const ms_scene_run *how, int beside, ms_error *err)
 {
     const ms_recipe *recipe = how->recipe;
-    ms_progress_line line = {.name = title};
+    ms_progress_line line = {.name = title, .goal = how->recipe->generator->nested ? how->max_spheres : 0};
     ms_stop_reason reason;
     ms_clump clump;
     ms_error cause;
@@ -132,17 +132,24 @@ static ms_status make_templates(ms_scene_shape *shape, const char *title, const 
     run.stop.spheres = how->max_spheres;
     run.stop.radius = how->min_radius;
     if (!beside) { /* else the queue has the line */
-        ms_progress_show(&run, &line);
+        ms_progress_show(&run);
+        ms_progress_open(&line);
+        run.stage = NULL; /* of all runs the first is a small part */
     }
     ms_progress_say_remarks(&run, &line);
     shape->input = ms_report_input_json(input);
     ms_status status = ms_generator_run(&clump, &reason, recipe->generator, &run, &cause);
     run.remark = NULL; /* once for a shape */
+    if (!beside) {
+        ms_progress_show(&run);
+    }
     if (status == MS_OK) {
         status = make_curve(shape, &clump, &run, recipe->generator, ms_input_max_voxels(how->input), &cause);
         ms_clump_free(&clump);
     }
-    ms_progress_clear(&line);
+    if (!beside) {
+        ms_progress_close();
+    }
     return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
 }
 

@@ -365,6 +365,7 @@ static ms_status make_clump_of(void *context, ms_clump *clump, ms_stop_reason *r
         return status;
     }
     if (t.n > 0) {
+        ms_generator_stage(f->run, "clusters", (double)NAN);
         status = sweep_fuzzifier(&t, f, err);
     }
     if (status == MS_OK) {

@@ -78,10 +78,12 @@ static ms_status generate_by_setcover(ms_clump *clump, ms_stop_reason *reason, c
     ms_ball *candidate;
     ms_cover *cover = NULL;
     size_t count;
+    ms_generator_stage(run, "candidate spheres", (double)NAN);
     ms_status status = ms_setcover_candidates(&candidate, &count, run->target, &lattice, err);
     const size_t found = count;
     if (status == MS_OK) {
         drop_small(candidate, &count, run);
+        ms_generator_stage(run, "what each candidate covers", (double)NAN);
         status =
             ms_cover_build(&cover, &run->target->grid, candidate, count, setcover_option(run, CONNECTED) != 0, err);
     }

@@ -2,6 +2,7 @@
 #include "ms_variational_solve.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,9 +63,10 @@ typedef struct solver {
     ms_coarse_view coarse;
     ms_signed_distance field;
     ms_surface_fit fit;
-    size_t count, wanted; /* spheres that are fitted; asked for, mirror images among them */
-    ms_ball *ball, *best; /* in voxels of the target's grid; room for `room` */
-    ms_ball *all;         /* with mirror images: room for `room` times the planes' images */
+    double steps, planned; /* of the fit, done and in all: for who watches */
+    size_t count, wanted;  /* spheres that are fitted; asked for, mirror images among them */
+    ms_ball *ball, *best;  /* in voxels of the target's grid; room for `room` */
+    ms_ball *all;          /* with mirror images: room for `room` times the planes' images */
     size_t room;
 } solver;
 
@@ -99,9 +101,28 @@ static size_t count_with_images(const solver *s)
     return sum;
 }
 
+/* All steps that are sure to come: rounds may be fewer, idle spheres bring more. */
+static double count_steps(const solver *s, double surplus)
+{
+    const double batches = surplus > 0 ? ceil(surplus / ceil(DROP * surplus)) : 0;
+    return (surplus > 0 ? START_STEPS + DROP_STEPS * batches : 0) + LONG_STEPS + LAST_STEPS +
+           s->settings->rounds * (DROP_STEPS + DROP_STEPS / DROP + LAST_STEPS);
+}
+
+/* A measure is sought by several runs, whose number is not known. */
+static void tell_share(const solver *s)
+{
+    char text[48];
+    const int is_sought = ms_stop_has_measure(&s->run->stop);
+    snprintf(text, sizeof text, "fit of %zu spheres", count_with_images(s));
+    ms_generator_stage(s->run, text, is_sought ? (double)NAN : fmin(s->steps / s->planned, 1));
+}
+
 static ms_status fit_spheres(solver *s, int steps, double from, double to, ms_error *err)
 {
     const double damping[2] = {from, to};
+    tell_share(s);
+    s->steps += steps;
     return ms_surface_fit_steps(&s->fit, s->ball, s->count, steps, damping, err);
 }
 
@@ -185,9 +206,6 @@ static ms_status prune_surplus(solver *s, ms_error *err)
             status = fit_spheres(s, DROP_STEPS, 0.5, 0.3, err);
         }
         count = count_with_images(s);
-        if (s->run->progress) {
-            s->run->progress(s->run->progress_context, count, (double)NAN);
-        }
     }
     return status;
 }
@@ -365,7 +383,9 @@ static ms_status replace_idle(solver *s, ms_error *err)
 static ms_status run_stages(solver *s, ms_error *err)
 {
     ms_status status = MS_OK;
-    if (count_with_images(s) > s->wanted) {
+    const double surplus = (double)count_with_images(s) - (double)s->wanted;
+    s->planned = count_steps(s, surplus);
+    if (surplus > 0) {
         status = fit_spheres(s, START_STEPS, 0.8, 0.2, err);
     }
     if (status == MS_OK) {
@@ -395,6 +415,7 @@ ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
     solver s;
     *ball = NULL;
     *count = 0;
+    ms_generator_stage(run, "first spheres", (double)NAN);
     ms_status status = begin_solver(&s, run, settings, n, err);
     if (status == MS_OK) {
         status = run_stages(&s, err);

@@ -4,9 +4,10 @@ import os
 import re
 import shlex
 import shutil
+import subprocess
 import unittest
 
-from support import Case, box_obj, npy
+from support import MSKIT, TIMEOUT, Case, box_obj, npy
 
 DOCS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs")
 
@@ -44,6 +45,49 @@ class Documents(Case):
                 self.mskit(*shlex.split(command))
         self.assertEqual(self.read("one.csv"), self.read("two.csv"))
         self.assertEqual(self.read("c.csv"), self.read("d.csv"))
+
+    def readme(self):
+        """The README's blocks of commands, without comments, in order."""
+        text = document(os.path.join("..", "README.md"))
+        return text, [re.sub(r"  +#.*", "", line).strip() for line in re.findall(r"(?m)^ {4}(?!  | *\w+/ )(\S.+)$", text)
+                      if re.match(r"sh |build/|export |mskit |printf |meson ", line)]
+
+    def test_commands_of_the_readme(self):
+        """Each line pasted into one shell, from a fresh clone: what installs and builds is here already."""
+        _, lines = self.readme()
+        self.assertGreater(len(lines), 14)
+        self.assertIn("sh docs/quickstart.sh", lines)
+        self.assertIn("sh tests/run.sh", lines)
+        for folder in ("docs", "tests", "build/eval"):
+            os.makedirs(self.path(folder))
+        program = os.path.abspath(shutil.which(MSKIT))
+        os.symlink(program, self.path("build/eval/mskit"))
+        quickstart = [line for line in document("quickstart.sh").replace("\\\n", "").splitlines()
+                      if line.startswith(("mkdir", "build/"))]
+        self.assertEqual(len(quickstart), 3)
+        self.write("docs/quickstart.sh", "\n".join(["set -e", *quickstart]))
+        self.write("tests/run.sh", "")
+        self.write("docs/install-packages.sh", "")
+        if not shutil.which("gnuplot"):
+            print("gnuplot is not installed (package gnuplot-nox): charts are not drawn")
+            lines = [line.split(" --charts")[0] for line in lines]
+        shell = subprocess.run(["sh", "-e"], input="\n".join(lines), cwd=self.dir, capture_output=True, text=True,
+                               check=False, timeout=TIMEOUT)
+        self.assertEqual(shell.returncode, 0, shell.stderr[-2000:])
+        for made in ("demo/grain.csv", "compare.csv", "grain.lammps", "templates", "mss.csv"):
+            self.assertTrue(os.path.exists(self.path(made)), made)
+
+    def test_links_of_the_readme(self):
+        """To files and headings that are there; the picture among them."""
+        text, _ = self.readme()
+        links = re.findall(r"\]\(([^)#:]+)(?:#([\w-]+))?\)", text)
+        self.assertIn(("docs/grain.png", ""), links)
+        for path, heading in links:
+            self.assertTrue(os.path.exists(os.path.join(DOCS, "..", path)), path)
+            if heading:
+                headings = [re.sub(r"[^\w -]", "", h).strip().lower().replace(" ", "-")
+                            for h in re.findall(r"(?m)^#+ (.+)$", document(os.path.join("..", path)))]
+                self.assertIn(heading, headings, path)
 
     def test_man_page_names_every_command_and_flag(self):
         page = document("mskit.1").replace("\\-", "-")

@@ -373,6 +373,56 @@ static void spheres_that_cover_nothing_are_no_clump(void **state)
 }
 
 /* A few voxels, one voxel; a volume without a mesh. */
+/* What a listener has heard. */
+typedef struct heard {
+    size_t stages, before; /* of them before the first sphere */
+    int has_spheres, failed;
+    double share;
+} heard;
+
+static void hear_stage(void *context, const char *stage, double share)
+{
+    heard *h = context;
+    h->stages++;
+    h->before += !h->has_spheres;
+    h->failed |= stage[0] == '\0' || strlen(stage) > 47 || share < h->share || share < 0 || share > 1;
+    h->share = isnan(share) ? h->share : share;
+}
+
+static int hear_spheres(void *context, size_t spheres, double dice)
+{
+    heard *h = context;
+    h->has_spheres |= spheres > 0 && !isnan(dice);
+    return 0;
+}
+
+/* Shares are of the whole run and never fall. */
+static void what_a_run_tells(void **state)
+{
+    const fixture *f = *state;
+    for (const ms_generator *const *g = checked; *g; g++) {
+        heard h = {0};
+        const ms_run run = {.target = &f->rough,
+                            .stop = {.spheres = 12},
+                            .seed = 7,
+                            .progress = hear_spheres,
+                            .progress_context = &h,
+                            .stage = hear_stage,
+                            .stage_context = &h};
+        outcome o;
+        assert_int_equal(ms_generator_run(&o.clump, &o.reason, *g, &run, NULL), MS_OK);
+        ms_clump_free(&o.clump);
+        assert_true(h.has_spheres);
+        assert_false(h.failed);
+        if (strcmp((*g)->name, "setcover") == 0 || strcmp((*g)->name, "variational") == 0) {
+            assert_true(h.before >= 2); /* they take long to their first sphere */
+        }
+        if (strcmp((*g)->name, "variational") == 0) {
+            assert_true(h.stages > 7 && h.share >= 0.75);
+        }
+    }
+}
+
 static void small_targets_work(void **state)
 {
     (void)state;
@@ -408,6 +458,7 @@ int main(void)
         cmocka_unit_test(least_radius_is_kept),
         cmocka_unit_test(nothing_asked_is_an_error),
         cmocka_unit_test(small_targets_work),
+        cmocka_unit_test(what_a_run_tells),
         cmocka_unit_test(spheres_that_cover_nothing_are_no_clump),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,0 +1,132 @@
+"""The line on a terminal: what is at work, its share and time left; wiped in the end, and nothing of it in a pipe."""
+import os
+import pty
+import re
+import signal
+import subprocess
+
+from support import MSKIT, TIMEOUT, Case
+
+WIPE = "\r\x1b[K"
+
+
+class Progress(Case):
+    def on_terminal(self, *args, code=0):
+        """What the run draws on a terminal, one text for each time; standard output goes elsewhere."""
+        main, terminal = pty.openpty()
+        with open(self.path("out.txt"), "wb") as out:
+            process = subprocess.Popen([MSKIT, *map(str, args)], cwd=self.dir, stdin=subprocess.DEVNULL, stdout=out,
+                                       stderr=terminal)
+        os.close(terminal)
+        said = b""
+        while True:
+            try:
+                part = os.read(main, 65536)
+            except OSError:  # how Linux says that the last one has closed it
+                break
+            if not part:
+                break
+            said += part
+        os.close(main)
+        self.assertEqual(process.wait(TIMEOUT), code, said)
+        text = said.decode()
+        return text
+
+    def lines(self, *args):
+        """The same, cut at each drawing; the last line is wiped."""
+        text = self.on_terminal(*args)
+        drawn = [part.rstrip() for part in text.split(WIPE)[1:] if "\n" not in part]
+        self.assertTrue(any(drawn), f"nothing is drawn: {text!r}")
+        self.assertEqual(text.split(WIPE)[-1].count(" left"), 0, "the last line is wiped")
+        for line in drawn:
+            self.assertLess(len(line), 80, "else it could not be wiped")
+        return [line for line in drawn if line]
+
+    def assert_drawn(self, lines, *patterns):
+        for pattern in patterns:
+            self.assertTrue(any(re.search(pattern, line) for line in lines), f"'{pattern}' among {lines}")
+
+    def assert_shares_rise(self, lines):
+        shares = [int(found.group(1)) for found in (re.search(r", (\d+) %", line) for line in lines) if found]
+        self.assertGreater(len(set(shares)), 1, lines)
+        self.assertEqual(shares, sorted(shares), lines)
+        self.assertLessEqual(shares[-1], 100)
+
+    def test_variational(self):
+        lines = self.lines("generate", self.shape("grain"), "-n", "250", "--cells", "110", "-j", "1", "-o", "c.csv")
+        self.assert_drawn(lines, r"^variational: first spheres, \d+ s$",
+                          r"^variational: fit of \d+ spheres, \d+ %, about \d+ s left$")
+        self.assert_shares_rise([line for line in lines if "fit" in line])
+
+    def test_sought_number(self):
+        """Of several runs, whose number is not known, there is no share."""
+        lines = self.lines("generate", self.shape("grain"), "--until", "dice=0.02", "--cells", "60", "-j", "1", "-o",
+                           "c.csv")
+        self.assert_drawn(lines, r"^variational: .*spheres.*, \d+ s$")
+        self.assertEqual([line for line in lines if "%" in line or "left" in line], [])
+
+    def test_setcover_before_its_first_sphere(self):
+        lines = self.lines("generate", self.shape("grain"), "-g", "setcover", "--skeleton-deq", "120", "-n", "40",
+                           "--cells", "60", "-j", "1", "-o", "c.csv")
+        self.assert_drawn(lines[:1], "^setcover: candidate spheres, 1 s$")
+        self.assert_drawn(lines, r"^setcover: \d+ spheres, D 0.\d+, \d+ %, \d+ s$")
+
+    def test_mss_and_fcm(self):
+        grain = self.shape("grain")
+        lines = self.lines("generate", grain, "-g", "mss", "-n", "60000", "--cells", "120", "-j", "1", "-o", "c.csv")
+        self.assert_drawn(lines, r"^mss: \d+ spheres, D 0.\d+, 0 %, \d+ s$")
+        lines = self.lines("generate", grain, "-g", "fcm", "-n", "300", "--cells", "60", "-j", "1", "-o", "c.csv")
+        self.assert_drawn(lines, r"^fcm: clusters, \d+ s$")
+
+    def test_curve(self):
+        lines = self.lines("generate", self.shape("grain"), "-n", "25", "--cells", "60", "-j", "1", "-o", "c.csv",
+                           "--curve", "k.csv")
+        self.assert_drawn(lines, r"^k.csv: curve, \d+ %, about \d+ s left$")
+        self.assert_shares_rise([line for line in lines if line.startswith("k.csv")])
+
+    def test_reading(self):
+        """A text of 720,000 triangles."""
+        lines = self.lines("info", self.shape("grain", "fineness=300", name="large.obj"))
+        self.assert_drawn(lines, r"^large.obj: reading, \d+ s$")
+
+    def test_voxels(self):
+        lines = self.lines("generate", self.shape("grain"), "-g", "mss", "-n", "1", "--cells", "260", "-j", "1", "-o",
+                           "c.csv")
+        self.assert_drawn(lines, r"^grain.stl: (voxels|distances), \d+ s$")
+
+    def test_commands_of_many_runs(self):
+        grain = self.shape("grain")
+        run = ("-n", "40", "--cells", "60", "-j", "1")
+        lines = self.lines("compare", grain, "-g", "variational", "-g", "fcm", *run[2:], "-n", "30,40")
+        self.assert_drawn(lines, r"^grain.stl fcm: .*, \d+ s$", r"^2 of 4 runs, \d+ s left$")
+        lines = self.lines("stability", grain, "-g", "variational", *run, "--perturb", "noise", "--runs", "3")
+        self.assert_drawn(lines, r"^2 of 4 runs, \d+ s left$")
+        self.shape("grain", "seed=2", name="other.stl")
+        self.write("scene.csv", "shape,count\ngrain.stl,2\nother.stl,3\n")
+        lines = self.lines("scene", "scene.csv", "--knee", "0.1", "--max-spheres", "15", *run[2:])
+        self.assert_drawn(lines, r"^other.stl \(2 of 2\): curve, \d+ %, about \d+ s left$")
+
+    def test_remarks_stand_on_lines_of_their_own(self):
+        self.write("far.csv", "0,0,0,0.4\n50,0,0,0.4\n")
+        text = self.on_terminal("generate", self.shape("grain"), "-n", "250", "--cells", "110", "-j", "1", "--refine",
+                                "far.csv", "-o", "c.csv")
+        self.assertRegex(text, r"(?m)^(.*\r\x1b\[K)?variational: 1 of the 2 spheres of refine lie outside[^\r]*\r?$")
+
+    def test_nothing_in_a_pipe(self):
+        grain = self.shape("grain")
+        for args in (("generate", grain, "-n", "250", "--cells", "110", "-j", "1", "-o", "c.csv"),
+                     ("compare", grain, "-g", "setcover", "-n", "10", "--cells", "60", "-j", "1")):
+            said = self.mskit(*args).err
+            self.assertRegex(said, r"\Agrid: [^\r\x1b]*\n\Z")
+
+    def test_interrupted_at_work(self):
+        """The thread that draws takes no signals from the one that works."""
+        main, terminal = pty.openpty()
+        with subprocess.Popen([MSKIT, "generate", self.shape("grain"), "-n", "60000", "--cells", "150"], cwd=self.dir,
+                              stdout=subprocess.DEVNULL, stderr=terminal) as process:
+            os.close(terminal)
+            while b"variational" not in os.read(main, 65536):
+                pass
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(TIMEOUT), -signal.SIGINT)
+        os.close(main)
