@@ -1,8 +1,11 @@
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "ms_mesh_edges.h"
+#include "ms_mesh_holes.h"
 #include "ms_mesh_orient.h"
+#include "ms_mesh_weld.h"
 
 static ms_status check_corners(const ms_mesh *mesh, ms_error *err)
 {
@@ -123,6 +126,27 @@ static void restore_needed(pruning *p, ms_mesh_report *report)
     }
 }
 
+/* A mesh drawn from both sides cancels as a whole. If one side of it is closed, that is the surface. */
+static void restore_one_side(pruning *p, ms_mesh_report *report)
+{
+    for (size_t e = 0; e < p->edges->n; e++) {
+        if (p->count[e] > 0) {
+            return;
+        }
+    }
+    for (size_t k = 0; k < p->n_doubtful; k++) {
+        set_kept(p, p->doubtful[k], 1);
+    }
+    int closed = 1;
+    for (size_t e = 0; e < p->edges->n && closed; e++) {
+        closed = p->count[e] % 2 == 0;
+    }
+    for (size_t k = 0; k < p->n_doubtful; k++) {
+        set_kept(p, p->doubtful[k], closed);
+        report->dropped_duplicate -= (size_t)closed;
+    }
+}
+
 /* A fin hangs by one edge on an edge of two or more others, its other two edges free: like
    the collinear triangles that some programs leave beside an edge. It bounds nothing. */
 static void prune_fins(pruning *p, ms_mesh_report *report)
@@ -168,6 +192,7 @@ static ms_status prune_mesh(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report
         }
         prune_duplicates(&p, report);
         restore_needed(&p, report);
+        restore_one_side(&p, report);
         prune_fins(&p, report);
         remove_unkept(mesh, p.keep);
     } else {
@@ -218,27 +243,125 @@ static void count_edges(ms_mesh_report *report, const ms_edges *edges)
     }
 }
 
-ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err)
+static ms_status check_mending(const ms_mesh_mending *how, ms_error *err)
+{
+    if (how->weld != 0 && !(how->weld >= MS_MESH_LEAST_WELD && how->weld <= MS_MESH_MOST_WELD)) {
+        return ms_fail(err, MS_ERR_ARG, "corners cannot be joined within %g of the mesh's length; %g to %g is allowed",
+                       how->weld, MS_MESH_LEAST_WELD, MS_MESH_MOST_WELD);
+    }
+    if (!(how->drop_bodies >= 0 && how->drop_bodies <= 1)) {
+        return ms_fail(err, MS_ERR_ARG, "%g is no share of the largest body, from 0 to 1", how->drop_bodies);
+    }
+    return MS_OK;
+}
+
+/* Of what is used: a stray vertex does not count. */
+static double longest_side(const ms_mesh *mesh)
+{
+    double side = 0;
+    for (int k = 0; k < 3; k++) {
+        double lo = HUGE_VAL, hi = -HUGE_VAL;
+        for (size_t c = 0; c < 3 * mesh->n_triangles; c++) {
+            const double x = mesh->vertex[mesh->triangle[c / 3][c % 3]][k];
+            lo = fmin(lo, x);
+            hi = fmax(hi, x);
+        }
+        side = fmax(side, hi - lo);
+    }
+    return side;
+}
+
+static int has_odd_edge(const ms_edges *edges)
+{
+    int odd = 0;
+    for (size_t e = 0; e < edges->n && !odd; e++) {
+        odd = (edges->start[e + 1] - edges->start[e]) % 2 == 1;
+    }
+    return odd;
+}
+
+static ms_status rebuild_edges(ms_edges *edges, const ms_mesh *mesh, ms_error *err)
+{
+    ms_mesh_edges_free(edges);
+    return ms_edges_build(edges, mesh, err);
+}
+
+static ms_status join_corners(ms_mesh *mesh, ms_edges *edges, const ms_mesh_mending *how, ms_mesh_report *report,
+                              ms_error *err)
+{
+    const double tolerance = has_odd_edge(edges) ? how->weld * longest_side(mesh) : 0;
+    if (!(tolerance > 0)) {
+        return MS_OK;
+    }
+    ms_status status = ms_mesh_weld(mesh, &report->joined, edges, tolerance, err);
+    return status == MS_OK && report->joined > 0 ? rebuild_edges(edges, mesh, err) : status;
+}
+
+/* The edges are those of the mesh before and after. */
+static ms_status prune_and_rebuild(ms_mesh *mesh, ms_edges *edges, ms_mesh_report *report, ms_error *err)
+{
+    const size_t n_before = mesh->n_triangles, n_dropped = report->dropped_degenerate + report->dropped_duplicate;
+    ms_status status = prune_mesh(mesh, edges, report, err);
+    if (status == MS_OK && mesh->n_triangles < n_before) {
+        status = rebuild_edges(edges, mesh, err);
+    }
+    if (status == MS_OK && mesh->n_triangles == 0) {
+        status = ms_fail(err, MS_ERR_SHAPE, "no triangle is left: all %zu are degenerate or cancel in pairs",
+                         n_before + n_dropped);
+    }
+    return status;
+}
+
+/* What fills a hole may cancel what was there: a single triangle is a hole around itself. */
+static ms_status fill_holes(ms_mesh *mesh, ms_edges *edges, const ms_mesh_mending *how, ms_mesh_report *report,
+                            ms_error *err)
+{
+    ms_status status = has_odd_edge(edges) ? ms_mesh_holes(mesh, report, edges, how->fill_holes, err) : MS_OK;
+    if (status == MS_OK && report->filled > 0) {
+        status = rebuild_edges(edges, mesh, err);
+        status = status == MS_OK ? prune_and_rebuild(mesh, edges, report, err) : status;
+    }
+    return status;
+}
+
+static ms_status drop_bodies(ms_mesh *mesh, ms_edges *edges, const ms_mesh_mending *how, ms_mesh_report *report,
+                             ms_error *err)
+{
+    if (!(how->drop_bodies > 0)) {
+        return MS_OK;
+    }
+    ms_status status = ms_mesh_orient_drop(mesh, edges, how->drop_bodies, report, err);
+    if (status == MS_OK && report->dropped_bodies > 0) {
+        status = rebuild_edges(edges, mesh, err);
+        status = status == MS_OK ? ms_mesh_holes(mesh, report, edges, 0, err) : status;
+    }
+    return status;
+}
+
+ms_status ms_mesh_mend(ms_mesh *mesh, ms_mesh_report *report, const ms_mesh_mending *how, ms_error *err)
 {
     *report = (ms_mesh_report){0};
     ms_edges edges = {0};
     ms_status status = check_corners(mesh, err);
+    if (status == MS_OK) {
+        status = check_mending(how, err);
+    }
     if (status != MS_OK) {
         return status;
     }
     drop_degenerate(mesh, report);
-    size_t n_before = mesh->n_triangles;
     status = ms_edges_build(&edges, mesh, err);
     if (status == MS_OK) {
-        status = prune_mesh(mesh, &edges, report, err);
+        status = join_corners(mesh, &edges, how, report, err);
     }
-    if (status == MS_OK && mesh->n_triangles < n_before) {
-        ms_mesh_edges_free(&edges);
-        status = ms_edges_build(&edges, mesh, err);
+    if (status == MS_OK) {
+        status = prune_and_rebuild(mesh, &edges, report, err);
     }
-    if (status == MS_OK && mesh->n_triangles == 0) {
-        status = ms_fail(err, MS_ERR_SHAPE, "no triangle is left: all %zu are degenerate or cancel in pairs",
-                         report->dropped_degenerate + report->dropped_duplicate);
+    if (status == MS_OK) {
+        status = fill_holes(mesh, &edges, how, report, err);
+    }
+    if (status == MS_OK) {
+        status = drop_bodies(mesh, &edges, how, report, err);
     }
     if (status == MS_OK) {
         status = drop_unused_vertices(mesh, err);
@@ -249,4 +372,9 @@ ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err)
     }
     ms_mesh_edges_free(&edges);
     return status;
+}
+
+ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err)
+{
+    return ms_mesh_mend(mesh, report, &(ms_mesh_mending){0}, err);
 }

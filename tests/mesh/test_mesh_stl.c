@@ -165,7 +165,7 @@ static void meshes_over_the_limit_are_refused(void **state)
     expect_message(&err, "sample: has more than 4294967295 vertices");
     assert_int_equal(ms_mesh_build_reserve(&builder, 0, ((size_t)1 << 31) + 1, &err), MS_ERR_LIMIT);
     expect_message(&err, "sample: has more than 2147483648 triangles");
-    assert_int_equal(ms_mesh_build_finish(&mesh, &builder, MS_ERR_LIMIT, &err), MS_ERR_LIMIT);
+    assert_int_equal(ms_mesh_build_finish(&mesh, NULL, &builder, MS_ERR_LIMIT, &err), MS_ERR_LIMIT);
     assert_null(mesh.vertex);
 }
 

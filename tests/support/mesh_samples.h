@@ -9,12 +9,12 @@
 static const double corner[4][3] = {{0.5, -1.25, 2.375}, {4.75, 0.0, 2.375}, {0.5, 3.0, 2.375}, {0.5, -1.25, 9.0}};
 static const int face[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
 
-typedef ms_status mesh_parser(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
+typedef ms_status mesh_parser(ms_mesh *mesh, ms_error *remark, const ms_bytes *bytes, const char *name, ms_error *err);
 
 static inline ms_status parse_sample(ms_mesh *mesh, mesh_parser *parse, const void *data, size_t size, ms_error *err)
 {
     ms_bytes bytes = copy_bytes(data, size);
-    ms_status status = parse(mesh, &bytes, "sample", err);
+    ms_status status = parse(mesh, NULL, &bytes, "sample", err);
     ms_file_free(&bytes);
     return status;
 }
