@@ -126,24 +126,65 @@ static void restore_needed(pruning *p, ms_mesh_report *report)
     }
 }
 
-/* A mesh drawn from both sides cancels as a whole. If one side of it is closed, that is the surface. */
-static void restore_one_side(pruning *p, ms_mesh_report *report)
+/* Lists the cancelled sets that hang together by edges with `first`; each is listed once. @return how many */
+static size_t gather_patch(uint32_t *patch, uint8_t *waiting, const pruning *p, uint32_t first)
 {
-    for (size_t e = 0; e < p->edges->n; e++) {
-        if (p->count[e] > 0) {
-            return;
+    size_t n = 0;
+    patch[n++] = first;
+    waiting[first] = 0;
+    for (size_t at = 0; at < n; at++) {
+        for (uint32_t k = 0; k < 3; k++) {
+            const uint32_t e = p->edges->edge_of[3 * patch[at] + k];
+            for (uint32_t s = p->edges->start[e]; s < p->edges->start[e + 1]; s++) {
+                const uint32_t t = p->edges->side[s] / 3;
+                if (waiting[t]) {
+                    waiting[t] = 0;
+                    patch[n++] = t;
+                }
+            }
         }
     }
-    for (size_t k = 0; k < p->n_doubtful; k++) {
-        set_kept(p, p->doubtful[k], 1);
+    return n;
+}
+
+static void set_patch_kept(pruning *p, const uint32_t *patch, size_t n, int keep)
+{
+    for (size_t i = 0; i < n; i++) {
+        set_kept(p, patch[i], keep);
     }
-    int closed = 1;
-    for (size_t e = 0; e < p->edges->n && closed; e++) {
-        closed = p->count[e] % 2 == 0;
+}
+
+static size_t odd_edges_of_patch(const pruning *p, const uint32_t *patch, size_t n)
+{
+    size_t odd = 0;
+    for (size_t i = 0; i < n; i++) {
+        odd += (size_t)odd_edges_of(p, patch[i]);
+    }
+    return odd;
+}
+
+/* The same with what cancelled as a whole, drawn from both sides: one side comes back where that closes more edges than
+   it opens; and if nothing else is left, where it opens none. `patch` has room for all sets. */
+static void restore_patches(pruning *p, uint32_t *patch, uint8_t *waiting, ms_mesh_report *report)
+{
+    int nothing_left = 1;
+    for (size_t t = 0; t < p->mesh->n_triangles; t++) {
+        nothing_left &= !p->keep[t];
+        waiting[t] = 0;
     }
     for (size_t k = 0; k < p->n_doubtful; k++) {
-        set_kept(p, p->doubtful[k], closed);
-        report->dropped_duplicate -= (size_t)closed;
+        waiting[p->doubtful[k]] = !p->keep[p->doubtful[k]];
+    }
+    for (size_t k = 0; k < p->n_doubtful; k++) {
+        if (waiting[p->doubtful[k]]) {
+            const size_t n = gather_patch(patch, waiting, p, p->doubtful[k]);
+            const size_t without = odd_edges_of_patch(p, patch, n);
+            set_patch_kept(p, patch, n, 1);
+            const size_t with = odd_edges_of_patch(p, patch, n);
+            const int closes = with < without || (nothing_left && with == 0);
+            set_patch_kept(p, patch, n, closes);
+            report->dropped_duplicate -= closes ? n : 0;
+        }
     }
 }
 
@@ -184,15 +225,17 @@ static ms_status prune_mesh(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report
     p.keep = malloc(n + 1);
     p.count = malloc((edges->n + 1) * sizeof *p.count);
     p.doubtful = malloc((n + 1) * sizeof *p.doubtful);
+    uint32_t *patch = malloc((n + 1) * sizeof *patch);
+    uint8_t *waiting = malloc(n + 1);
     ms_status status = MS_OK;
-    if (p.keep && p.count && p.doubtful) {
+    if (p.keep && p.count && p.doubtful && patch && waiting) {
         memset(p.keep, 1, n);
         for (size_t e = 0; e < edges->n; e++) {
             p.count[e] = edges->start[e + 1] - edges->start[e];
         }
         prune_duplicates(&p, report);
         restore_needed(&p, report);
-        restore_one_side(&p, report);
+        restore_patches(&p, patch, waiting, report);
         prune_fins(&p, report);
         remove_unkept(mesh, p.keep);
     } else {
@@ -201,6 +244,8 @@ static ms_status prune_mesh(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report
     free(p.keep);
     free(p.count);
     free(p.doubtful);
+    free(patch);
+    free(waiting);
     return status;
 }
 
