@@ -8,12 +8,14 @@
 #define MAX_PAIRS_PER_VERTEX 64
 #define MAX_PAIRS_IN_ANY_CASE 10000000
 
-/* Cells are wider than the tolerance by more than their numbers are rounded: who is near is in a neighbour at most. */
-#define WIDER 1.01
+/* Cells are wider than the tolerance, so that most vertices have those near them in their own cell. */
+#define WIDTH 4
+/* How far to look: beyond the tolerance by more than the numbers of cells are rounded. */
+#define REACH 1.01
 
 #define NONE UINT32_MAX
 
-/* A vertex of an open edge, and the cell of a lattice about as wide as the tolerance in which it lies. */
+/* A vertex of an open edge, and the cell of a lattice in which it lies. */
 typedef struct seam_vertex {
     uint32_t vertex; /* of the mesh */
     uint32_t next;   /* in the same slot of the hash table */
@@ -30,6 +32,7 @@ typedef struct seam_pair {
 typedef struct seam {
     const ms_mesh *mesh;
     double tolerance;
+    const double *origin; /* of the lattice */
     uint32_t n;
     seam_vertex *at; /* by their number in the mesh */
     uint32_t *slot;  /* of the hash table; the first vertex or NONE */
@@ -78,23 +81,26 @@ static uint32_t mark_open(uint32_t *number, const ms_mesh *mesh, const ms_edges 
     return n;
 }
 
+/* The cell in which a vertex lies, moved by `by` along all axes. */
+static void find_cell(double cell[3], const seam *s, uint32_t vertex, double by)
+{
+    for (int k = 0; k < 3; k++) {
+        cell[k] = floor((s->mesh->vertex[vertex][k] - s->origin[k] + by) / (WIDTH * s->tolerance));
+    }
+}
+
 /* Numbers the marked vertices and puts them into the cells of the lattice. */
 static void fill_cells(seam *s, uint32_t *number)
 {
-    const double width = WIDER * s->tolerance;
-    const double *origin = NULL;
     memset(s->slot, 0xff, (s->mask + 1) * sizeof *s->slot);
     for (uint32_t v = 0; v < s->mesh->n_vertices; v++) {
         if (number[v] == NONE) {
             continue;
         }
         const uint32_t i = number[v] = s->n++;
-        const double *position = s->mesh->vertex[v];
         seam_vertex *at = &s->at[i];
-        origin = origin ? origin : position;
-        for (int k = 0; k < 3; k++) {
-            at->cell[k] = floor((position[k] - origin[k]) / width);
-        }
+        s->origin = s->origin ? s->origin : s->mesh->vertex[v];
+        find_cell(at->cell, s, v, 0);
         uint32_t *slot = &s->slot[hash_cell(at->cell) & s->mask];
         at->vertex = v;
         at->leader = at->mate = i;
@@ -140,13 +146,18 @@ static ms_status pair_with_cell(seam *s, uint32_t b, const double cell[3], ms_er
 
 static ms_status find_pairs(seam *s, ms_error *err)
 {
+    const double reach = REACH * s->tolerance;
     ms_status status = MS_OK;
     for (uint32_t b = 0; b < s->n; b++) {
-        for (int k = 0; k < 27 && status == MS_OK; k++) {
-            const double *own = s->at[b].cell;
-            const int step[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
-            const double cell[3] = {own[0] + step[0], own[1] + step[1], own[2] + step[2]};
-            status = pair_with_cell(s, b, cell, err);
+        double lo[3], hi[3], cell[3];
+        find_cell(lo, s, s->at[b].vertex, -reach);
+        find_cell(hi, s, s->at[b].vertex, reach);
+        for (cell[2] = lo[2]; cell[2] <= hi[2]; cell[2]++) {
+            for (cell[1] = lo[1]; cell[1] <= hi[1]; cell[1]++) {
+                for (cell[0] = lo[0]; cell[0] <= hi[0] && status == MS_OK; cell[0]++) {
+                    status = pair_with_cell(s, b, cell, err);
+                }
+            }
         }
     }
     return status;
