@@ -1,4 +1,6 @@
 """Meshes as they come: seams, holes, surfaces that stand twice, crumbs, lax files; and grids of so many voxels in all."""
+import csv
+import io
 import json
 import random
 import re
@@ -108,6 +110,8 @@ class Mending(Case):
         self.assert_says(result, *said)
         self.assert_close(result.json["particle"]["mass"], 6000, 1e-6, "mass")
         self.mskit("compare", "bad.obj", *mend, *grid, "-g", "mss", "-n", 5, "-o", "compare.csv")
+        row = next(csv.DictReader(io.StringIO(self.read("compare.csv").decode())))
+        self.assertEqual(float(row["dice"]), run.json["scores"]["dice"])
         self.mskit("scene", "bad.obj", *mend, *grid, "-g", "mss", "--budget", 5, "-o", "scene")
         self.mskit("stability", "bad.obj", *mend, *grid, "-g", "mss", "-n", 5, "--perturb", "rotation", "--runs", 1,
                    "-o", "stability.csv")
@@ -181,7 +185,10 @@ class MaxVoxels(Case):
         most = ("--max-voxels", 5000)  # 8 cells: 28 x 20 x 12 = 6720; 7 cells: 25 x 18 x 11 = 4950
         result = self.mskit("score", "c.csv", "--target", "box.obj", *most, "--json")
         self.assertEqual(result.json["target"]["voxels"], 7 ** 3 * VOLUME)
-        self.mskit("compare", "box.obj", "-g", "mss", "-n", 2, "--cells", "5,40", *most, "-o", "compare.csv")
+        result = self.mskit("compare", "box.obj", "-g", "mss", "-n", 2, "--cells", "5,40", *most, "-o", "compare.csv")
+        self.assert_says(result, "leaves 7 cells along the shortest side, of 40 asked for")
+        sizes = [float(row["voxel_size"]) for row in csv.DictReader(io.StringIO(self.read("compare.csv").decode()))]
+        self.assertEqual([round(1 / h, 9) for h in sizes], [5, 7])
         self.mskit("scene", "box.obj", "-g", "mss", "--budget", 2, *most, "-o", "scene")
         result = self.mskit("stability", "box.obj", "-g", "mss", "-n", 2, "--perturb", "rotation", "--runs", 1, *most,
                             "-o", "stability.csv", "--json")
