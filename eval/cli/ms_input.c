@@ -276,12 +276,19 @@ static ms_status choose_voxel_size(double *h, const ms_input *input, const ms_in
         }
     }
     status = name_file(err, ms_voxelize_size_within(&within, &input->mesh, flags->max_voxels, &cause), input, &cause);
-    if (status == MS_OK && *h > 0) {
-        fprintf(stderr, "%s: --max-voxels %.6g leaves %.0f cells along the shortest side, of %.4g asked for\n",
-                input->path, flags->max_voxels, shortest_side(&input->mesh) / within, shortest_side(&input->mesh) / *h);
-    }
     *h = within;
     return status;
+}
+
+/* That --max-voxels acts, where anything else was asked for. */
+static void say_coarser(const ms_input *input, const ms_input_flags *flags, double h)
+{
+    double asked;
+    if (flags->max_voxels > 0 && asked_voxel_size(&asked, input, flags, NULL) == MS_OK && asked > 0 && asked < h) {
+        const double side = ms_input_shortest_side(&input->mesh);
+        fprintf(stderr, "%s: --max-voxels %.6g leaves %.0f cells along the shortest side, of %.4g asked for\n",
+                input->path, flags->max_voxels, side / h, side / asked);
+    }
 }
 
 static ms_status check_memory(const double n[3], const ms_input_flags *flags, ms_error *err)
@@ -341,6 +348,7 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
     if (status != MS_OK) {
         return status;
     }
+    say_coarser(input, flags, h);
     ms_voxelize_extents(n, &input->mesh, h);
     status = check_memory(n, flags, err);
     if (status == MS_OK) {

@@ -103,8 +103,9 @@ static void a_label_of_a_volume(void **state)
 static void so_many_voxels_at_most(void **state)
 {
     (void)state;
-    const ms_generate_request requests[] = {
-        {.max_voxels = 1e5}, {.max_voxels = 1e5, .cells = 200}, {.max_voxels = 1e9, .cells = 30}};
+    const ms_generate_request requests[] = {{.stop = {.spheres = 5}, .max_voxels = 1e5},
+                                            {.stop = {.spheres = 5}, .max_voxels = 1e5, .cells = 200},
+                                            {.stop = {.spheres = 5}, .max_voxels = 1e9, .cells = 30}};
     double h, side;
     ms_mesh mesh;
     assert_int_equal(ms_mesh_read(&mesh, MESH, NULL), MS_OK);
@@ -112,7 +113,7 @@ static void so_many_voxels_at_most(void **state)
     assert_int_equal(ms_voxelize_size(&side, &mesh, 1, NULL), MS_OK);
     ms_mesh_free(&mesh);
     for (int k = 0; k < 3; k++) {
-        ms_clump clump, truth = by_hand(NULL, NULL, 50, k < 2 ? round(side / h) : 30);
+        ms_clump clump, truth = by_hand(NULL, NULL, 5, k < 2 ? round(side / h) : 30);
         assert_int_equal(ms_generate_file(&clump, NULL, MESH, &requests[k], NULL), MS_OK);
         expect_same(&clump, &truth);
     }
