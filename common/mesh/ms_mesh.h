@@ -68,9 +68,10 @@ MS_API void ms_mesh_box(double lo[3], double hi[3], const ms_mesh *mesh);
  * is reported, not refused: the caller decides.
  *
  * Dropped are triangles with two equal corners; of triangles on the same three corners, pairs
- * of opposite winding and all but one of the rest (of what is drawn from both sides, one
- * side comes back where it would leave a hole, and if nothing else is left and it is closed); fins, which hang by one edge on an edge of two or more others; and vertices
- * that no triangle uses. A collinear triangle of three vertices that fills a gap is kept.
+ * of opposite winding and all but one of the rest; fins, which hang by one edge on an edge of two
+ * or more others; and vertices that no triangle uses. Of what is drawn from both sides one side
+ * stays where a hole would be left, or where there is nothing else and it is closed. A collinear
+ * triangle of three vertices that fills a gap is kept.
  *
  * A shell is a cavity if it lies inside an odd number of others. Shells that cut each other
  * do not lie inside each other.

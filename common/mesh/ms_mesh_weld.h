@@ -6,11 +6,11 @@
 
 /**
  * Joins vertices of open edges (of an odd number of triangles) none of whose coordinates differ by more than a
- * tolerance, as each is rounded by itself. Others stay where they are, so that a closed mesh is not touched, however fine.
+ * tolerance, as each is rounded by itself. Others stay where they are: a closed mesh is not touched, however fine.
  *
  * Pairs are joined nearest first, and only while all that would become one vertex lie within the tolerance of each
- * other: no chain creeps along a fine seam, and no coordinate changes by more than the tolerance. The two ends of an edge are
- * never joined: nothing collapses. The vertex of lowest number gives the place.
+ * other: no chain creeps along a fine seam, and no coordinate changes by more than the tolerance. The two ends of an
+ * edge are never joined: nothing collapses. The vertex of lowest number gives the place.
  *
  * @param[in,out] mesh      corners are renumbered; vertices that are not used any more stay
  * @param[out]    joined    vertices that became another

@@ -59,8 +59,8 @@ ms_status ms_mesh_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_
 ms_status ms_mesh_build_face_end(ms_mesh_builder *builder, ms_error *err);
 
 /**
- * A strip: begin as a face, its corners in turn, each after the second of which makes a triangle with the two before it,
- * end. A negative index begins a new strip; a triangle with two equal corners joins parts of one and is left out.
+ * A strip: begin as a face, its corners in turn, end. Each corner after the second makes a triangle with the two before
+ * it. A negative index begins a new strip; a triangle with two equal corners joins parts of one and is left out.
  */
 ms_status ms_mesh_build_strip_corner(ms_mesh_builder *builder, int64_t index, ms_error *err);
 ms_status ms_mesh_build_strip_end(const ms_mesh_builder *builder, ms_error *err);

@@ -8,10 +8,10 @@
 MS_C_BEGIN
 
 /**
- * Reads a mesh, in double precision: a file that does not say exactly one mesh is
- * refused. Of what other programs get wrong, that is read which leaves no doubt (docs/formats.md). The format comes from the ending (.stl .obj .ply .off). Polygons are cut into
- * triangles that stay within them; vertices with equal coordinates are welded, those that no face uses dropped. What an
- * untrusted header claims is checked against the file's size before anything is allocated.
+ * Reads a mesh, in double precision: a file that does not say exactly one mesh is refused. Of what other programs get
+ * wrong, that is read which leaves no doubt (docs/formats.md). The format comes from the ending (.stl .obj .ply .off).
+ * Polygons are cut into triangles that stay within them; vertices with equal coordinates are welded, those that no face
+ * uses dropped. What an untrusted header claims is checked against the file's size before anything is allocated.
  *
  * @param[out] mesh the caller frees it; empty on failure
  * @param      path the file
