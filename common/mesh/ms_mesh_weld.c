@@ -89,10 +89,9 @@ static void find_cell(double cell[3], const seam *s, uint32_t vertex, double by)
     }
 }
 
-/* Numbers the marked vertices and puts them into the cells of the lattice. */
-static void fill_cells(seam *s, uint32_t *number)
+/* Numbers the marked vertices and finds their cells. */
+static void list_vertices(seam *s, uint32_t *number)
 {
-    memset(s->slot, 0xff, (s->mask + 1) * sizeof *s->slot);
     for (uint32_t v = 0; v < s->mesh->n_vertices; v++) {
         if (number[v] == NONE) {
             continue;
@@ -101,11 +100,8 @@ static void fill_cells(seam *s, uint32_t *number)
         seam_vertex *at = &s->at[i];
         s->origin = s->origin ? s->origin : s->mesh->vertex[v];
         find_cell(at->cell, s, v, 0);
-        uint32_t *slot = &s->slot[hash_cell(at->cell) & s->mask];
         at->vertex = v;
         at->leader = at->mate = i;
-        at->next = *slot;
-        *slot = i;
     }
 }
 
@@ -130,25 +126,27 @@ static ms_status add_pair(seam *s, uint32_t a, uint32_t b, ms_error *err)
     return MS_OK;
 }
 
-/* The pairs of a vertex with those of lower number in one cell. */
+/* The pairs of a vertex with those that one cell holds so far. */
 static ms_status pair_with_cell(seam *s, uint32_t b, const double cell[3], ms_error *err)
 {
     ms_status status = MS_OK;
     uint32_t a = s->slot[hash_cell(cell) & s->mask];
     for (; a != NONE && status == MS_OK; a = s->at[a].next) {
         const double *own = s->at[a].cell;
-        if (a < b && own[0] == cell[0] && own[1] == cell[1] && own[2] == cell[2] && distance(s, a, b) <= s->tolerance) {
+        if (own[0] == cell[0] && own[1] == cell[1] && own[2] == cell[2] && distance(s, a, b) <= s->tolerance) {
             status = add_pair(s, a, b, err);
         }
     }
     return status;
 }
 
+/* Those of each vertex with the ones before it, which alone are in the lattice then. */
 static ms_status find_pairs(seam *s, ms_error *err)
 {
     const double reach = REACH * s->tolerance;
     ms_status status = MS_OK;
-    for (uint32_t b = 0; b < s->n; b++) {
+    memset(s->slot, 0xff, (s->mask + 1) * sizeof *s->slot);
+    for (uint32_t b = 0; b < s->n && status == MS_OK; b++) {
         double lo[3], hi[3], cell[3];
         find_cell(lo, s, s->at[b].vertex, -reach);
         find_cell(hi, s, s->at[b].vertex, reach);
@@ -159,6 +157,9 @@ static ms_status find_pairs(seam *s, ms_error *err)
                 }
             }
         }
+        uint32_t *slot = &s->slot[hash_cell(s->at[b].cell) & s->mask];
+        s->at[b].next = *slot;
+        *slot = b;
     }
     return status;
 }
@@ -254,7 +255,7 @@ static ms_status weld_seam(ms_mesh *mesh, size_t *joined, uint32_t *number, seam
     if (!s->at || !s->slot || !s->edge) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory to join the corners of %lu open edges", (unsigned long)n);
     }
-    fill_cells(s, number);
+    list_vertices(s, number);
     find_short_edges(s, number, edges);
     const ms_status status = find_pairs(s, err);
     if (status != MS_OK || s->n_pairs == 0) {
