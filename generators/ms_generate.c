@@ -27,7 +27,7 @@ static ms_generate_request fill_in(const ms_generate_request *request)
 {
     ms_generate_request all = request ? *request : (ms_generate_request){0};
     all.generator = all.generator ? all.generator : MS_GENERATOR_DEFAULT;
-    all.cells = all.cells > 0 ? all.cells : DEFAULT_CELLS;
+    all.cells = all.cells > 0 || all.max_voxels > 0 ? all.cells : DEFAULT_CELLS;
     all.seed = all.seed ? all.seed : 1;
     all.max_bytes = all.max_bytes > 0 ? all.max_bytes : ms_target_default_bytes();
     if (ms_stop_is_none(&all.stop)) {
@@ -52,18 +52,34 @@ static ms_status check_bytes(const double n[3], double max_bytes, ms_error *err)
                                         n[0], n[1], n[2], bytes / 1e9, max_bytes / 1e9);
 }
 
+/* The finer of two bounds gives way. */
+static ms_status choose_size(double *h, const ms_mesh *mesh, const ms_generate_request *request, ms_error *err)
+{
+    double least = 0;
+    *h = 0;
+    ms_status status = request->cells > 0 ? ms_voxelize_size(h, mesh, request->cells, err) : MS_OK;
+    if (status == MS_OK && request->max_voxels > 0) {
+        status = ms_voxelize_size_within(&least, mesh, request->max_voxels, err);
+    }
+    *h = least > *h ? least : *h;
+    return status;
+}
+
 static ms_status target_from_mesh(shape *s, const ms_generate_request *request, ms_error *err)
 {
     double h, n[3];
     ms_mesh_report report;
-    ms_status status = ms_mesh_repair(&s->mesh, &report, err);
+    const ms_mesh_mending usual = {.weld = MS_MESH_WELD};
+    ms_status status = ms_mesh_mend(&s->mesh, &report, request->mending ? request->mending : &usual, err);
     if (status == MS_OK && !report.closed) {
-        status = ms_fail(err, MS_ERR_SHAPE,
-                         "the mesh is open: %zu edges belong to one triangle only, %zu to an odd number; close it",
-                         report.open_edges, report.odd_edges);
+        status = ms_fail(
+            err, MS_ERR_SHAPE,
+            "the mesh is open: %zu edges belong to one triangle only, %zu to an odd number; close it, or fill its "
+            "%zu holes of at most %zu edges",
+            report.open_edges, report.odd_edges, report.holes, report.largest_hole);
     }
     if (status == MS_OK) {
-        status = ms_voxelize_size(&h, &s->mesh, request->cells, err);
+        status = choose_size(&h, &s->mesh, request, err);
     }
     if (status != MS_OK) {
         return status;

@@ -20,6 +20,8 @@ typedef struct ms_generate_request {
     const ms_generate_option *options; /* ends with a NULL name; NULL: those of the generator */
     ms_stop stop;                      /* asks for nothing: 50 spheres */
     double cells;                      /* voxels along the shortest side of a mesh's box; 0: 100 */
+    double max_voxels;                 /* of the grid of a mesh: a bound to cells, or without cells its size; 0: none */
+    const ms_mesh_mending *mending;    /* NULL: joins corners within MS_MESH_WELD */
     uint32_t label;                    /* of a volume; 0: the only one that it has */
     uint64_t seed;                     /* 0: 1 */
     double max_bytes;                  /* larger grids are refused; 0: ms_target_default_bytes */

@@ -150,10 +150,6 @@ static void apply_flips(ms_mesh *mesh, const uint8_t *flip, ms_mesh_report *repo
 
 static ms_status orient_shells(ms_mesh *mesh, shell_walk *w, ms_mesh_report *report, ms_error *err)
 {
-    ms_status status = walk_all(w, err);
-    if (status != MS_OK) {
-        return status;
-    }
     report->shells = report->bodies = w->shells.n;
     if (report->odd_edges > 0) {
         return MS_OK;
@@ -165,7 +161,7 @@ static ms_status orient_shells(ms_mesh *mesh, shell_walk *w, ms_mesh_report *rep
                        "a mesh editor",
                        v[0], v[1], v[2]);
     }
-    status = settle_nesting(w, report, err);
+    const ms_status status = settle_nesting(w, report, err);
     if (status == MS_OK) {
         apply_flips(mesh, w->flip, report);
         report->bodies = report->shells - report->cavities;
@@ -174,27 +170,100 @@ static ms_status orient_shells(ms_mesh *mesh, shell_walk *w, ms_mesh_report *rep
     return status;
 }
 
+static int is_open_shell(const ms_shell *shell, const shell_walk *w, const ms_edges *edges)
+{
+    int open = 0;
+    for (uint32_t i = 0; i < shell->n && !open; i++) {
+        for (uint32_t side = 3 * w->shells.order[shell->first + i], k = 0; k < 3; k++) {
+            const uint32_t e = edges->edge_of[side + k];
+            open |= (edges->start[e + 1] - edges->start[e]) % 2 == 1;
+        }
+    }
+    return open;
+}
+
+/* What a shell encloses; of an open one the most that it could. */
+static double shell_size(const ms_shell *shell, int open)
+{
+    const double *lo = shell->lo, *hi = shell->hi;
+    return open ? (hi[0] - lo[0]) * (hi[1] - lo[1]) * (hi[2] - lo[2]) : fabs(shell->volume);
+}
+
+/* The mark of a shell that goes; its depth is not known yet. */
+#define DROPPED SIZE_MAX
+
+static void drop_shells(ms_mesh *mesh, shell_walk *w, const ms_edges *edges, double share, ms_mesh_report *report)
+{
+    ms_shells *shells = &w->shells;
+    double largest = 0;
+    for (size_t s = 0; s < shells->n; s++) {
+        ms_shell *shell = &shells->shell[s];
+        measure_shell(shell, w);
+        largest = fmax(largest, shell_size(shell, is_open_shell(shell, w, edges)));
+    }
+    for (size_t s = 0; s < shells->n; s++) {
+        ms_shell *shell = &shells->shell[s];
+        const int open = is_open_shell(shell, w, edges);
+        if (shell_size(shell, open) < share * largest) {
+            shell->depth = DROPPED;
+            report->dropped_bodies++;
+            report->dropped_volume += open ? 0 : fabs(shell->volume);
+        }
+    }
+    size_t kept = 0;
+    for (size_t t = 0; t < mesh->n_triangles; t++) {
+        if (shells->shell[shells->shell_of[t]].depth != DROPPED) {
+            memmove(mesh->triangle[kept++], mesh->triangle[t], sizeof *mesh->triangle);
+        }
+    }
+    mesh->n_triangles = kept;
+}
+
+/* Finds the shells. free_walk in any case. */
+static ms_status begin_walk(shell_walk *w, const ms_mesh *mesh, const ms_edges *edges, ms_error *err)
+{
+    const size_t n = mesh->n_triangles;
+    uint32_t *across = malloc(3 * n * sizeof *across);
+    *w = (shell_walk){.mesh = mesh, .across = across, .flip = calloc(n, 1)};
+    w->shells.order = malloc(n * sizeof *w->shells.order);
+    w->shells.shell_of = malloc(n * sizeof *w->shells.shell_of);
+    ms_status status = across && w->flip && w->shells.order && w->shells.shell_of
+                           ? ms_mesh_link(across, mesh, edges, is_inside_out(mesh), err)
+                           : ms_fail(err, MS_ERR_NOMEM, "no memory to orient %zu triangles", n);
+    if (status == MS_OK) {
+        status = walk_all(w, err);
+    }
+    free(across);
+    w->across = NULL;
+    return status;
+}
+
+static void free_walk(shell_walk *w)
+{
+    free(w->flip);
+    free(w->shells.order);
+    free(w->shells.shell_of);
+    free(w->shells.shell);
+}
+
 ms_status ms_mesh_orient(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report *report, ms_error *err)
 {
-    size_t n = mesh->n_triangles;
-    uint32_t *across = malloc(3 * n * sizeof *across);
-    shell_walk w = {.mesh = mesh, .across = across, .flip = calloc(n, 1)};
-    w.shells.order = malloc(n * sizeof *w.shells.order);
-    w.shells.shell_of = malloc(n * sizeof *w.shells.shell_of);
-    ms_status status = MS_OK;
-    if (!across || !w.flip || !w.shells.order || !w.shells.shell_of) {
-        status = ms_fail(err, MS_ERR_NOMEM, "no memory to orient %zu triangles", n);
-        goto cleanup;
-    }
-    status = ms_mesh_link(across, mesh, edges, is_inside_out(mesh), err);
+    shell_walk w;
+    ms_status status = begin_walk(&w, mesh, edges, err);
     if (status == MS_OK) {
         status = orient_shells(mesh, &w, report, err);
     }
-cleanup:
-    free(across);
-    free(w.flip);
-    free(w.shells.order);
-    free(w.shells.shell_of);
-    free(w.shells.shell);
+    free_walk(&w);
+    return status;
+}
+
+ms_status ms_mesh_orient_drop(ms_mesh *mesh, const ms_edges *edges, double share, ms_mesh_report *report, ms_error *err)
+{
+    shell_walk w;
+    const ms_status status = begin_walk(&w, mesh, edges, err);
+    if (status == MS_OK) {
+        drop_shells(mesh, &w, edges, share, report);
+    }
+    free_walk(&w);
     return status;
 }

@@ -14,6 +14,16 @@
 ms_status ms_mesh_orient(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report *report, ms_error *err);
 
 /**
+ * Drops shells that are smaller than a share of the largest: a closed one by what it encloses, an open one by its box.
+ *
+ * @param[in,out] report its dropped_bodies and dropped_volume are added to
+ * @param         edges  of the mesh as it comes
+ * @return MS_OK; MS_ERR_NOMEM
+ */
+ms_status ms_mesh_orient_drop(ms_mesh *mesh, const ms_edges *edges, double share, ms_mesh_report *report,
+                              ms_error *err);
+
+/**
  * For each side the side across its edge, where a walk over the surface goes on. Two sides
  * of an edge point to each other. Of four, six, ... those do that have matter between them,
  * so that bodies which touch along an edge stay apart. An odd number point in a ring.

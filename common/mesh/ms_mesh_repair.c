@@ -1,8 +1,11 @@
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "ms_mesh_edges.h"
+#include "ms_mesh_holes.h"
 #include "ms_mesh_orient.h"
+#include "ms_mesh_weld.h"
 
 static ms_status check_corners(const ms_mesh *mesh, ms_error *err)
 {
@@ -123,6 +126,68 @@ static void restore_needed(pruning *p, ms_mesh_report *report)
     }
 }
 
+/* Lists the cancelled sets that hang together by edges with `first`; each is listed once. @return how many */
+static size_t gather_patch(uint32_t *patch, uint8_t *waiting, const pruning *p, uint32_t first)
+{
+    size_t n = 0;
+    patch[n++] = first;
+    waiting[first] = 0;
+    for (size_t at = 0; at < n; at++) {
+        for (uint32_t k = 0; k < 3; k++) {
+            const uint32_t e = p->edges->edge_of[3 * patch[at] + k];
+            for (uint32_t s = p->edges->start[e]; s < p->edges->start[e + 1]; s++) {
+                const uint32_t t = p->edges->side[s] / 3;
+                if (waiting[t]) {
+                    waiting[t] = 0;
+                    patch[n++] = t;
+                }
+            }
+        }
+    }
+    return n;
+}
+
+static void set_patch_kept(pruning *p, const uint32_t *patch, size_t n, int keep)
+{
+    for (size_t i = 0; i < n; i++) {
+        set_kept(p, patch[i], keep);
+    }
+}
+
+static size_t odd_edges_of_patch(const pruning *p, const uint32_t *patch, size_t n)
+{
+    size_t odd = 0;
+    for (size_t i = 0; i < n; i++) {
+        odd += (size_t)odd_edges_of(p, patch[i]);
+    }
+    return odd;
+}
+
+/* The same with what cancelled as a whole, drawn from both sides: one side comes back where that closes more edges than
+   it opens; and if nothing else is left, where it opens none. `patch` has room for all sets. */
+static void restore_patches(pruning *p, uint32_t *patch, uint8_t *waiting, ms_mesh_report *report)
+{
+    int nothing_left = 1;
+    for (size_t t = 0; t < p->mesh->n_triangles; t++) {
+        nothing_left &= !p->keep[t];
+        waiting[t] = 0;
+    }
+    for (size_t k = 0; k < p->n_doubtful; k++) {
+        waiting[p->doubtful[k]] = !p->keep[p->doubtful[k]];
+    }
+    for (size_t k = 0; k < p->n_doubtful; k++) {
+        if (waiting[p->doubtful[k]]) {
+            const size_t n = gather_patch(patch, waiting, p, p->doubtful[k]);
+            const size_t without = odd_edges_of_patch(p, patch, n);
+            set_patch_kept(p, patch, n, 1);
+            const size_t with = odd_edges_of_patch(p, patch, n);
+            const int closes = with < without || (nothing_left && with == 0);
+            set_patch_kept(p, patch, n, closes);
+            report->dropped_duplicate -= closes ? n : 0;
+        }
+    }
+}
+
 /* A fin hangs by one edge on an edge of two or more others, its other two edges free: like
    the collinear triangles that some programs leave beside an edge. It bounds nothing. */
 static void prune_fins(pruning *p, ms_mesh_report *report)
@@ -160,14 +225,17 @@ static ms_status prune_mesh(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report
     p.keep = malloc(n + 1);
     p.count = malloc((edges->n + 1) * sizeof *p.count);
     p.doubtful = malloc((n + 1) * sizeof *p.doubtful);
+    uint32_t *patch = malloc((n + 1) * sizeof *patch);
+    uint8_t *waiting = malloc(n + 1);
     ms_status status = MS_OK;
-    if (p.keep && p.count && p.doubtful) {
+    if (p.keep && p.count && p.doubtful && patch && waiting) {
         memset(p.keep, 1, n);
         for (size_t e = 0; e < edges->n; e++) {
             p.count[e] = edges->start[e + 1] - edges->start[e];
         }
         prune_duplicates(&p, report);
         restore_needed(&p, report);
+        restore_patches(&p, patch, waiting, report);
         prune_fins(&p, report);
         remove_unkept(mesh, p.keep);
     } else {
@@ -176,6 +244,8 @@ static ms_status prune_mesh(ms_mesh *mesh, const ms_edges *edges, ms_mesh_report
     free(p.keep);
     free(p.count);
     free(p.doubtful);
+    free(patch);
+    free(waiting);
     return status;
 }
 
@@ -218,27 +288,125 @@ static void count_edges(ms_mesh_report *report, const ms_edges *edges)
     }
 }
 
-ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err)
+static ms_status check_mending(const ms_mesh_mending *how, ms_error *err)
+{
+    if (how->weld != 0 && !(how->weld >= MS_MESH_LEAST_WELD && how->weld <= MS_MESH_MOST_WELD)) {
+        return ms_fail(err, MS_ERR_ARG, "corners cannot be joined within %g of the mesh's length; %g to %g is allowed",
+                       how->weld, MS_MESH_LEAST_WELD, MS_MESH_MOST_WELD);
+    }
+    if (!(how->drop_bodies >= 0 && how->drop_bodies <= 1)) {
+        return ms_fail(err, MS_ERR_ARG, "%g is no share of the largest body, from 0 to 1", how->drop_bodies);
+    }
+    return MS_OK;
+}
+
+/* Of what is used: a stray vertex does not count. */
+static double longest_side(const ms_mesh *mesh)
+{
+    double side = 0;
+    for (int k = 0; k < 3; k++) {
+        double lo = HUGE_VAL, hi = -HUGE_VAL;
+        for (size_t c = 0; c < 3 * mesh->n_triangles; c++) {
+            const double x = mesh->vertex[mesh->triangle[c / 3][c % 3]][k];
+            lo = fmin(lo, x);
+            hi = fmax(hi, x);
+        }
+        side = fmax(side, hi - lo);
+    }
+    return side;
+}
+
+static int has_odd_edge(const ms_edges *edges)
+{
+    int odd = 0;
+    for (size_t e = 0; e < edges->n && !odd; e++) {
+        odd = (edges->start[e + 1] - edges->start[e]) % 2 == 1;
+    }
+    return odd;
+}
+
+static ms_status rebuild_edges(ms_edges *edges, const ms_mesh *mesh, ms_error *err)
+{
+    ms_mesh_edges_free(edges);
+    return ms_edges_build(edges, mesh, err);
+}
+
+static ms_status join_corners(ms_mesh *mesh, ms_edges *edges, const ms_mesh_mending *how, ms_mesh_report *report,
+                              ms_error *err)
+{
+    const double tolerance = has_odd_edge(edges) ? how->weld * longest_side(mesh) : 0;
+    if (!(tolerance > 0)) {
+        return MS_OK;
+    }
+    ms_status status = ms_mesh_weld(mesh, &report->joined, edges, tolerance, err);
+    return status == MS_OK && report->joined > 0 ? rebuild_edges(edges, mesh, err) : status;
+}
+
+/* The edges are those of the mesh before and after. */
+static ms_status prune_and_rebuild(ms_mesh *mesh, ms_edges *edges, ms_mesh_report *report, ms_error *err)
+{
+    const size_t n_before = mesh->n_triangles, n_dropped = report->dropped_degenerate + report->dropped_duplicate;
+    ms_status status = prune_mesh(mesh, edges, report, err);
+    if (status == MS_OK && mesh->n_triangles < n_before) {
+        status = rebuild_edges(edges, mesh, err);
+    }
+    if (status == MS_OK && mesh->n_triangles == 0) {
+        status = ms_fail(err, MS_ERR_SHAPE, "no triangle is left: all %zu are degenerate or cancel in pairs",
+                         n_before + n_dropped);
+    }
+    return status;
+}
+
+/* What fills a hole may cancel what was there: a single triangle is a hole around itself. */
+static ms_status fill_holes(ms_mesh *mesh, ms_edges *edges, const ms_mesh_mending *how, ms_mesh_report *report,
+                            ms_error *err)
+{
+    ms_status status = has_odd_edge(edges) ? ms_mesh_holes(mesh, report, edges, how->fill_holes, err) : MS_OK;
+    if (status == MS_OK && report->filled > 0) {
+        status = rebuild_edges(edges, mesh, err);
+        status = status == MS_OK ? prune_and_rebuild(mesh, edges, report, err) : status;
+    }
+    return status;
+}
+
+static ms_status drop_bodies(ms_mesh *mesh, ms_edges *edges, const ms_mesh_mending *how, ms_mesh_report *report,
+                             ms_error *err)
+{
+    if (!(how->drop_bodies > 0)) {
+        return MS_OK;
+    }
+    ms_status status = ms_mesh_orient_drop(mesh, edges, how->drop_bodies, report, err);
+    if (status == MS_OK && report->dropped_bodies > 0) {
+        status = rebuild_edges(edges, mesh, err);
+        status = status == MS_OK ? ms_mesh_holes(mesh, report, edges, 0, err) : status;
+    }
+    return status;
+}
+
+ms_status ms_mesh_mend(ms_mesh *mesh, ms_mesh_report *report, const ms_mesh_mending *how, ms_error *err)
 {
     *report = (ms_mesh_report){0};
     ms_edges edges = {0};
     ms_status status = check_corners(mesh, err);
+    if (status == MS_OK) {
+        status = check_mending(how, err);
+    }
     if (status != MS_OK) {
         return status;
     }
     drop_degenerate(mesh, report);
-    size_t n_before = mesh->n_triangles;
     status = ms_edges_build(&edges, mesh, err);
     if (status == MS_OK) {
-        status = prune_mesh(mesh, &edges, report, err);
+        status = join_corners(mesh, &edges, how, report, err);
     }
-    if (status == MS_OK && mesh->n_triangles < n_before) {
-        ms_mesh_edges_free(&edges);
-        status = ms_edges_build(&edges, mesh, err);
+    if (status == MS_OK) {
+        status = prune_and_rebuild(mesh, &edges, report, err);
     }
-    if (status == MS_OK && mesh->n_triangles == 0) {
-        status = ms_fail(err, MS_ERR_SHAPE, "no triangle is left: all %zu are degenerate or cancel in pairs",
-                         report->dropped_degenerate + report->dropped_duplicate);
+    if (status == MS_OK) {
+        status = fill_holes(mesh, &edges, how, report, err);
+    }
+    if (status == MS_OK) {
+        status = drop_bodies(mesh, &edges, how, report, err);
     }
     if (status == MS_OK) {
         status = drop_unused_vertices(mesh, err);
@@ -249,4 +417,9 @@ ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err)
     }
     ms_mesh_edges_free(&edges);
     return status;
+}
+
+ms_status ms_mesh_repair(ms_mesh *mesh, ms_mesh_report *report, ms_error *err)
+{
+    return ms_mesh_mend(mesh, report, &(ms_mesh_mending){0}, err);
 }

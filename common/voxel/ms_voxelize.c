@@ -33,6 +33,43 @@ void ms_voxelize_extents(double n[3], const ms_mesh *mesh, double h)
     }
 }
 
+/* Voxels of a grid; more than any number where an extent is beyond the limit. */
+static double count_voxels(const ms_mesh *mesh, double h)
+{
+    double n[3];
+    ms_voxelize_extents(n, mesh, h);
+    return fmax(n[0], fmax(n[1], n[2])) <= MS_GRID_MAX_EXTENT ? n[0] * n[1] * n[2] : HUGE_VAL;
+}
+
+ms_status ms_voxelize_size_within(double *h, const ms_mesh *mesh, double max_voxels, ms_error *err)
+{
+    double side, few = 1, many = MS_GRID_MAX_EXTENT;
+    *h = 0;
+    if (!(max_voxels > 0) || !isfinite(max_voxels)) {
+        return ms_fail(err, MS_ERR_ARG, "%g voxels are not a number above 0", max_voxels);
+    }
+    const ms_status status = ms_voxelize_size(&side, mesh, 1, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    if (!(count_voxels(mesh, side) <= max_voxels)) {
+        return ms_fail(
+            err, MS_ERR_LIMIT,
+            "%.0f voxels are too few: a grid of one along the shortest side of the mesh has %.6g; allow more",
+            max_voxels, count_voxels(mesh, side));
+    }
+    while (many - few > 1) { /* cells along the shortest side: `few` fit, `many` do not */
+        const double middle = floor(0.5 * (few + many));
+        if (count_voxels(mesh, side / middle) <= max_voxels) {
+            few = middle;
+        } else {
+            many = middle;
+        }
+    }
+    *h = side / few;
+    return MS_OK;
+}
+
 static int is_finite(const ms_mesh *mesh)
 {
     int finite = 1;

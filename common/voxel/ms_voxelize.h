@@ -19,6 +19,15 @@ typedef enum ms_voxel_rule {
  */
 MS_API ms_status ms_voxelize_size(double *h, const ms_mesh *mesh, double cells, ms_error *err);
 
+/**
+ * The voxel size of the finest grid that has at most so many voxels, its hull included, and a whole number of them
+ * along the shortest side of the mesh's box.
+ *
+ * @return MS_OK; MS_ERR_ARG for a number that is not finite and above 0; MS_ERR_LIMIT if they are too few for one along
+ *         the shortest side; MS_ERR_SHAPE for a flat mesh
+ */
+MS_API ms_status ms_voxelize_size_within(double *h, const ms_mesh *mesh, double max_voxels, ms_error *err);
+
 /** The extents that ms_voxelize would use; doubles, since a bad h may ask for any number. */
 MS_API void ms_voxelize_extents(double n[3], const ms_mesh *mesh, double h);
 

@@ -15,9 +15,10 @@ void ms_input_defaults(ms_input_flags *flags)
 {
     memset(flags, 0, sizeof *flags);
     flags->max_memory = ms_target_default_bytes();
+    flags->mending.weld = MS_MESH_WELD;
 }
 
-static ms_status parse_size(double *bytes, const char *text, ms_error *err)
+static ms_status parse_size(double *size, const char *name, const char *text, const char *of, ms_error *err)
 {
     static const char UNITS[] = "kMGT";
     const size_t length = strlen(text);
@@ -28,10 +29,16 @@ static ms_status parse_size(double *bytes, const char *text, ms_error *err)
         factor *= 1000;
     }
     if (number.length == 0 || !ms_text_to_double(&value, &number) || !(value * factor <= 1e18) || value < 0) {
-        return ms_fail(err, MS_ERR_ARG, "--max-memory '%s' is not a size like 500M or 8G (k, M, G or T bytes)", text);
+        return ms_fail(err, MS_ERR_ARG, "--%s '%s' is not a size like 500M or 8G (k, M, G or T %s)", name, text, of);
     }
-    *bytes = value * factor;
+    *size = value * factor;
     return MS_OK;
+}
+
+static ms_status parse_max_voxels(double *voxels, const char *text, ms_error *err)
+{
+    const ms_status status = parse_size(voxels, "max-voxels", text, "voxels", err);
+    return status == MS_OK && *voxels < 1 ? ms_fail(err, MS_ERR_ARG, "--max-voxels %s is below 1", text) : status;
 }
 
 static ms_status parse_rule(ms_voxel_rule *rule, const char *text, ms_error *err)
@@ -46,10 +53,31 @@ static ms_status parse_rule(ms_voxel_rule *rule, const char *text, ms_error *err
     return MS_OK;
 }
 
+/* Takes a flag if it is one of MS_INPUT_MENDING_FLAGS. */
+static ms_status take_mending_flag(int *taken, ms_mesh_mending *mending, const char *name, const char *value,
+                                   ms_error *err)
+{
+    double number = 0;
+    *taken = 1;
+    if (strcmp(name, "weld") == 0) {
+        return ms_flags_number(&mending->weld, name, value, 0, MS_MESH_MOST_WELD, err);
+    }
+    if (strcmp(name, "drop-bodies") == 0) {
+        return ms_flags_number(&mending->drop_bodies, name, value, 0, 1, err);
+    }
+    *taken = strcmp(name, "fill-holes") == 0;
+    const ms_status status = *taken ? ms_flags_whole(&number, name, value, 0, UINT32_MAX, err) : MS_OK;
+    mending->fill_holes = *taken && status == MS_OK ? (size_t)number : mending->fill_holes;
+    return status;
+}
+
 ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, const char *value, ms_error *err)
 {
     double number;
-    ms_status status = MS_OK;
+    ms_status status = take_mending_flag(taken, &flags->mending, name, value, err);
+    if (*taken) {
+        return status;
+    }
     *taken = 1;
     if (strcmp(name, "cells") == 0) {
         return ms_flags_whole(&flags->cells, name, value, 1, MS_GRID_MAX_EXTENT, err);
@@ -60,6 +88,9 @@ ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, con
     if (strcmp(name, "voxel-size") == 0) {
         return ms_flags_number(&flags->voxel_size, name, value, 1e-300, 1e300, err);
     }
+    if (strcmp(name, "max-voxels") == 0) {
+        return parse_max_voxels(&flags->max_voxels, value, err);
+    }
     if (strcmp(name, "rule") == 0) {
         return parse_rule(&flags->rule, value, err);
     }
@@ -68,7 +99,7 @@ ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, con
         return MS_OK;
     }
     if (strcmp(name, "max-memory") == 0) {
-        return parse_size(&flags->max_memory, value, err);
+        return parse_size(&flags->max_memory, name, value, "bytes", err);
     }
     if (strcmp(name, "label") == 0) {
         status = ms_flags_whole(&number, name, value, 1, UINT32_MAX, err);
@@ -89,9 +120,20 @@ static void open_line(const ms_input *input, const char *stage)
     ms_progress_stage(stage);
 }
 
-static void say_repairs(const char *path, const ms_mesh_report *r)
+static void say_repairs(const char *path, const ms_mesh_report *r, const ms_mesh_mending *how)
 {
     ms_progress_wipe();
+    if (r->joined) {
+        fprintf(stderr, "%s: joined %zu corners of open edges to others within %g of the length of the mesh (--weld)\n",
+                path, r->joined, how->weld);
+    }
+    if (r->filled) {
+        fprintf(stderr, "%s: filled %zu holes of at most %zu edges\n", path, r->filled, how->fill_holes);
+    }
+    if (r->dropped_bodies) {
+        fprintf(stderr, "%s: dropped %zu pieces smaller than %g of the largest, of volume %.6g in all\n", path,
+                r->dropped_bodies, how->drop_bodies, r->dropped_volume);
+    }
     if (r->dropped_degenerate || r->dropped_duplicate) {
         fprintf(stderr, "%s: dropped %zu degenerate and %zu duplicate triangles\n", path, r->dropped_degenerate,
                 r->dropped_duplicate);
@@ -142,18 +184,21 @@ static ms_status name_file(ms_error *err, ms_status status, const ms_input *inpu
     return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", input->path, cause->text);
 }
 
-static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, ms_error *err)
+static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, const ms_mesh_mending *mending, ms_error *err)
 {
-    ms_error cause;
-    ms_status status = ms_mesh_parse(&input->mesh, bytes, input->path, err);
+    ms_error cause, remark;
+    ms_status status = ms_mesh_parse(&input->mesh, &remark, bytes, input->path, err);
+    if (status == MS_OK && remark.text[0]) {
+        fprintf(stderr, "%s\n", remark.text);
+    }
     if (status == MS_OK) {
         status = check_size(input, err);
     }
     if (status == MS_OK) {
-        status = name_file(err, ms_mesh_repair(&input->mesh, &input->report, &cause), input, &cause);
+        status = name_file(err, ms_mesh_mend(&input->mesh, &input->report, mending, &cause), input, &cause);
     }
     if (status == MS_OK) {
-        say_repairs(input->path, &input->report);
+        say_repairs(input->path, &input->report, mending);
     }
     if (status == MS_OK && input->report.closed) {
         status = name_file(err, ms_solid_mesh(&input->solid, &input->mesh, &cause), input, &cause);
@@ -184,7 +229,7 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
     if (ms_volume_is_volume_path(path)) {
         status = ms_volume_parse(&input->volume, &bytes, path, ms_input_max_voxels(flags), err);
     } else if (ms_mesh_read_is_mesh_path(path)) {
-        status = parse_mesh(input, &bytes, err);
+        status = parse_mesh(input, &bytes, &flags->mending, err);
     } else {
         status = ms_fail(err, MS_ERR_FORMAT,
                          "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
@@ -209,12 +254,12 @@ double ms_input_shortest_side(const ms_mesh *mesh)
     return fmin(hi[0] - lo[0], fmin(hi[1] - lo[1], hi[2] - lo[2]));
 }
 
-/* The lattice constant that the flags ask for. */
-static ms_status choose_voxel_size(double *h, const ms_input *input, const ms_input_flags *flags, ms_error *err)
+/* The lattice constant that the flags ask for, but for --max-voxels; 0 where that alone is given. */
+static ms_status asked_voxel_size(double *h, const ms_input *input, const ms_input_flags *flags, ms_error *err)
 {
     ms_error cause;
-    if (flags->voxel_size > 0) {
-        *h = flags->voxel_size;
+    *h = flags->voxel_size;
+    if (flags->voxel_size > 0 || (flags->max_voxels > 0 && !(flags->cells > 0) && !(flags->deq > 0))) {
         return MS_OK;
     }
     if (flags->deq > 0) {
@@ -228,13 +273,44 @@ static ms_status choose_voxel_size(double *h, const ms_input *input, const ms_in
                      input, &cause);
 }
 
+/* The lattice constant: what is asked for, or if that makes too many voxels, as fine as they allow. */
+static ms_status choose_voxel_size(double *h, const ms_input *input, const ms_input_flags *flags, ms_error *err)
+{
+    double n[3], within;
+    ms_error cause;
+    ms_status status = asked_voxel_size(h, input, flags, err);
+    if (status != MS_OK || !(flags->max_voxels > 0)) {
+        return status;
+    }
+    if (*h > 0) {
+        ms_voxelize_extents(n, &input->mesh, *h);
+        if (n[0] * n[1] * n[2] <= flags->max_voxels) {
+            return MS_OK;
+        }
+    }
+    status = name_file(err, ms_voxelize_size_within(&within, &input->mesh, flags->max_voxels, &cause), input, &cause);
+    *h = within;
+    return status;
+}
+
+/* That --max-voxels acts, where anything else was asked for. */
+static void say_coarser(const ms_input *input, const ms_input_flags *flags, double h)
+{
+    double asked;
+    if (flags->max_voxels > 0 && asked_voxel_size(&asked, input, flags, NULL) == MS_OK && asked > 0 && asked < h) {
+        const double side = ms_input_shortest_side(&input->mesh);
+        fprintf(stderr, "%s: --max-voxels %.6g leaves %.0f cells along the shortest side, of %.4g asked for\n",
+                input->path, flags->max_voxels, side / h, side / asked);
+    }
+}
+
 static ms_status check_memory(const double n[3], const ms_input_flags *flags, ms_error *err)
 {
     const double bytes = ms_target_bytes(n);
     if (bytes > flags->max_memory) {
         return ms_fail(err, MS_ERR_LIMIT,
                        "a grid of %.6gx%.6gx%.6g voxels takes about %.3g GB, more than the %.3g GB allowed; use fewer "
-                       "cells or raise --max-memory",
+                       "cells, --max-voxels N, or raise --max-memory",
                        n[0], n[1], n[2], bytes / 1e9, flags->max_memory / 1e9);
     }
     if (!flags->quiet) {
@@ -278,15 +354,17 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
     double h = 0, n[3];
     ms_error cause;
     if (!input->report.closed && !flags->allow_open) {
+        const ms_mesh_report *r = &input->report;
         return ms_fail(err, MS_ERR_SHAPE,
                        "%s: the mesh is open: %zu edges belong to one triangle only, %zu to an odd number; close it, "
-                       "or use --allow-open",
-                       input->path, input->report.open_edges, input->report.odd_edges);
+                       "fill its holes (%zu, the largest of %zu edges) with --fill-holes %zu, or use --allow-open",
+                       input->path, r->open_edges, r->odd_edges, r->holes, r->largest_hole, r->largest_hole);
     }
     ms_status status = choose_voxel_size(&h, input, flags, err);
     if (status != MS_OK) {
         return status;
     }
+    say_coarser(input, flags, h);
     ms_voxelize_extents(n, &input->mesh, h);
     status = check_memory(n, flags, err);
     if (status == MS_OK) {
@@ -360,10 +438,14 @@ ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flag
     if (given > 1) {
         return ms_fail(err, MS_ERR_ARG, "--cells, --deq and --voxel-size exclude one another");
     }
-    if (input->volume.label && given > 0) {
-        return ms_fail(err, MS_ERR_ARG,
-                       "%s is a volume with voxels of its own; --cells, --deq and --voxel-size do not apply",
-                       input->path);
+    if (input->volume.label && (given > 0 || flags->max_voxels > 0)) {
+        return ms_fail(
+            err, MS_ERR_ARG,
+            "%s is a volume with voxels of its own; --cells, --deq, --voxel-size and --max-voxels do not apply",
+            input->path);
+    }
+    if (input->volume.label && (flags->mending.fill_holes > 0 || flags->mending.drop_bodies > 0)) {
+        return ms_fail(err, MS_ERR_ARG, "%s is a volume; --fill-holes and --drop-bodies are for meshes", input->path);
     }
     if (!input->volume.label && flags->label) {
         return ms_fail(err, MS_ERR_ARG, "%s is a mesh; --label is for volumes", input->path);

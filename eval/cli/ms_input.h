@@ -16,6 +16,8 @@ enum { MS_INPUT_MAX_THREADS = 1024 };
 /** Flags about the shape and its grid, common to several commands; see MS_INPUT_FLAGS. */
 typedef struct ms_input_flags {
     double cells, deq, voxel_size; /* 0: not given */
+    double max_voxels;             /* 0: not given */
+    ms_mesh_mending mending;
     ms_voxel_rule rule;
     int allow_open;
     uint32_t label;
@@ -25,12 +27,19 @@ typedef struct ms_input_flags {
 } ms_input_flags;
 
 /* clang-format off */
+#define MS_INPUT_MENDING_FLAGS \
+    {"weld", 0, "SHARE", "join corners of open edges within this part of the longest side (1e-7); 0: none"}, \
+    {"fill-holes", 0, "EDGES", "fill holes of at most so many edges (0: none)"}, \
+    {"drop-bodies", 0, "SHARE", "drop pieces that hold less than this part of the largest (0: none)"}
+
 #define MS_INPUT_FLAGS \
     {"cells", 0, "N", "cells along the shortest side of the shape's box (100)"}, \
     {"deq", 0, "N", "voxel size = diameter of the ball of equal volume / N"}, \
     {"voxel-size", 0, "H", "voxel size in the shape's unit"}, \
+    {"max-voxels", 0, "N", "voxels of the whole grid at most, as 500k or 20M; alone: the finest such grid"}, \
     {"rule", 0, "half|centre", "a voxel is inside if more than half of it is, or if its centre is (half)"}, \
     {"allow-open", 0, NULL, "take a mesh with holes: majority of the parities along three axes"}, \
+    MS_INPUT_MENDING_FLAGS, \
     {"label", 0, "L", "the label of a volume to take"}, \
     {"max-memory", 0, "SIZE", "refuse grids beyond this, as 500M or 8G (3/4 of the machine's)"}, \
     {"threads", 'j', "T", "threads (all cores)"}

@@ -135,6 +135,14 @@ json_t *ms_report_score_json(const ms_score *score, size_t spheres)
     return ms_report_whole(json, failed);
 }
 
+json_t *ms_report_mending_json(const ms_mesh_report *r)
+{
+    return json_pack("{s:I,s:I,s:I,s:I,s:I,s:f,s:I}", "joined", (json_int_t)r->joined, "dropped_degenerate",
+                     (json_int_t)r->dropped_degenerate, "dropped_duplicate", (json_int_t)r->dropped_duplicate,
+                     "filled_holes", (json_int_t)r->filled, "dropped_bodies", (json_int_t)r->dropped_bodies,
+                     "dropped_volume", r->dropped_volume, "turned", (json_int_t)r->flipped);
+}
+
 json_t *ms_report_input_json(const ms_input *input)
 {
     char checksum[20];
@@ -147,6 +155,7 @@ json_t *ms_report_input_json(const ms_input *input)
     if (input->mesh.n_triangles) {
         ms_json_object_set(&json, "triangles", json_integer((json_int_t)input->mesh.n_triangles));
         ms_json_object_set(&json, "closed", json_boolean(input->report.closed));
+        ms_json_object_merge(&json, ms_report_mending_json(&input->report));
     } else {
         ms_json_object_set(&json, "label", input->label ? json_integer(input->label) : json_null());
     }

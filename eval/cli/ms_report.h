@@ -26,6 +26,9 @@ void ms_report_curve(FILE *stream, const ms_score *curve, size_t count);
 /** Path, checksum, grid and rule of the input; the caller owns it. */
 json_t *ms_report_input_json(const ms_input *input);
 
+/** What was mended in a mesh; the caller owns it. */
+json_t *ms_report_mending_json(const ms_mesh_report *report);
+
 /** Volume, centroid, inertia, principal moments and axes; the caller owns it. */
 json_t *ms_report_body_json(const ms_body *body, const ms_principal *principal);
 

@@ -13,6 +13,7 @@
 static const ms_flag FLAGS[] = {
     {"json", 0, NULL, "as JSON"},
     {"label", 0, "L", "the label of a volume to take"},
+    MS_INPUT_MENDING_FLAGS,
     {0},
 };
 
@@ -96,6 +97,9 @@ static void print_mesh(const info_facts *f)
            f->input->mesh.n_vertices);
     printf("  %-22s %s\n  %-22s %zu\n  %-22s %zu\n", "closed", r->closed ? "yes" : "no", "open edges", r->open_edges,
            "non-manifold edges", r->nonmanifold_edges);
+    if (r->holes) {
+        printf("  %-22s %zu, the largest of %zu edges\n", "holes", r->holes, r->largest_hole);
+    }
     if (r->closed) {
         printf("  %-22s %zu (%zu cavities%s)\n", "bodies", r->bodies, r->cavities,
                f->input->solid.overlapping ? ", overlapping" : "");
@@ -154,14 +158,15 @@ static json_t *facts_json(const info_facts *f)
                              f->lo[0], f->lo[1], f->lo[2], "box_hi", f->hi[0], f->hi[1], f->hi[2], "area",
                              ms_report_number(f->area), "equivalent_diameter", ms_report_number(equivalent_diameter(f)),
                              "sphericity", ms_report_number(sphericity(f)));
-    json_t *mesh = json_pack("{s:I,s:I,s:b,s:I,s:I,s:I,s:I,s:I,s:b,s:I,s:I,s:I}", "triangles",
-                             (json_int_t)f->input->mesh.n_triangles, "vertices", (json_int_t)f->input->mesh.n_vertices,
-                             "closed", r->closed, "open_edges", (json_int_t)r->open_edges, "nonmanifold_edges",
-                             (json_int_t)r->nonmanifold_edges, "shells", (json_int_t)r->shells, "bodies",
-                             (json_int_t)r->bodies, "cavities", (json_int_t)r->cavities, "overlapping",
-                             f->input->solid.overlapping, "turned", (json_int_t)r->flipped, "dropped_degenerate",
-                             (json_int_t)r->dropped_degenerate, "dropped_duplicate", (json_int_t)r->dropped_duplicate);
+    json_t *mesh = json_pack(
+        "{s:I,s:I,s:b,s:I,s:I,s:I,s:I,s:I,s:b}", "triangles", (json_int_t)f->input->mesh.n_triangles, "vertices",
+        (json_int_t)f->input->mesh.n_vertices, "closed", r->closed, "open_edges", (json_int_t)r->open_edges,
+        "nonmanifold_edges", (json_int_t)r->nonmanifold_edges, "shells", (json_int_t)r->shells, "bodies",
+        (json_int_t)r->bodies, "cavities", (json_int_t)r->cavities, "overlapping", f->input->solid.overlapping);
     if (f->input->mesh.n_triangles) {
+        ms_json_object_set(&mesh, "holes", json_integer((json_int_t)r->holes));
+        ms_json_object_set(&mesh, "largest_hole", json_integer((json_int_t)r->largest_hole));
+        ms_json_object_merge(&mesh, ms_report_mending_json(r));
         ms_json_object_merge(&json, mesh);
     } else {
         ms_json_object_set(&json, "voxels", json_integer((json_int_t)f->input->target.voxels));
@@ -247,7 +252,7 @@ static int run_info(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_info = {
     .name = "info",
     .summary = "what a shape is: closed or not, volume, inertia, principal frame; the labels of a volume",
-    .usage = "SHAPE [--json] [--label L]",
+    .usage = "SHAPE [--json] [--label L] [--weld SHARE] [--fill-holes EDGES] [--drop-bodies SHARE]",
     .example = "mskit info grain.stl",
     .flags = FLAGS,
     .run = run_info,

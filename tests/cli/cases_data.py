@@ -72,6 +72,18 @@ class Data(Case):
         self.assertEqual(self.mskit("info", path, "--label", "2", "--json").json["pieces"], 2)
         self.assertRegex(self.mskit("info", path, "--label", "2").out, "pieces +2 ")
 
+    def test_cases_that_are_mended(self):
+        """Corners that stand several times, up to 1e-7 of the length apart in each coordinate, and bytes behind the last."""
+        for name, remark, joined in (("b01_seam_1e-7.stl", "joined 1318 corners", 1318),
+                                     ("a11_tail_newline.stl", "2 bytes behind the last of its 528 triangles", 0)):
+            result = self.mskit("info", shared_file("cases", name), "--json")
+            self.assert_says(result, name, remark)
+            self.assertEqual((result.json["closed"], result.json["joined"], result.json["vertices"]),
+                             (True, joined, 266))
+            self.assert_close(result.json["volume"], 4.0706, 2e-5, "volume, of which five digits are known")
+        self.assertFalse(self.mskit("info", shared_file("cases", "b01_seam_1e-7.stl"), "--weld", "0",
+                                    "--json").json["closed"])
+
     def test_meshes(self):
         for name, volume, area, box, sphericity in MESHES:
             path = shared_file(name)
@@ -105,7 +117,10 @@ class Data(Case):
 
     def test_open_mesh(self):
         path = shared_file("bad", "12_open_mesh.stl")
-        self.assert_refused("generate", path, code=1, says=("36 edges", "--allow-open"))
+        self.assert_refused("generate", path, code=1, says=("36 edges", "--allow-open", "--fill-holes 36"))
+        info = self.mskit("info", path, "--fill-holes", 36, "--json").json
+        self.assertTrue(info["closed"])
+        self.assertEqual((info["filled_holes"], info["triangles"]), (1, 800 + 34))
         record = self.generate(path, "--allow-open", "--cells", "30", "-n", "5", "-o", "c.csv")
         self.assertFalse(record["input"]["closed"])
         self.assertEqual(len(self.spheres("c.csv")), 5)

@@ -99,6 +99,37 @@ static void a_label_of_a_volume(void **state)
     ms_clump_free(&clump);
 }
 
+/* A bound gives the grid by itself, and wins over cells where it is the coarser. */
+static void so_many_voxels_at_most(void **state)
+{
+    (void)state;
+    const ms_generate_request requests[] = {{.stop = {.spheres = 5}, .max_voxels = 1e5},
+                                            {.stop = {.spheres = 5}, .max_voxels = 1e5, .cells = 200},
+                                            {.stop = {.spheres = 5}, .max_voxels = 1e9, .cells = 30}};
+    double h, side;
+    ms_mesh mesh;
+    assert_int_equal(ms_mesh_read(&mesh, MESH, NULL), MS_OK);
+    assert_int_equal(ms_voxelize_size_within(&h, &mesh, 1e5, NULL), MS_OK);
+    assert_int_equal(ms_voxelize_size(&side, &mesh, 1, NULL), MS_OK);
+    ms_mesh_free(&mesh);
+    for (int k = 0; k < 3; k++) {
+        ms_clump clump, truth = by_hand(NULL, NULL, 5, k < 2 ? round(side / h) : 30);
+        assert_int_equal(ms_generate_file(&clump, NULL, MESH, &requests[k], NULL), MS_OK);
+        expect_same(&clump, &truth);
+    }
+}
+
+/* The hole is the triangle that was left out, so that the body is the same. */
+static void a_mesh_is_mended_as_asked(void **state)
+{
+    (void)state;
+    const ms_mesh_mending mending = {.fill_holes = 3};
+    const ms_generate_request request = {.mending = &mending, .cells = 40, .stop = {.spheres = 10}};
+    ms_clump clump, truth = by_hand(NULL, NULL, 10, 40);
+    assert_int_equal(ms_generate_file(&clump, NULL, OPEN, &request, NULL), MS_OK);
+    expect_same(&clump, &truth);
+}
+
 static void expect_refusal(const char *path, ms_generate_request request, ms_status expected, const char *says)
 {
     ms_clump clump;
@@ -122,7 +153,9 @@ static void what_is_refused(void **state)
     expect_refusal(VOLUME, (ms_generate_request){.max_bytes = 1e3}, MS_ERR_LIMIT, VOLUME);
     expect_refusal(VOLUME, (ms_generate_request){0}, MS_ERR_SHAPE, "several labels");
     expect_refusal(VOLUME, (ms_generate_request){.label = 5}, MS_ERR_SHAPE, "label 5");
-    expect_refusal(OPEN, (ms_generate_request){0}, MS_ERR_SHAPE, "open");
+    expect_refusal(OPEN, (ms_generate_request){0}, MS_ERR_SHAPE, "fill its 1 holes of at most 3 edges");
+    expect_refusal(OPEN, (ms_generate_request){.mending = &(ms_mesh_mending){.drop_bodies = 2}}, MS_ERR_ARG, "share");
+    expect_refusal(MESH, (ms_generate_request){.max_voxels = 100}, MS_ERR_LIMIT, "100 voxels are too few");
     expect_refusal("shape.txt", (ms_generate_request){0}, MS_ERR_FORMAT, "shape.txt");
     expect_refusal("no-such.stl", (ms_generate_request){0}, MS_ERR_IO, "no-such.stl");
     expect_refusal(MESH, (ms_generate_request){.stop = {.radius = 100}}, MS_ERR_SHAPE, "no sphere");
@@ -131,8 +164,8 @@ static void what_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(as_the_calls_one_by_one),
-        cmocka_unit_test(a_label_of_a_volume),
+        cmocka_unit_test(as_the_calls_one_by_one), cmocka_unit_test(a_label_of_a_volume),
+        cmocka_unit_test(so_many_voxels_at_most),  cmocka_unit_test(a_mesh_is_mended_as_asked),
         cmocka_unit_test(what_is_refused),
     };
     return cmocka_run_group_tests(tests, write_files, remove_files);

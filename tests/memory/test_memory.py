@@ -22,6 +22,7 @@ SMALL = ["--cells", "8", "-j", "1"]
 COMMANDS = {
     "shape": ["shape", "grain", "-o", "out.ply"],
     "info": ["info", "body.stl", "--json"],
+    "mend": ["info", "torn.obj", "--fill-holes", "3", "--drop-bodies", "0.1", "--json"],
     "mss": ["generate", "body.stl", "-g", "mss", "-n", "4", "--json", "--curve", "curve.csv", "-o", "out.csv"] + SMALL,
     "setcover": ["generate", "body.obj", "-g", "setcover", "-n", "4", "-o", "out.json", "-o", "out.vtk"] + SMALL,
     "fcm": ["generate", "other.off", "-g", "fcm", "-n", "3", "--target-grid", "grid.vtk", "-o", "out.vtk"] + SMALL,
@@ -120,6 +121,17 @@ def fault_of(good, got):
     return f"succeeded with other files: {changed}" if changed else ""
 
 
+def tear(text):
+    """An OBJ with each triangle by itself, a hair away from the others; the first is lost, and a crumb lies beside."""
+    vertices = [[float(w) for w in line.split()[1:]] for line in text.splitlines() if line.startswith("v ")]
+    faces = [[int(w) - 1 for w in line.split()[1:]] for line in text.splitlines() if line.startswith("f ")][1:]
+    vertices += [(9, 0, 0), (10, 0, 0), (9, 1, 0), (9, 0, 1)]
+    n = len(vertices)
+    faces += [(n - 4, n - 2, n - 3), (n - 4, n - 3, n - 1), (n - 3, n - 2, n - 1), (n - 2, n - 4, n - 1)]
+    return "".join("".join("v %.17g %.17g %.17g\n" % tuple(x + 1e-8 * (k % 7) for x in vertices[v]) for v in face)
+                   + "f -3 -2 -1\n" for k, face in enumerate(faces))
+
+
 def make_inputs(folder):
     def mskit(*args):
         subprocess.run([MSKIT, *args], cwd=folder, check=True, stdout=subprocess.DEVNULL)
@@ -127,6 +139,9 @@ def make_inputs(folder):
     for ending in ("stl", "obj", "off", "ply"):
         mskit("shape", "ellipsoid", "a=3", "b=2", "c=2", "fineness=4", "-o", "body." + ending)
     mskit("generate", "body.stl", "-n", "3", "--cells", "8", "-o", "clump.csv", "-o", "clump.json")
+    with open(os.path.join(folder, "body.obj"), encoding="ascii") as whole:
+        with open(os.path.join(folder, "torn.obj"), "w", encoding="ascii") as torn:
+            torn.write(tear(whole.read()))
     os.rename(os.path.join(folder, "body.off"), os.path.join(folder, "other.off"))
     with open(os.path.join(folder, "scene.csv"), "w", encoding="ascii") as f:
         f.write("shape,count\nbody.stl,3\nother.off,1\n")

@@ -24,6 +24,22 @@ static void obj_is_read(void **state)
     }
 }
 
+static void corners_without_what_they_name_are_read(void **state)
+{
+    static const struct {
+        const char *text, *remark;
+    } cases[] = {
+        {OBJ_VERTICES "f 1// 3// 2//\nf 1 2 4\nf 2 3 4\nf 3 1 4\n",
+         "line 5: '1//' names a texture or normal and gives none; its vertex was read (the first of 3 such places)"},
+        {OBJ_VERTICES "f 1 3 2\nf 1 2/ 4\nf 2 3 4\nf 3 1 4\n", "line 6: '2/' names"},
+        {OBJ_VERTICES "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1/1/ 4\n", "line 8: '1/1/' names"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        expect_tetrahedron_remarked(ms_mesh_parse_obj, cases[i].text, strlen(cases[i].text), cases[i].remark);
+    }
+}
+
 static void polygons_are_cut_into_fans(void **state)
 {
     static const uint32_t wanted[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {4, 3, 3}};
@@ -45,8 +61,9 @@ static void malformed_obj_is_refused_with_its_line(void **state)
         {OBJ_VERTICES "f 1 2 99999999999\n", "line 5: the face names vertex 99999999999"},
         {OBJ_VERTICES "f 1 2 0\n", "line 5: '0' is no corner of a face"},
         {OBJ_VERTICES "f 1 2 3.0\n", "line 5: '3.0' is no corner of a face"},
-        {OBJ_VERTICES "f 1 2 3/\n", "line 5: '3/' is no corner of a face"},
-        {OBJ_VERTICES "f 1 2 3//\n", "line 5: '3//' is no corner of a face"},
+        {OBJ_VERTICES "f 1 2 3///\n", "line 5: '3///' is no corner of a face"},
+        {OBJ_VERTICES "f 1 2 //\n", "line 5: '//' is no corner of a face"},
+        {OBJ_VERTICES "f 1 2 3/x/\n", "line 5: '3/x/' is no corner of a face"},
         {OBJ_VERTICES "f 1 2 3/1/1/1\n", "line 5: '3/1/1/1' is no corner of a face"},
         {OBJ_VERTICES "f 1 2 /1\n", "line 5: '/1' is no corner of a face"},
         {OBJ_VERTICES "f 1 2\n", "line 5: a face has 2 corners and needs at least 3"},
@@ -121,6 +138,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(obj_is_read),
+        cmocka_unit_test(corners_without_what_they_name_are_read),
         cmocka_unit_test(polygons_are_cut_into_fans),
         cmocka_unit_test(malformed_obj_is_refused_with_its_line),
         cmocka_unit_test(off_is_read),

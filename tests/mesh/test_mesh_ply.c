@@ -145,7 +145,9 @@ static void binary_of_a_wrong_length_is_refused(void **state)
     expect_mesh_refused(ms_mesh_parse_ply, made.data, made.size - 1, MS_ERR_FORMAT, "is cut inside its rows");
     expect_mesh_refused(ms_mesh_parse_ply, made.data, 57, MS_ERR_FORMAT, "line 4: the file ends without 'end_header'");
     put_text(&made, "\n");
-    expect_mesh_refused(ms_mesh_parse_ply, made.data, made.size, MS_ERR_FORMAT, "1 bytes follow after the last row");
+    expect_tetrahedron_remarked(ms_mesh_parse_ply, made.data, made.size, "1 bytes behind its last row");
+    put_text(&made, "0");
+    expect_mesh_refused(ms_mesh_parse_ply, made.data, made.size, MS_ERR_FORMAT, "2 bytes follow after the last row");
 }
 
 static void bad_values_of_binary_are_refused_with_their_byte(void **state)
@@ -176,9 +178,46 @@ static void lists_of_negative_length_are_refused(void **state)
 
 #define P "ply\nformat ascii 1.0\n"
 #define XYZ "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-#define F1 "element face 1\nproperty list uchar int vertex_indices\n"
+#define LIST "property list uchar int vertex_indices\n"
+#define F1 "element face 1\n" LIST
 #define END "end_header\n"
 #define ROWS "0 0 0\n1 0 0\n0 1 0\n"
+
+/* One strip, and strips that are joined by corners that stand twice or by -1. */
+static void strips_are_read(void **state)
+{
+    static const struct {
+        const char *row;
+        size_t n;
+        uint32_t wanted[4][3];
+    } cases[] = {
+        {"6 0 1 2 3 4 5", 4, {{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {4, 3, 5}}},
+        {"7 0 1 2 -1 3 4 5", 2, {{0, 1, 2}, {3, 4, 5}}},
+        {"8 0 1 2 2 3 3 4 5", 2, {{0, 1, 2}, {4, 3, 5}}},
+        {"9 0 1 2 2 2 3 3 4 5", 2, {{0, 1, 2}, {3, 4, 5}}},
+        {"8 -1 -1 0 1 2 -1 -1 -1", 1, {{0, 1, 2}}},
+    };
+    char text[512];
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        ms_mesh mesh;
+        ms_error err = {{0}}, remark;
+        snprintf(
+            text, sizeof text,
+            P "element vertex 6\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n" LIST END
+              "0 0 0\n1 0 0\n2 0 1\n3 1 0\n4 0 2\n5 2 0\n%s\n",
+            cases[i].row);
+        if (parse_remarked(&mesh, &remark, ms_mesh_parse_ply, text, strlen(text), &err)) {
+            fail_msg("%s", err.text);
+        }
+        expect_message(&remark, "sample: its triangle strips were read as triangles");
+        assert_int_equal(mesh.n_triangles, cases[i].n);
+        for (size_t c = 0; c < 3 * cases[i].n; c++) { /* the first coordinate is the number in the file */
+            assert_true(mesh.vertex[mesh.triangle[c / 3][c % 3]][0] == cases[i].wanted[c / 3][c % 3]);
+        }
+        ms_mesh_free(&mesh);
+    }
+}
 
 static void malformed_headers_are_refused_with_their_line(void **state)
 {
@@ -203,7 +242,14 @@ static void malformed_headers_are_refused_with_their_line(void **state)
         {P "element vertex 3\nproperty list\n", "line 4: the line ends where a type belongs"},
         {P XYZ "property float x\n", "line 7: a second property 'x'"},
         {P XYZ "element vertex 3\n", "line 7: a second element 'vertex'"},
-        {P XYZ "element tristrips 1\n", "line 7: triangle strips are not read"},
+        {P XYZ "element tristrips 1\nelement tristrips 1\n", "line 8: a second element 'tristrips'"},
+        {P XYZ "element tristrips 0\n" LIST END ROWS, "has no faces (and 3 points)"},
+        {P XYZ "element tristrips 1\nproperty list uchar int strips\n" END ROWS "3 0 1 2\n",
+         "or the list 'vertex_indices'"},
+        {P XYZ "element tristrips 1\n" LIST END ROWS "2 0 1\n", "line 13: a strip has 2 corners and needs at least 3"},
+        {P XYZ "element tristrips 1\n" LIST END ROWS "6 0 1 2 -1 0 1\n", "line 13: a strip has 2 corners"},
+        {P XYZ "element tristrips 1\n" LIST END ROWS "6 0 -1 0 1 2 0\n", "line 13: a strip has 1 corners"},
+        {P XYZ "element tristrips 1\n" LIST END ROWS "3 0 1 3\n", "line 13: the face names vertex 3"},
         {P "junk\n", "line 3: 'junk' is no line of a PLY header"},
         {P XYZ END ROWS, "has no faces (and 3 points)"},
         {P XYZ "element face 0\nproperty list uchar int vertex_indices\n" END ROWS, "has no faces (and 3 points)"},
@@ -265,6 +311,7 @@ int main(void)
         cmocka_unit_test(binary_of_a_wrong_length_is_refused),
         cmocka_unit_test(bad_values_of_binary_are_refused_with_their_byte),
         cmocka_unit_test(lists_of_negative_length_are_refused),
+        cmocka_unit_test(strips_are_read),
         cmocka_unit_test(malformed_headers_are_refused_with_their_line),
         cmocka_unit_test(headers_beyond_the_limits_are_refused),
         cmocka_unit_test(malformed_rows_are_refused_with_their_line),

@@ -1,5 +1,5 @@
 /* Polygons cut into triangles: areas known by Gauss's formula, edges used once each. */
-#include "mesh/formats/ms_mesh_polygon.h"
+#include "mesh/ms_mesh_polygon.h"
 
 #include "support/body_samples.h"
 #include "support/mesh_samples.h"

@@ -90,13 +90,71 @@ static void binary_of_a_wrong_size_is_refused(void **state)
     (void)state;
     expect_mesh_refused(ms_mesh_parse_stl, made.data, made.size - 1, MS_ERR_FORMAT,
                         "cut after 3 of 4 triangles: its header claims 284 bytes and the file has 283");
-    put_integer(&made, 0, 1, 0);
+    for (int i = 0; i < 50; i++) {
+        put_text(&made, "x");
+    }
     expect_mesh_refused(ms_mesh_parse_stl, made.data, made.size, MS_ERR_FORMAT,
-                        "claims 4 triangles (284 bytes) has 1 bytes more behind byte 284");
+                        "claims 4 triangles (284 bytes) has 50 bytes more behind byte 284");
     put_header(&huge, "", UINT32_MAX);
     expect_mesh_refused(ms_mesh_parse_stl, huge.data, huge.size, MS_ERR_FORMAT,
                         "cut after 0 of 4294967295 triangles: its header claims 214748364834 bytes");
     expect_mesh_refused(ms_mesh_parse_stl, huge.data, 83, MS_ERR_FORMAT, "is no STL");
+}
+
+static void what_stands_behind_the_last_triangle_is_passed_over(void **state)
+{
+    static const struct {
+        const char *text; /* and the 0 behind it */
+        size_t size, times;
+        const char *remark;
+    } tails[] = {
+        {"\n", 1, 1, "sample: 1 bytes behind the last of its 4 triangles"},
+        {"\r\n", 2, 1, "2 bytes behind"},
+        {"x", 1, 49, "49 bytes behind"},
+        {"", 1, 200, "200 bytes behind"},
+        {" \n", 2, 100, "200 bytes behind"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof tails / sizeof tails[0]; i++) {
+        sample made = binary_tetrahedron("solid");
+        for (size_t k = 0; k < tails[i].times; k++) {
+            put_bytes(&made, tails[i].text, tails[i].size);
+        }
+        expect_tetrahedron_remarked(ms_mesh_parse_stl, made.data, made.size, tails[i].remark);
+    }
+}
+
+static void ends_in_two_words_or_none_are_read(void **state)
+{
+    static const char *const ends[] = {"end solid", "End Solid name\n", "", "\n"};
+    static const char *const remarks[] = {"line 30: 'end solid' was read as 'endsolid'", "'end solid'",
+                                          "line 30: the file ends without 'endsolid' after 4 triangles",
+                                          "line 31: the file ends without"};
+    sample facets = ascii_facets(0, 4, "\n");
+    (void)state;
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+        sample made = {.size = 0};
+        put_text(&made, "solid\n");
+        put_bytes(&made, facets.data, facets.size);
+        put_text(&made, ends[i]);
+        expect_tetrahedron_remarked(ms_mesh_parse_stl, made.data, made.size, remarks[i]);
+    }
+}
+
+#define TWO_WORDS " end loop\n end facet\n"
+
+static void facets_that_end_in_two_words_are_read(void **state)
+{
+    static const char text[] =
+        "solid\n"
+        "facet normal 0 0 1 outer loop vertex .5 -1.25 2.375\nvertex .5 3 2.375\n"
+        "vertex 4.75 0 2.375\n" TWO_WORDS "facet normal 0 0 1 outer loop vertex .5 -1.25 2.375\nvertex 4.75 0 2.375\n"
+        "vertex .5 -1.25 9\n" TWO_WORDS "facet normal 0 0 1 outer loop vertex 4.75 0 2.375\nvertex .5 3 2.375\n"
+        "vertex .5 -1.25 9\n" TWO_WORDS "facet normal 0 0 1 outer loop vertex .5 3 2.375\nvertex .5 -1.25 2.375\n"
+        "vertex .5 -1.25 9\n" TWO_WORDS "endsolid\n";
+    (void)state;
+    expect_tetrahedron_remarked(ms_mesh_parse_stl, text, sizeof text - 1,
+                                "line 5: 'end loop' was read as 'endloop' (the first of 8 such places)");
 }
 
 static void binary_without_triangles_is_refused(void **state)
@@ -138,10 +196,13 @@ static void malformed_ascii_is_refused_with_its_line(void **state)
          "line 6: 'endloop' stands where 'vertex' belongs"},
         {OPEN "vertex 1 1 1\nendloop\nendfacet\nendsolid\n", "line 7: 'vertex' stands where 'endloop' belongs"},
         {OPEN "endloop\n", "line 8: the file ends where 'endfacet' belongs"},
-        {FACET, "line 9: the file ends without 'endsolid' after 1 triangles"},
+        {"solid s\n", "line 2: the file ends without 'endsolid' after 0 triangles"},
+        {FACET "end\n", "line 9: 'end' stands where 'facet' or 'endsolid'"},
+        {FACET "end facet\n", "line 9: 'end' stands where 'facet' or 'endsolid'"},
+        {OPEN "end facet\n", "line 7: 'end' stands where 'endloop' belongs"},
+        {OPEN "endlooped\n", "line 7: 'endlooped' stands where 'endloop' belongs"},
         {FACET "<html>404 Not Found</html>\nendsolid\n", "line 9: '<html>404' stands where 'facet' or 'endsolid'"},
         {FACET "endsolid s\njunk\n", "line 10: 'junk' stands where 'solid' belongs"},
-        {FACET "endsolid s\nsolid t\n", "line 11: the file ends without 'endsolid'"},
         {"solid s\nendsolid s\n", "has no triangles"},
         {"solid", "line 1: the file ends without 'endsolid'"},
         {"solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 inf 0\nvertex 0 1 1e999\nendloop\nendfacet\n"
@@ -165,7 +226,7 @@ static void meshes_over_the_limit_are_refused(void **state)
     expect_message(&err, "sample: has more than 4294967295 vertices");
     assert_int_equal(ms_mesh_build_reserve(&builder, 0, ((size_t)1 << 31) + 1, &err), MS_ERR_LIMIT);
     expect_message(&err, "sample: has more than 2147483648 triangles");
-    assert_int_equal(ms_mesh_build_finish(&mesh, &builder, MS_ERR_LIMIT, &err), MS_ERR_LIMIT);
+    assert_int_equal(ms_mesh_build_finish(&mesh, NULL, &builder, MS_ERR_LIMIT, &err), MS_ERR_LIMIT);
     assert_null(mesh.vertex);
 }
 
@@ -176,6 +237,9 @@ int main(void)
         cmocka_unit_test(solids_are_joined),
         cmocka_unit_test(binary_is_read_whatever_its_header),
         cmocka_unit_test(binary_of_a_wrong_size_is_refused),
+        cmocka_unit_test(what_stands_behind_the_last_triangle_is_passed_over),
+        cmocka_unit_test(ends_in_two_words_or_none_are_read),
+        cmocka_unit_test(facets_that_end_in_two_words_are_read),
         cmocka_unit_test(binary_without_triangles_is_refused),
         cmocka_unit_test(binary_that_is_not_finite_is_refused),
         cmocka_unit_test(meshes_over_the_limit_are_refused),

@@ -9,14 +9,20 @@
 static const double corner[4][3] = {{0.5, -1.25, 2.375}, {4.75, 0.0, 2.375}, {0.5, 3.0, 2.375}, {0.5, -1.25, 9.0}};
 static const int face[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
 
-typedef ms_status mesh_parser(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
+typedef ms_status mesh_parser(ms_mesh *mesh, ms_error *remark, const ms_bytes *bytes, const char *name, ms_error *err);
+
+static inline ms_status parse_remarked(ms_mesh *mesh, ms_error *remark, mesh_parser *parse, const void *data,
+                                       size_t size, ms_error *err)
+{
+    ms_bytes bytes = copy_bytes(data, size);
+    ms_status status = parse(mesh, remark, &bytes, "sample", err);
+    ms_file_free(&bytes);
+    return status;
+}
 
 static inline ms_status parse_sample(ms_mesh *mesh, mesh_parser *parse, const void *data, size_t size, ms_error *err)
 {
-    ms_bytes bytes = copy_bytes(data, size);
-    ms_status status = parse(mesh, &bytes, "sample", err);
-    ms_file_free(&bytes);
-    return status;
+    return parse_remarked(mesh, NULL, parse, data, size, err);
 }
 
 static inline void expect_mesh_refused(mesh_parser *parse, const void *data, size_t size, ms_status status,
@@ -37,13 +43,20 @@ static inline void expect_mesh_refused(mesh_parser *parse, const void *data, siz
     assert_int_equal(parse_sample(&mesh, parse, data, size, NULL), status);
 }
 
-static inline void expect_tetrahedron(mesh_parser *parse, const void *data, size_t size)
+/** @param message a part of the remark; NULL: there must be none */
+static inline void expect_tetrahedron_remarked(mesh_parser *parse, const void *data, size_t size, const char *message)
 {
     ms_mesh mesh;
-    ms_error err = {{0}};
-    ms_status status = parse_sample(&mesh, parse, data, size, &err);
+    ms_error err = {{0}}, remark;
+    ms_status status = parse_remarked(&mesh, &remark, parse, data, size, &err);
     if (status) {
         fail_msg("refused: %s", err.text);
+    }
+    if (message) {
+        expect_message(&remark, "sample: ");
+        expect_message(&remark, message);
+    } else {
+        assert_string_equal(remark.text, "");
     }
     assert_int_equal(mesh.n_vertices, 4);
     assert_int_equal(mesh.n_triangles, 4);
@@ -53,6 +66,11 @@ static inline void expect_tetrahedron(mesh_parser *parse, const void *data, size
         }
     }
     ms_mesh_free(&mesh);
+}
+
+static inline void expect_tetrahedron(mesh_parser *parse, const void *data, size_t size)
+{
+    expect_tetrahedron_remarked(parse, data, size, NULL);
 }
 
 static inline void expect_tetrahedron_text(mesh_parser *parse, const char *text)

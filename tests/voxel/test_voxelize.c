@@ -165,6 +165,49 @@ static void layers_are_the_nearest_number(void **state)
     }
 }
 
+/* The extents by the documented rule, not by the code: the nearest whole numbers and the hull. */
+static double count_by_rule(const double side[3], double cells)
+{
+    double total = 1;
+    for (int a = 0; a < 3; a++) {
+        const double n = side[a] / side[0] * cells;
+        total *= fmax(1, n - floor(n) > 0.5 + 1e-6 ? ceil(n) : floor(n)) + 2 * MS_GRID_HULL;
+    }
+    return total;
+}
+
+static void so_many_voxels_at_most(void **state)
+{
+    /* The shortest side is that along x. The last asks for 30,000 cells in length before it has 1e6 voxels. */
+    static const double side[][3] = {{1, 1, 1}, {0.01, 1, 1}, {0.3, 0.7, 1.1}, {1, 1, 900}};
+    (void)state;
+    for (int s = 0; s < 4; s++) {
+        ms_mesh mesh = cuboid(0, side[s][0], 0, side[s][1], 0, side[s][2]);
+        double least = count_by_rule(side[s], 1), h, n[3];
+        ms_error err;
+        for (double most = least; most < 1e8; most *= 1.7) {
+            assert_int_equal(ms_voxelize_size_within(&h, &mesh, most, &err), MS_OK);
+            ms_voxelize_extents(n, &mesh, h);
+            const double cells = side[s][0] / h;
+            expect_close(cells, round(cells), 1e-9 * cells);
+            assert_true(n[0] * n[1] * n[2] <= most);
+            assert_true(n[0] * n[1] * n[2] == count_by_rule(side[s], round(cells)));
+            assert_true(count_by_rule(side[s], round(cells) + 1) > most ||
+                        side[s][2] / side[s][0] * (cells + 1) > 32763);
+        }
+        assert_int_equal(ms_voxelize_size_within(&h, &mesh, least - 1, &err), MS_ERR_LIMIT);
+        expect_message(&err, "are too few");
+        assert_int_equal(ms_voxelize_size_within(&h, &mesh, 0, &err), MS_ERR_ARG);
+        assert_int_equal(ms_voxelize_size_within(&h, &mesh, (double)NAN, &err), MS_ERR_ARG);
+        assert_int_equal(ms_voxelize_size_within(&h, &mesh, HUGE_VAL, &err), MS_ERR_ARG);
+        ms_mesh_free(&mesh);
+    }
+    ms_mesh flat = cuboid(0, 1, 0, 1, 0, 0);
+    double h;
+    assert_int_equal(ms_voxelize_size_within(&h, &flat, 1e6, NULL), MS_ERR_SHAPE);
+    ms_mesh_free(&flat);
+}
+
 static void faces_may_stand_anywhere_in_a_voxel(void **state)
 {
     (void)state;
@@ -353,6 +396,7 @@ int main(void)
         cmocka_unit_test(rounding_adds_no_voxel),
         cmocka_unit_test(a_hair_adds_no_layer),
         cmocka_unit_test(layers_are_the_nearest_number),
+        cmocka_unit_test(so_many_voxels_at_most),
         cmocka_unit_test(faces_may_stand_anywhere_in_a_voxel),
         cmocka_unit_test(an_octahedron_on_the_lattice_is_exact),
         cmocka_unit_test(a_mesh_snapped_to_the_lattice_stays_symmetric),

@@ -1,10 +1,12 @@
 /* A mesh as the readers build it: polygons, checks and welding. */
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/ms_mesh_polygon.h"
 #include "ms_mesh_formats.h"
-#include "ms_mesh_polygon.h"
 
 #define MAX_TRIANGLES (UINT64_C(1) << 31)
 #define MAX_VERTICES ((uint64_t)UINT32_MAX)
@@ -112,18 +114,25 @@ static ms_status fail_index(ms_mesh_builder *builder, int64_t index, size_t plac
         (long long)builder->first_index, (long long)builder->mesh.n_vertices - 1 + builder->first_index);
 }
 
-ms_status ms_mesh_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_error *err)
+/* Takes note of an index, which may be that of a vertex to come. */
+static ms_status check_index(uint32_t *corner, ms_mesh_builder *builder, int64_t index, ms_error *err)
 {
-    ms_status status = MS_OK;
+    *corner = (uint32_t)index;
     if (index < 0 || index >= (int64_t)MAX_VERTICES) {
         return fail_index(builder, index, builder->place, err);
     }
-    uint32_t corner = (uint32_t)index;
-    if (corner > builder->largest || builder->largest_place == 0) {
-        builder->largest = corner;
+    if (*corner > builder->largest || builder->largest_place == 0) {
+        builder->largest = *corner;
         builder->largest_place = builder->place;
     }
-    if (builder->n_corners >= 2) {
+    return MS_OK;
+}
+
+ms_status ms_mesh_build_face_corner(ms_mesh_builder *builder, int64_t index, ms_error *err)
+{
+    uint32_t corner;
+    ms_status status = check_index(&corner, builder, index, err);
+    if (!status && builder->n_corners >= 2) {
         status = append_triangle(builder, corner, err);
     }
     builder->fan[builder->n_corners > 0] = corner;
@@ -156,6 +165,51 @@ ms_status ms_mesh_build_face_end(ms_mesh_builder *builder, ms_error *err)
                        builder->name, builder->place_word, builder->place, builder->n_corners);
     }
     return builder->n_corners > 3 ? append_polygon(builder, err) : MS_OK;
+}
+
+ms_status ms_mesh_build_strip_end(const ms_mesh_builder *builder, ms_error *err)
+{
+    if (builder->n_corners == 1 || builder->n_corners == 2) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: %s %zu: a strip has %zu corners and needs at least 3; remove it",
+                       builder->name, builder->place_word, builder->place, builder->n_corners);
+    }
+    return MS_OK;
+}
+
+ms_status ms_mesh_build_strip_corner(ms_mesh_builder *builder, int64_t index, ms_error *err)
+{
+    uint32_t corner, *fan = builder->fan;
+    if (index < 0) {
+        const ms_status status = ms_mesh_build_strip_end(builder, err);
+        builder->n_corners = 0;
+        return status;
+    }
+    ms_status status = check_index(&corner, builder, index, err);
+    if (!status && builder->n_corners >= 2 && corner != fan[0] && corner != fan[1] && fan[0] != fan[1]) {
+        status = append_triangle(builder, corner, err);
+    }
+    /* v0 v1 v2, then v2 v1 v3, then v2 v3 v4: every other one the other way round. */
+    fan[builder->n_corners++ % 2] = corner;
+    return status;
+}
+
+void ms_mesh_build_remark(ms_mesh_builder *builder, const char *format, ...)
+{
+    if (builder->n_remarks++ == 0) {
+        va_list args;
+        va_start(args, format);
+        vsnprintf(builder->remark.text, sizeof builder->remark.text, format, args);
+        va_end(args);
+    }
+}
+
+int ms_mesh_build_is_padding(const uint8_t *bytes, size_t size)
+{
+    size_t i = 0;
+    while (i < size && memchr(" \t\r\n", bytes[i], 5)) { /* and the 0 behind them */
+        i++;
+    }
+    return i == size;
 }
 
 static size_t count_not_finite_triangles(const ms_mesh *mesh)
@@ -291,9 +345,24 @@ static void trim_arrays(ms_mesh *mesh)
     mesh->triangle = triangle ? triangle : mesh->triangle;
 }
 
-ms_status ms_mesh_build_finish(ms_mesh *mesh, ms_mesh_builder *builder, ms_status status, ms_error *err)
+/* What is told of the remarks to who listens. */
+static void pass_on_remark(ms_error *remark, const ms_mesh_builder *builder)
+{
+    if (builder->n_remarks > 1) {
+        snprintf(remark->text, sizeof remark->text, "%.900s (the first of %zu such places)", builder->remark.text,
+                 builder->n_remarks);
+    } else {
+        *remark = builder->remark;
+    }
+}
+
+ms_status ms_mesh_build_finish(ms_mesh *mesh, ms_error *remark, ms_mesh_builder *builder, ms_status status,
+                               ms_error *err)
 {
     *mesh = (ms_mesh){0};
+    if (remark) {
+        pass_on_remark(remark, builder);
+    }
     if (!status) {
         status = check_mesh(builder, err);
     }

@@ -25,8 +25,9 @@ static ms_status parse_obj_vertex(ms_mesh_builder *builder, ms_text *text, ms_er
     return status ? status : ms_mesh_build_vertex(builder, numbers, place, err);
 }
 
-/* The parts of i, i/t, i/t/n or i//n; of these only i is used. */
-static int split_corner(int64_t *vertex, const ms_word *word)
+/* The parts of i, i/t, i/t/n or i//n; of these only i is used. What some programs leave empty at the end, as in i// or
+   i/t/, is noted. */
+static int split_corner(int64_t *vertex, int *empty, const ms_word *word)
 {
     const char *at = word->start;
     const char *end = at + word->length;
@@ -34,8 +35,9 @@ static int split_corner(int64_t *vertex, const ms_word *word)
         int64_t index = 0;
         const char *slash = memchr(at, '/', (size_t)(end - at));
         ms_word number = {at, (size_t)((slash ? slash : end) - at)};
-        int may_be_empty = part == 1 && slash;
-        if (!(number.length == 0 && may_be_empty) && (!ms_text_to_integer(&index, &number) || index == 0)) {
+        const int is_empty = part > 0 && number.length == 0;
+        *empty |= is_empty && !slash;
+        if (!is_empty && (!ms_text_to_integer(&index, &number) || index == 0)) {
             return 0;
         }
         if (part == 0) {
@@ -56,8 +58,14 @@ static ms_status parse_obj_face(ms_mesh_builder *builder, ms_text *text, ms_erro
     ms_mesh_build_face_begin(builder, text->line);
     while (!status && ms_text_word(&word, text)) {
         int64_t index;
-        if (!split_corner(&index, &word)) {
+        int empty = 0;
+        if (!split_corner(&index, &empty, &word)) {
             return ms_text_fail(err, text, "'%s' is no corner of a face", ms_text_quote(&word).text);
+        }
+        if (empty) {
+            ms_mesh_build_remark(builder,
+                                 "%s: line %zu: '%s' names a texture or normal and gives none; its vertex was read",
+                                 builder->name, text->line, ms_text_quote(&word).text);
         }
         /* Negative ones count back from the latest vertex. */
         index = index > 0 ? index - 1 : index + (int64_t)builder->mesh.n_vertices;
@@ -85,7 +93,7 @@ static ms_status pass_over(const ms_word *keyword, ms_text *text, ms_error *err)
     return MS_OK;
 }
 
-ms_status ms_mesh_parse_obj(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err)
+ms_status ms_mesh_parse_obj(ms_mesh *mesh, ms_error *remark, const ms_bytes *bytes, const char *name, ms_error *err)
 {
     ms_status status = MS_OK;
     ms_text text;
@@ -104,5 +112,5 @@ ms_status ms_mesh_parse_obj(ms_mesh *mesh, const ms_bytes *bytes, const char *na
             status = pass_over(&keyword, &text, err);
         }
     }
-    return ms_mesh_build_finish(mesh, &builder, status, err);
+    return ms_mesh_build_finish(mesh, remark, &builder, status, err);
 }

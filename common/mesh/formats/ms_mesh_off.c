@@ -130,7 +130,7 @@ static ms_status parse_body(ms_mesh_builder *builder, int extras, ms_text *text,
     return status;
 }
 
-ms_status ms_mesh_parse_off(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err)
+ms_status ms_mesh_parse_off(ms_mesh *mesh, ms_error *remark, const ms_bytes *bytes, const char *name, ms_error *err)
 {
     int extras;
     ms_text text;
@@ -141,5 +141,5 @@ ms_status ms_mesh_parse_off(ms_mesh *mesh, const ms_bytes *bytes, const char *na
     if (!status) {
         status = parse_body(&builder, extras, &text, err);
     }
-    return ms_mesh_build_finish(mesh, &builder, status, err);
+    return ms_mesh_build_finish(mesh, remark, &builder, status, err);
 }

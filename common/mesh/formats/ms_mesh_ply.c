@@ -97,13 +97,14 @@ static ms_status parse_list(ms_mesh_builder *builder, source *from, const ms_ply
     for (int64_t i = 0; i < length && !status; i++) {
         double ignored;
         int64_t corner = 0;
-        if (property->role != MS_PLY_CORNERS) {
+        if (property->role == MS_PLY_IGNORED) {
             status = next_value(&ignored, from, property->type, bytes, err);
             continue;
         }
         status = next_whole(&corner, from, property->type, bytes, err);
         if (!status) {
-            status = ms_mesh_build_face_corner(builder, corner, err);
+            status = property->role == MS_PLY_STRIP ? ms_mesh_build_strip_corner(builder, corner, err)
+                                                    : ms_mesh_build_face_corner(builder, corner, err);
         }
     }
     return status;
@@ -149,19 +150,25 @@ static ms_status parse_element(ms_mesh_builder *builder, source *from, const ms_
             status = ms_mesh_build_vertex(builder, position, place, err);
         } else if (!status && element->kind == MS_PLY_FACE) {
             status = ms_mesh_build_face_end(builder, err);
+        } else if (!status && element->kind == MS_PLY_STRIPS) {
+            status = ms_mesh_build_strip_end(builder, err);
         }
     }
     return status;
 }
 
-static ms_status check_end(source *from, const ms_bytes *bytes, ms_error *err)
+static ms_status check_end(ms_mesh_builder *builder, source *from, const ms_bytes *bytes, ms_error *err)
 {
     if (from->encoding == MS_PLY_ASCII) {
         return ms_text_seek(&from->text) ? ms_text_fail(err, &from->text, "more follows after the last row") : MS_OK;
     }
-    if (from->text.at < from->text.end) {
-        return ms_fail(err, MS_ERR_FORMAT, "%s: byte %zu: %td bytes follow after the last row; export the mesh again",
-                       from->text.name, place_of(from, bytes), from->text.end - from->text.at);
+    const size_t place = place_of(from, bytes), left = (size_t)(from->text.end - from->text.at);
+    if (!ms_mesh_build_is_padding((const uint8_t *)from->text.at, left)) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: byte %zu: %zu bytes follow after the last row; export the mesh again",
+                       from->text.name, place, left);
+    }
+    if (left > 0) {
+        ms_mesh_build_remark(builder, "%s: %zu bytes behind its last row were passed over", builder->name, left);
     }
     return MS_OK;
 }
@@ -176,15 +183,17 @@ static ms_status parse_rows(ms_mesh_builder *builder, source *from, const ms_ply
             status = ms_mesh_build_reserve(builder, element->count, 0, err);
         } else if (element->kind == MS_PLY_FACE) {
             status = ms_mesh_build_reserve(builder, 0, element->count, err);
+        } else if (element->kind == MS_PLY_STRIPS && element->count > 0) {
+            ms_mesh_build_remark(builder, "%s: its triangle strips were read as triangles", builder->name);
         }
         if (!status) {
             status = parse_element(builder, from, header, element, bytes, err);
         }
     }
-    return status ? status : check_end(from, bytes, err);
+    return status ? status : check_end(builder, from, bytes, err);
 }
 
-ms_status ms_mesh_parse_ply(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err)
+ms_status ms_mesh_parse_ply(ms_mesh *mesh, ms_error *remark, const ms_bytes *bytes, const char *name, ms_error *err)
 {
     ms_ply_header header;
     source from;
@@ -196,5 +205,5 @@ ms_status ms_mesh_parse_ply(ms_mesh *mesh, const ms_bytes *bytes, const char *na
         builder.place_word = header.encoding == MS_PLY_ASCII ? "line" : "byte";
         status = parse_rows(&builder, &from, &header, bytes, err);
     }
-    return ms_mesh_build_finish(mesh, &builder, status, err);
+    return ms_mesh_build_finish(mesh, remark, &builder, status, err);
 }

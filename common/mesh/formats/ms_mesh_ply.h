@@ -19,7 +19,7 @@ typedef enum ms_ply_type {
 } ms_ply_type;
 
 /** What a property is to a mesh. */
-typedef enum ms_ply_role { MS_PLY_IGNORED, MS_PLY_X, MS_PLY_Y, MS_PLY_Z, MS_PLY_CORNERS } ms_ply_role;
+typedef enum ms_ply_role { MS_PLY_IGNORED, MS_PLY_X, MS_PLY_Y, MS_PLY_Z, MS_PLY_CORNERS, MS_PLY_STRIP } ms_ply_role;
 
 typedef struct ms_ply_property {
     ms_ply_type type;
@@ -27,7 +27,7 @@ typedef struct ms_ply_property {
     ms_ply_role role;
 } ms_ply_property;
 
-typedef enum ms_ply_kind { MS_PLY_OTHER, MS_PLY_VERTEX, MS_PLY_FACE } ms_ply_kind;
+typedef enum ms_ply_kind { MS_PLY_OTHER, MS_PLY_VERTEX, MS_PLY_FACE, MS_PLY_STRIPS } ms_ply_kind;
 
 /** A table of the file: `count` rows with the properties first .. first + n_properties - 1. */
 typedef struct ms_ply_element {

@@ -93,16 +93,14 @@ static ms_status parse_element_line(ms_ply_header *header, ms_text *text, ms_err
     if (header->n_elements == MS_PLY_MAX_ELEMENTS) {
         return ms_text_fail(err, text, "more than %d elements are not read", MS_PLY_MAX_ELEMENTS);
     }
-    ms_ply_kind kind = ms_text_word_is(&name, "vertex") ? MS_PLY_VERTEX
-                       : ms_text_word_is(&name, "face") ? MS_PLY_FACE
-                                                        : MS_PLY_OTHER;
+    ms_ply_kind kind = ms_text_word_is(&name, "vertex")      ? MS_PLY_VERTEX
+                       : ms_text_word_is(&name, "face")      ? MS_PLY_FACE
+                       : ms_text_word_is(&name, "tristrips") ? MS_PLY_STRIPS
+                                                             : MS_PLY_OTHER;
     for (size_t i = 0; i < header->n_elements; i++) {
         if (kind != MS_PLY_OTHER && header->element[i].kind == kind) {
             return ms_text_fail(err, text, "a second element '%s'", ms_text_quote(&name).text);
         }
-    }
-    if (ms_text_word_is(&name, "tristrips") && count > 0) {
-        return ms_text_fail(err, text, "triangle strips are not read, only faces are");
     }
     header->element[header->n_elements++] =
         (ms_ply_element){.kind = kind, .count = (size_t)count, .first = header->n_properties, .line = text->line};
@@ -118,7 +116,10 @@ static ms_ply_role find_role(ms_ply_kind kind, int is_list, const ms_word *name)
                                             : MS_PLY_IGNORED;
     }
     int is_corners = ms_text_word_is(name, "vertex_indices") || ms_text_word_is(name, "vertex_index");
-    return kind == MS_PLY_FACE && is_list && is_corners ? MS_PLY_CORNERS : MS_PLY_IGNORED;
+    if (!is_list || !is_corners) {
+        return MS_PLY_IGNORED;
+    }
+    return kind == MS_PLY_FACE ? MS_PLY_CORNERS : kind == MS_PLY_STRIPS ? MS_PLY_STRIP : MS_PLY_IGNORED;
 }
 
 static ms_status parse_property(ms_ply_header *header, ms_text *text, ms_error *err)
@@ -227,13 +228,13 @@ static ms_status check_sizes(const ms_ply_header *header, const ms_text *text, m
 
 static ms_status check_roles(const ms_ply_header *header, const ms_text *text, ms_error *err)
 {
-    int has_role[5] = {0};
+    int has_role[6] = {0};
     size_t n_points = 0;
     size_t n_faces = 0;
     for (size_t i = 0; i < header->n_elements; i++) {
         const ms_ply_element *element = &header->element[i];
         n_points += element->kind == MS_PLY_VERTEX ? element->count : 0;
-        n_faces += element->kind == MS_PLY_FACE ? element->count : 0;
+        n_faces += element->kind == MS_PLY_FACE || element->kind == MS_PLY_STRIPS ? element->count : 0;
     }
     if (n_faces == 0) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: has no faces (and %zu points); export the surface of the body",
@@ -242,7 +243,8 @@ static ms_status check_roles(const ms_ply_header *header, const ms_text *text, m
     for (size_t i = 0; i < header->n_properties; i++) {
         has_role[header->property[i].role] = 1;
     }
-    if (!has_role[MS_PLY_X] || !has_role[MS_PLY_Y] || !has_role[MS_PLY_Z] || !has_role[MS_PLY_CORNERS]) {
+    if (!has_role[MS_PLY_X] || !has_role[MS_PLY_Y] || !has_role[MS_PLY_Z] ||
+        !(has_role[MS_PLY_CORNERS] || has_role[MS_PLY_STRIP])) {
         return ms_text_fail(err, text, "the header lacks x, y, z of 'vertex' or the list 'vertex_indices' of 'face'");
     }
     return MS_OK;

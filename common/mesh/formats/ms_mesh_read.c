@@ -6,7 +6,7 @@
 
 typedef struct mesh_reader {
     const char *ending;
-    ms_status (*parse)(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err);
+    ms_status (*parse)(ms_mesh *mesh, ms_error *remark, const ms_bytes *bytes, const char *name, ms_error *err);
 } mesh_reader;
 
 static const mesh_reader *find_mesh_reader(const char *path)
@@ -32,10 +32,13 @@ int ms_mesh_read_is_mesh_path(const char *path)
     return find_mesh_reader(path) != NULL;
 }
 
-ms_status ms_mesh_parse(ms_mesh *mesh, const ms_bytes *bytes, const char *path, ms_error *err)
+ms_status ms_mesh_parse(ms_mesh *mesh, ms_error *remark, const ms_bytes *bytes, const char *path, ms_error *err)
 {
     const mesh_reader *found = find_mesh_reader(path);
     *mesh = (ms_mesh){0};
+    if (remark) {
+        remark->text[0] = '\0';
+    }
     if (!found) {
         return ms_fail(err, MS_ERR_FORMAT,
                        "%s: its ending names no mesh format; meshes are read from .stl, .obj, .ply and .off", path);
@@ -43,7 +46,7 @@ ms_status ms_mesh_parse(ms_mesh *mesh, const ms_bytes *bytes, const char *path, 
     if (bytes->size == 0) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: is empty (0 bytes); export the mesh again", path);
     }
-    return found->parse(mesh, bytes, path, err);
+    return found->parse(mesh, remark, bytes, path, err);
 }
 
 ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err)
@@ -53,7 +56,7 @@ ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err)
     ms_status status =
         find_mesh_reader(path) ? ms_file_read(&bytes, path, err) : MS_OK; /* without one, parse says so */
     if (status == MS_OK) {
-        status = ms_mesh_parse(mesh, &bytes, path, err);
+        status = ms_mesh_parse(mesh, NULL, &bytes, path, err);
     }
     ms_file_free(&bytes);
     return status;

@@ -8,10 +8,10 @@
 MS_C_BEGIN
 
 /**
- * Reads a mesh, in double precision, strictly: a file that does not say exactly one mesh is
- * refused. The format comes from the ending (.stl .obj .ply .off). Polygons are cut into
- * triangles that stay within them; vertices with equal coordinates are welded, those that no face uses dropped. What an
- * untrusted header claims is checked against the file's size before anything is allocated.
+ * Reads a mesh, in double precision: a file that does not say exactly one mesh is refused. Of what other programs get
+ * wrong, that is read which leaves no doubt (docs/formats.md). The format comes from the ending (.stl .obj .ply .off).
+ * Polygons are cut into triangles that stay within them; vertices with equal coordinates are welded, those that no face
+ * uses dropped. What an untrusted header claims is checked against the file's size before anything is allocated.
  *
  * @param[out] mesh the caller frees it; empty on failure
  * @param      path the file
@@ -23,8 +23,12 @@ MS_C_BEGIN
  */
 MS_API ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err);
 
-/** The same from the bytes of a file that was read already; the path tells the format and stands in messages. */
-MS_API ms_status ms_mesh_parse(ms_mesh *mesh, const ms_bytes *bytes, const char *path, ms_error *err);
+/**
+ * The same from the bytes of a file that was read already; the path tells the format and stands in messages.
+ *
+ * @param[out] remark what is wrong in the file though it was read, in one sentence; empty if nothing is; may be NULL
+ */
+MS_API ms_status ms_mesh_parse(ms_mesh *mesh, ms_error *remark, const ms_bytes *bytes, const char *path, ms_error *err);
 
 /** Nonzero if the path ends like a mesh that ms_mesh_read takes. */
 MS_API int ms_mesh_read_is_mesh_path(const char *path);

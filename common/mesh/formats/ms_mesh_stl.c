@@ -32,9 +32,11 @@ static ms_status add_facet(ms_mesh_builder *builder, size_t place, ms_error *err
     return status ? status : ms_mesh_build_face_end(builder, err);
 }
 
-static ms_status check_stl_size(uint64_t size, uint32_t count, const char *name, ms_error *err)
+/* A file may end with less than a further triangle, or with padding: of more there is no telling what it is. */
+static ms_status check_stl_size(ms_mesh_builder *builder, const ms_bytes *bytes, uint32_t count, ms_error *err)
 {
-    uint64_t wanted = HEADER_SIZE + (uint64_t)count * RECORD_SIZE;
+    const char *name = builder->name;
+    const uint64_t size = bytes->size, wanted = HEADER_SIZE + (uint64_t)count * RECORD_SIZE;
     if (size < wanted) {
         return ms_fail(
             err, MS_ERR_FORMAT,
@@ -43,13 +45,17 @@ static ms_status check_stl_size(uint64_t size, uint32_t count, const char *name,
             name, (unsigned long long)((size - HEADER_SIZE) / RECORD_SIZE), (unsigned long)count,
             (unsigned long long)wanted, (unsigned long long)size);
     }
-    if (size > wanted) {
+    if (size - wanted >= RECORD_SIZE && !ms_mesh_build_is_padding(bytes->data + wanted, (size_t)(size - wanted))) {
         return ms_fail(
             err, MS_ERR_FORMAT,
             "%s: binary STL whose header claims %lu triangles (%llu bytes) has %llu bytes more behind byte %llu; "
             "export it again",
             name, (unsigned long)count, (unsigned long long)wanted, (unsigned long long)(size - wanted),
             (unsigned long long)wanted);
+    }
+    if (size > wanted) {
+        ms_mesh_build_remark(builder, "%s: %llu bytes behind the last of its %lu triangles were passed over", name,
+                             (unsigned long long)(size - wanted), (unsigned long)count);
     }
     return MS_OK;
 }
@@ -58,7 +64,7 @@ static ms_status parse_binary_stl(ms_mesh_builder *builder, const ms_bytes *byte
 {
     builder->place_word = "byte";
     uint32_t count = load_u32(bytes->data + HEADER_SIZE - 4);
-    ms_status status = check_stl_size(bytes->size, count, builder->name, err);
+    ms_status status = check_stl_size(builder, bytes, count, err);
     if (!status) {
         status = ms_mesh_build_reserve(builder, 3 * (size_t)count, count, err);
     }
@@ -90,6 +96,35 @@ static ms_status expect_word(ms_text *text, const char *expected, ms_error *err)
     return MS_OK;
 }
 
+/* Nonzero if the word, with one more where it is `end` alone, is "end" and `what`. */
+static int is_end_of(ms_mesh_builder *builder, const ms_word *word, const char *what, ms_text *text)
+{
+    ms_text ahead = *text;
+    ms_word second;
+    if (word->length == 3 + strlen(what) && ms_text_word_is(&(ms_word){word->start, 3}, "end")) {
+        return ms_text_word_is(&(ms_word){word->start + 3, word->length - 3}, what);
+    }
+    if (!ms_text_word_is(word, "end") || !ms_text_word(&second, &ahead) || !ms_text_word_is(&second, what)) {
+        return 0;
+    }
+    *text = ahead;
+    ms_mesh_build_remark(builder, "%s: line %zu: 'end %s' was read as 'end%s'", builder->name, text->line, what, what);
+    return 1;
+}
+
+/* Over line ends to the next word, which must be the end of `what`. */
+static ms_status expect_end(ms_mesh_builder *builder, ms_text *text, const char *what, ms_error *err)
+{
+    ms_word word;
+    if (!ms_text_seek(text)) {
+        return ms_text_fail(err, text, "the file ends where 'end%s' belongs", what);
+    }
+    ms_text_word(&word, text);
+    return is_end_of(builder, &word, what, text)
+               ? MS_OK
+               : ms_text_fail(err, text, "'%s' stands where 'end%s' belongs", ms_text_quote(&word).text, what);
+}
+
 static ms_status expect_two(ms_text *text, const char *first, const char *second, ms_error *err)
 {
     ms_status status = expect_word(text, first, err);
@@ -118,9 +153,24 @@ static ms_status parse_facet(ms_mesh_builder *builder, ms_text *text, ms_error *
         }
     }
     if (!status) {
-        status = expect_two(text, "endloop", "endfacet", err);
+        status = expect_end(builder, text, "loop", err);
+    }
+    if (!status) {
+        status = expect_end(builder, text, "facet", err);
     }
     return status ? status : add_facet(builder, place, err);
+}
+
+/* A file without its last line; if more is lost, what is left is open. */
+static ms_status end_early(ms_mesh_builder *builder, const ms_text *text, ms_error *err)
+{
+    const size_t n = builder->mesh.n_triangles;
+    if (n == 0) {
+        return ms_text_fail(err, text, "the file ends without 'endsolid' after 0 triangles");
+    }
+    ms_mesh_build_remark(builder, "%s: line %zu: the file ends without 'endsolid' after %zu triangles; it may be cut",
+                         builder->name, text->line, n);
+    return MS_OK;
 }
 
 /* What follows "solid": its name, facets, "endsolid" and a name again. */
@@ -130,11 +180,10 @@ static ms_status parse_solid(ms_mesh_builder *builder, ms_text *text, ms_error *
     for (;;) {
         ms_word word;
         if (!ms_text_seek(text)) {
-            return ms_text_fail(err, text, "the file ends without 'endsolid' after %zu triangles",
-                                builder->mesh.n_triangles);
+            return end_early(builder, text, err);
         }
         ms_text_word(&word, text);
-        if (ms_text_word_is(&word, "endsolid")) {
+        if (is_end_of(builder, &word, "solid", text)) {
             ms_text_skip_line(text);
             return MS_OK;
         }
@@ -168,7 +217,7 @@ static int begins_with_solid(const ms_text *start)
     return ms_text_seek(&text) && ms_text_word(&word, &text) && ms_text_word_is(&word, "solid");
 }
 
-ms_status ms_mesh_parse_stl(ms_mesh *mesh, const ms_bytes *bytes, const char *name, ms_error *err)
+ms_status ms_mesh_parse_stl(ms_mesh *mesh, ms_error *remark, const ms_bytes *bytes, const char *name, ms_error *err)
 {
     ms_status status;
     ms_text text;
@@ -193,5 +242,5 @@ ms_status ms_mesh_parse_stl(ms_mesh *mesh, const ms_bytes *bytes, const char *na
             "export the mesh again",
             name, bytes->size, HEADER_SIZE);
     }
-    return ms_mesh_build_finish(mesh, &builder, status, err);
+    return ms_mesh_build_finish(mesh, remark, &builder, status, err);
 }

@@ -1,8 +1,8 @@
-/** Cuts concave polygons of mesh files into triangles. Private. */
+/** Cuts concave polygons into triangles: those of mesh files, and holes. Private. */
 #ifndef MS_MESH_POLYGON_H
 #define MS_MESH_POLYGON_H
 
-#include "mesh/ms_mesh.h"
+#include "ms_mesh.h"
 
 /** What one cut needs; zeroed before the first polygon, then passed from one to the next. */
 typedef struct ms_polygon_work {
