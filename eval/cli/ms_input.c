@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/ms_choice.h"
 #include "base/ms_file.h"
 #include "base/ms_text.h"
 #include "mesh/formats/ms_mesh_read.h"
@@ -35,14 +36,13 @@ static ms_status parse_size(double *bytes, const char *text, ms_error *err)
 
 static ms_status parse_rule(ms_voxel_rule *rule, const char *text, ms_error *err)
 {
-    if (strcmp(text, "half") == 0) {
-        *rule = MS_VOXEL_HALF;
-    } else if (strcmp(text, "centre") == 0) {
-        *rule = MS_VOXEL_CENTRE;
-    } else {
-        return ms_fail(err, MS_ERR_ARG, "--rule %s is not half or centre", text);
+    ms_choice choice = {.typed = text};
+    *rule = MS_VOXEL_HALF;
+    if (ms_choice_offer(&choice, "half")) {
+        return MS_OK;
     }
-    return MS_OK;
+    *rule = MS_VOXEL_CENTRE;
+    return ms_choice_offer(&choice, "centre") ? MS_OK : ms_choice_fail(&choice, err, "there is no --rule '%s'", text);
 }
 
 ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, const char *value, ms_error *err)

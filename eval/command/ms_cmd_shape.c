@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/ms_choice.h"
 #include "base/ms_text.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "mesh/formats/ms_mesh_write.h"
@@ -44,9 +45,9 @@ static void list_kinds(void)
 static ms_status set_value(double *value, const ms_shape_kind *kind, const char *assignment, ms_error *err)
 {
     const char *equals = strchr(assignment, '=');
-    for (const ms_shape_parameter *p = kind->parameters; equals && p->name; p++) {
-        const size_t length = (size_t)(equals - assignment);
-        if (strlen(p->name) == length && memcmp(p->name, assignment, length) == 0) {
+    ms_choice choice = {.typed = assignment, .length = strcspn(assignment, "=")};
+    for (const ms_shape_parameter *p = kind->parameters; p->name; p++) {
+        if (ms_choice_offer(&choice, p->name) && equals) {
             const ms_word word = {equals + 1, strlen(equals + 1)};
             if (word.length == 0 || !ms_text_to_double(&value[p - kind->parameters], &word)) {
                 return ms_fail(err, MS_ERR_ARG, "%s is not a number in %s", equals + 1, assignment);
@@ -54,8 +55,8 @@ static ms_status set_value(double *value, const ms_shape_kind *kind, const char 
             return MS_OK;
         }
     }
-    return ms_fail(err, MS_ERR_ARG, "'%s' does not set a parameter of %s; see mskit shape --list", assignment,
-                   kind->name);
+    return ms_choice_fail(&choice, err, "'%s' does not set a parameter of %s, as %s=%g does (mskit shape --list)", assignment,
+                   kind->name, kind->parameters[0].name, kind->parameters[0].fallback);
 }
 
 static int make(const ms_command *command, const char *output, int n_words, char **word)
