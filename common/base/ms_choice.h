@@ -11,9 +11,9 @@ enum { MS_CHOICE_LONGEST = 256 }; /* words from this length on are near to none 
 
 /** Begins as {.typed = word}. */
 typedef struct ms_choice {
-    const char *typed; /* borrowed */
-    size_t length;     /* of it, where it ends before its 0 byte; else 0 */
-    char list[512];    /* the words offered, with commas between; cut if there are many */
+    const char *typed;               /* borrowed */
+    size_t length;                   /* of it, where it ends before its 0 byte; else 0 */
+    char list[512];                  /* the words offered, with commas between; cut if there are many */
     char nearest[MS_CHOICE_LONGEST]; /* "" if none is near */
     size_t distance;                 /* of that */
 } ms_choice;
@@ -36,6 +36,9 @@ int ms_choice_offer(ms_choice *choice, const char *word);
 int ms_choice_offer_part(ms_choice *choice, const char *word, size_t length);
 
 ms_hint ms_choice_hint(const ms_choice *choice);
+
+/** The same of the names in the folder of a file that is not there. Cost: O(names log names). */
+ms_hint ms_choice_file_hint(const char *path);
 
 /**
  * Writes what the format says, then the hint, then the list, "none" if nothing was offered.

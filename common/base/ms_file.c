@@ -8,6 +8,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "ms_choice.h"
+
+ms_status ms_file_fail_open(ms_error *err, const char *path, int why)
+{
+    const ms_hint hint = why == ENOENT ? ms_choice_file_hint(path) : (ms_hint){""};
+    return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s%s", path, strerror(why),
+                   hint.text[0] ? hint.text : "; check the path");
+}
+
 static ms_status read_all(ms_bytes *bytes, int fd, size_t size, const char *path, ms_error *err)
 {
     if (size > SIZE_MAX - 1 || !(bytes->data = malloc(size + 1))) {
@@ -46,7 +55,7 @@ ms_status ms_file_read_start(ms_bytes *bytes, const char *path, size_t most, ms_
     /* Not to wait here for the writer of a pipe: it is refused below. */
     int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (fd < 0 || fstat(fd, &info) != 0) {
-        status = ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s; check the path", path, strerror(errno));
+        status = ms_file_fail_open(err, path, errno);
         goto cleanup;
     }
     if (S_ISDIR(info.st_mode)) {

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/ms_file.h"
 #include "cli/ms_outputs.h"
 #include "compare/ms_compare.h"
 #include "compare/ms_compare_walk.h"
@@ -111,7 +112,7 @@ static ms_status check_files(const ms_comparison *c, const char *output, ms_erro
     ms_files files = {0};
     for (size_t s = 0; s < c->n_shapes; s++) {
         if (access(c->shape[s], R_OK) != 0) {
-            return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s; check the path", c->shape[s], strerror(errno));
+            return ms_file_fail_open(err, c->shape[s], errno);
         }
     }
     ms_status status = ms_compare_list_files(&files, c, err);

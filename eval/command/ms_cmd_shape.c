@@ -55,8 +55,8 @@ static ms_status set_value(double *value, const ms_shape_kind *kind, const char 
             return MS_OK;
         }
     }
-    return ms_choice_fail(&choice, err, "'%s' does not set a parameter of %s, as %s=%g does (mskit shape --list)", assignment,
-                   kind->name, kind->parameters[0].name, kind->parameters[0].fallback);
+    return ms_choice_fail(&choice, err, "'%s' does not set a parameter of %s, as %s=%g does (mskit shape --list)",
+                          assignment, kind->name, kind->parameters[0].name, kind->parameters[0].fallback);
 }
 
 static int make(const ms_command *command, const char *output, int n_words, char **word)

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/ms_choice.h"
 #include "chart/ms_csv.h"
 #include "cli/ms_methods.h"
 #include "cli/ms_outputs.h"
@@ -121,10 +122,10 @@ static ms_status resolve_stability(stability_arguments *a, ms_error *err)
     return status;
 }
 
-static const ms_hard_shape *find_built_in(const char *name)
+static const ms_hard_shape *find_built_in(ms_choice *choice)
 {
     for (const ms_hard_shape *shape = ms_hard_shapes; shape->name; shape++) {
-        if (strcmp(shape->name, name) == 0) {
+        if (ms_choice_offer(choice, shape->name)) {
             return shape;
         }
     }
@@ -132,8 +133,12 @@ static const ms_hard_shape *find_built_in(const char *name)
 }
 
 /* A shape that is a word on the command line; its target is not made yet. */
-static ms_status read_shape(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err)
+static ms_status read_shape(ms_input *input, const char *path, const ms_choice *built_in, const ms_input_flags *flags,
+                            ms_error *err)
 {
+    if (built_in->nearest[0] && access(path, F_OK) != 0) {
+        return ms_choice_fail(built_in, err, "there is no file and no built-in shape '%s'", path);
+    }
     ms_status status = ms_input_read(input, path, flags, err);
     if (status == MS_OK && input->volume.label) {
         ms_input_free(input);
@@ -144,11 +149,12 @@ static ms_status read_shape(ms_input *input, const char *path, const ms_input_fl
 
 static ms_status make_input(ms_input *input, const char *name, const ms_input_flags *flags, ms_error *err)
 {
-    const ms_hard_shape *built_in = find_built_in(name);
+    ms_choice choice = {.typed = name};
+    const ms_hard_shape *built_in = find_built_in(&choice);
     if (built_in) {
         return ms_hard_shapes_make(input, built_in, flags, err);
     }
-    ms_status status = read_shape(input, name, flags, err);
+    ms_status status = read_shape(input, name, &choice, flags, err);
     if (status == MS_OK) {
         status = ms_input_target(input, flags, err);
         if (status != MS_OK) {
@@ -164,8 +170,9 @@ static ms_status try_shapes(const stability_arguments *a, ms_error *err)
     ms_status status = MS_OK;
     for (int s = 0; s < a->n_shapes && status == MS_OK; s++) {
         ms_input input;
-        if (!find_built_in(a->shape[s])) {
-            status = read_shape(&input, a->shape[s], &a->input, err);
+        ms_choice choice = {.typed = a->shape[s]};
+        if (!find_built_in(&choice)) {
+            status = read_shape(&input, a->shape[s], &choice, &a->input, err);
             if (status == MS_OK) {
                 ms_input_free(&input);
             }
