@@ -3,6 +3,7 @@
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -132,10 +133,10 @@ static ms_status name_file(ms_error *err, ms_status status, const ms_input *inpu
     return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", input->path, cause->text);
 }
 
-static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, ms_error *err)
+static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, const char *path, ms_error *err)
 {
     ms_error cause;
-    ms_status status = ms_mesh_parse(&input->mesh, bytes, input->path, err);
+    ms_status status = ms_mesh_parse(&input->mesh, bytes, path, err);
     if (status == MS_OK) {
         status = check_size(input, err);
     }
@@ -152,27 +153,35 @@ static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, ms_error *er
     return status;
 }
 
+/* What never ends is given up where it is longer than the memory that is allowed. */
+static ms_status read_standard_input(ms_bytes *bytes, const ms_input_flags *flags, ms_error *err)
+{
+    const double most = fmin(flags->max_memory, (double)PTRDIFF_MAX);
+    return ms_file_read_standard(bytes, (size_t)most, err);
+}
+
 ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err)
 {
     ms_bytes bytes;
     const double start = omp_get_wtime();
     memset(input, 0, sizeof *input);
-    input->path = path;
+    input->path = ms_file_name(path);
     if (flags->threads) {
         omp_set_num_threads(flags->threads);
     }
     if (path[0] == '\0') {
         return ms_fail(err, MS_ERR_IO, "the name of the shape is empty; name a mesh or a volume");
     }
-    ms_status status = ms_file_read(&bytes, path, err);
+    const int is_standard = ms_file_is_standard(path);
+    ms_status status = is_standard ? read_standard_input(&bytes, flags, err) : ms_file_read(&bytes, path, err);
     if (status != MS_OK) {
         return status;
     }
     input->checksum = ms_file_checksum(&bytes);
     if (ms_volume_is_volume_path(path)) {
         status = ms_volume_parse(&input->volume, &bytes, path, ms_input_max_voxels(flags), err);
-    } else if (ms_mesh_read_is_mesh_path(path)) {
-        status = parse_mesh(input, &bytes, err);
+    } else if (is_standard || ms_mesh_read_is_mesh_path(path)) {
+        status = parse_mesh(input, &bytes, path, err);
     } else {
         status = ms_fail(err, MS_ERR_FORMAT,
                          "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/ms_choice.h"
+#include "base/ms_file.h"
 #include "chart/ms_csv.h"
 #include "cli/ms_methods.h"
 #include "cli/ms_outputs.h"
@@ -109,6 +110,11 @@ static ms_status resolve_stability(stability_arguments *a, ms_error *err)
         a->wanted[c] |= !any || c == 0;
     }
     ms_status status = ms_methods_check(&a->methods, err);
+    for (int s = 0; s < a->n_shapes && status == MS_OK; s++) {
+        if (ms_file_is_standard(a->shape[s])) {
+            status = ms_fail(err, MS_ERR_ARG, "stability reads a shape twice, and - once; save it and name the file");
+        }
+    }
     for (size_t m = 0; m < a->methods.count && status == MS_OK; m++) {
         const ms_settings *settings = &a->methods.method[m].settings;
         if (settings->n_planes || settings->clump.n_spheres) {

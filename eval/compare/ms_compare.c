@@ -5,6 +5,7 @@
 
 #include "base/ms_escape.h"
 #include "base/ms_text.h"
+#include "cli/ms_files.h"
 
 #define COLUMN_NAME(code, name) [MS_COLUMN_##code] = (name),
 static const char *const NAMES[] = {MS_COLUMN_LIST_BEFORE(COLUMN_NAME) MS_COLUMN_LIST_BEHIND(COLUMN_NAME)};
@@ -78,8 +79,8 @@ char *ms_compare_key(const ms_compare_row *row)
 
 void ms_compare_name(char *out, size_t size, const char *shape, const char *label)
 {
-    const char *slash = strrchr(shape, '/'), *base = slash ? slash + 1 : shape, *dot = strrchr(base, '.');
-    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
-    snprintf(out, size, "%.*s%s%s", length, base, label[0] ? "-" : "", label);
+    size_t length;
+    const char *stem = ms_files_stem(&length, shape);
+    snprintf(out, size, "%.*s%s%s", (int)length, stem, label[0] ? "-" : "", label);
     ms_escape_file_name(out);
 }

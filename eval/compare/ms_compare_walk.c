@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_file.h"
 #include "base/ms_version.h"
 #include "ms_compare.h"
 #include "ms_compare_charts.h"
@@ -36,7 +37,7 @@ static ms_compare_row begin_row(const compare_walk *w, const ms_method *method, 
     row.text[MS_COLUMN_CHECKSUM] = w->checksum;
     row.text[MS_COLUMN_LABEL] = w->label;
     row.text[MS_COLUMN_GENERATOR] = method->name;
-    row.text[MS_COLUMN_OPTIONS] = method->options;
+    row.text[MS_COLUMN_OPTIONS] = method->generator ? method->options : ms_file_name(method->options);
     row.number[MS_COLUMN_CELLS] = w->cells;
     if (method->generator) {
         row.number[MS_COLUMN_SEED] = w->a->seed;
@@ -256,7 +257,7 @@ static ms_status compare_shape(compare_walk *w, const char *shape, ms_error *err
 {
     const ms_numbers *cells = &w->a->cells;
     ms_status status = MS_OK;
-    w->shape = shape;
+    w->shape = ms_file_name(shape);
     ms_compare_name(w->name, sizeof w->name, shape, w->label);
     w->sheet = plan_sheet(w->a, w->name);
     const ms_status read = ms_input_read(&w->input, shape, &w->a->input, &w->cause);

@@ -79,6 +79,9 @@ static ms_status check_shape(const ms_manifest *manifest, const char *path, cons
             return ms_text_fail(err, text, "%.180s stands twice; add up the counts", path);
         }
     }
+    if (ms_file_is_standard(path)) {
+        return ms_text_fail(err, text, "a manifest names files and not standard input");
+    }
     if (access(path, R_OK) == 0) {
         return MS_OK;
     }

@@ -23,7 +23,8 @@ MS_C_BEGIN
  */
 MS_API ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err);
 
-/** The same from the bytes of a file that was read already; the path tells the format and stands in messages. */
+/** The same from the bytes of a file that was read already; the path tells the format and stands in messages.
+ * Of "-", standard input, the content tells it. */
 MS_API ms_status ms_mesh_parse(ms_mesh *mesh, const ms_bytes *bytes, const char *path, ms_error *err);
 
 /** Nonzero if the path ends like a mesh that ms_mesh_read takes. */
