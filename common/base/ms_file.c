@@ -140,8 +140,9 @@ ms_status ms_file_read_standard(ms_bytes *bytes, size_t most, ms_error *err)
         status =
             ms_fail(err, MS_ERR_IO, "standard input: cannot be read at byte %zu: %s", bytes->size, strerror(errno));
     } else if (status == MS_OK && bytes->size > most) {
-        status = ms_fail(err, MS_ERR_LIMIT, "standard input: is longer than the %.3g MB that are read; name a file",
-                         (double)most / 1e6);
+        status =
+            ms_fail(err, MS_ERR_LIMIT, "standard input: is longer than the %.3g MB allowed; save it and name the file",
+                    (double)most / 1e6);
     }
     if (status != MS_OK) {
         ms_file_free(bytes);

@@ -11,6 +11,8 @@
 static const ms_flag FLAGS[] = {
     {"json", 0, NULL, "as JSON"},
     {"label", 0, "L", "the label of a volume to take"},
+    {"max-memory", 0, "SIZE",
+     "refuse volumes, and a standard input, beyond this, as 500M or 8G (3/4 of the machine's)"},
     {0},
 };
 
@@ -205,7 +207,7 @@ static int run_info(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_info = {
     .name = "info",
     .summary = "what a shape is: closed or not, volume, inertia, principal frame",
-    .usage = "SHAPE [--json] [--label L]",
+    .usage = "SHAPE [--json] [--label L] [--max-memory SIZE]",
     .example = "mskit info grain.stl",
     .flags = FLAGS,
     .run = run_info,

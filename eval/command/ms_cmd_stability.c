@@ -320,6 +320,18 @@ static ms_status try_all(stability_progress *p, const stability_arguments *a, ms
     return status;
 }
 
+/* A run of which no row has spheres has failed. */
+static ms_status check_any_gave(const stability_progress *p, ms_error *err)
+{
+    for (size_t r = 0; r < p->n_runs; r++) {
+        if (ms_stability_gave(&p->run[r])) {
+            return MS_OK;
+        }
+    }
+    return ms_fail(err, MS_ERR_SHAPE, "not one of %zu rows succeeded; the first failed because of this: %.700s",
+                   p->n_runs, p->run[0].cause.text);
+}
+
 static ms_status report_stability(const stability_arguments *a, const stability_progress *p, ms_error *err)
 {
     ms_statistics_group *groups;
@@ -332,7 +344,10 @@ static ms_status report_stability(const stability_arguments *a, const stability_
         ms_statistics_print(words, groups, count, a->until_dice > 0);
     }
     free(groups);
-    return status == MS_OK && a->charts ? ms_stability_charts(a->charts, p->run, p->n_runs, err) : status;
+    if (status == MS_OK && a->charts) {
+        status = ms_stability_charts(a->charts, p->run, p->n_runs, err);
+    }
+    return status == MS_OK ? check_any_gave(p, err) : status;
 }
 
 static size_t count_runs(const stability_arguments *a)

@@ -17,7 +17,8 @@
 typedef struct compare_walk {
     const ms_comparison *a;
     ms_csv *csv;
-    size_t at, failed; /* rows */
+    size_t at, made, failed; /* rows; of those made how many failed */
+    ms_error first_cause;
     const char *shape;
     ms_input input;
     double cells; /* NAN for a volume */
@@ -91,27 +92,39 @@ static void need_target(compare_walk *w)
     w->target_made = 1;
 }
 
-static void say_row(const ms_compare_row *row)
+static void say_row(FILE *words, const ms_compare_row *row)
 {
-    printf("%s %s%s%s", row->text[MS_COLUMN_SHAPE], row->text[MS_COLUMN_GENERATOR],
-           row->text[MS_COLUMN_OPTIONS][0] ? ":" : "", row->text[MS_COLUMN_OPTIONS]);
+    fprintf(words, "%s %s%s%s", row->text[MS_COLUMN_SHAPE], row->text[MS_COLUMN_GENERATOR],
+            row->text[MS_COLUMN_OPTIONS][0] ? ":" : "", row->text[MS_COLUMN_OPTIONS]);
     if (isfinite(row->number[MS_COLUMN_CELLS])) {
-        printf(", %g cells", row->number[MS_COLUMN_CELLS]);
+        fprintf(words, ", %g cells", row->number[MS_COLUMN_CELLS]);
     }
     const ms_column n = isfinite(row->number[MS_COLUMN_SPHERES]) ? MS_COLUMN_SPHERES : MS_COLUMN_ASKED;
     if (isfinite(row->number[n])) {
-        printf(", n %g", row->number[n]);
+        fprintf(words, ", n %g", row->number[n]);
     }
     if (isfinite(row->number[MS_COLUMN_DICE])) {
-        printf(": D %.4f", row->number[MS_COLUMN_DICE]);
+        fprintf(words, ": D %.4f", row->number[MS_COLUMN_DICE]);
     } else if (row->text[MS_COLUMN_CAUSE]) {
-        printf(": %s", row->text[MS_COLUMN_CAUSE]);
+        fprintf(words, ": %s", row->text[MS_COLUMN_CAUSE]);
     }
     if (isfinite(row->number[MS_COLUMN_GENERATE])) {
-        printf(", %.3g s", row->number[MS_COLUMN_GENERATE]);
+        fprintf(words, ", %.3g s", row->number[MS_COLUMN_GENERATE]);
     }
-    printf("\n");
-    fflush(stdout);
+    fprintf(words, "\n");
+    fflush(words);
+}
+
+/* Counts it, and remembers why the first one failed. */
+static void note_row(compare_walk *w, const ms_compare_row *row)
+{
+    w->made++;
+    if (isfinite(row->number[MS_COLUMN_DICE])) {
+        return;
+    }
+    if (w->failed++ == 0) {
+        ms_fail(&w->first_cause, MS_ERR_SHAPE, "%s", row->text[MS_COLUMN_CAUSE] ? row->text[MS_COLUMN_CAUSE] : "");
+    }
 }
 
 static ms_status add_row(compare_walk *w, const ms_compare_row *row, ms_error *err)
@@ -121,8 +134,8 @@ static ms_status add_row(compare_walk *w, const ms_compare_row *row, ms_error *e
     free(line);
     if (status == MS_OK) {
         w->at++;
-        w->failed += !isfinite(row->number[MS_COLUMN_DICE]);
-        say_row(row);
+        note_row(w, row);
+        say_row(w->a->words, row);
     }
     return status;
 }
@@ -337,12 +350,19 @@ ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error
     if (status != MS_OK) {
         return status;
     }
-    printf("wrote %s, %zu rows", csv->path, csv->n_rows);
-    printf(w.failed ? "; %zu of the new ones failed, see the column cause\n" : "\n", w.failed);
+    fprintf(comparison->words, "wrote %s, %zu rows", csv->path, csv->n_rows);
+    if (w.failed) {
+        fprintf(comparison->words, "; %zu of the new ones failed, see the column cause", w.failed);
+    }
+    putc('\n', comparison->words);
     if (comparison->charts) {
         ms_error why;
         note_drawn(&w, ms_compare_charts(csv, comparison->charts, &why), &why);
         *err = w.why_not;
+    }
+    if (w.drawn == MS_OK && w.made > 0 && w.failed == w.made) {
+        return ms_fail(err, MS_ERR_SHAPE, "not one of %zu rows succeeded; the first failed because of this: %.700s",
+                       w.made, w.first_cause.text);
     }
     return w.drawn;
 }
