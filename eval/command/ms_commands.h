@@ -5,7 +5,11 @@
 #include "base/ms_choice.h"
 #include "cli/ms_flags.h"
 
+/* Shells that mskit completion knows. */
+#define MS_COMPLETION_SHELLS "bash|zsh"
+
 extern const ms_command ms_command_compare;
+extern const ms_command ms_command_completion;
 extern const ms_command ms_command_convert;
 extern const ms_command ms_command_correct;
 extern const ms_command ms_command_generate;
