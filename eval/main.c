@@ -11,10 +11,20 @@
 #include "cli/ms_input.h"
 #include "command/ms_commands.h"
 
+static const ms_command *const COMMANDS[] = {
+    &ms_command_generate,   &ms_command_score,
+    &ms_command_correct,    &ms_command_convert,
+    &ms_command_info,       &ms_command_shape,
+    &ms_command_compare,    &ms_command_stability,
+    &ms_command_scene,      &ms_command_generators,
+    &ms_command_help,       &ms_command_version,
+    &ms_command_completion, NULL,
+};
+
 static void print_usage(FILE *stream)
 {
     fputs("mskit: multi-sphere clumps for discrete element simulation\n\nusage: mskit COMMAND [...]\n\n", stream);
-    for (const ms_command *const *c = ms_commands; *c; c++) {
+    for (const ms_command *const *c = COMMANDS; *c; c++) {
         fprintf(stream, "  %-12s %s\n", (*c)->name, (*c)->summary);
     }
     fputs("\n'mskit COMMAND --help' tells more.\n"
@@ -26,7 +36,7 @@ static int run_command(int argc, char **argv)
 {
     ms_error err;
     ms_choice choice = {.typed = argv[1]};
-    const ms_command *command = ms_commands_find(&choice);
+    const ms_command *command = ms_flags_find_command(&choice, COMMANDS);
     if (!command) {
         if (argv[1][0] == '-') {
             choice = (ms_choice){.typed = argv[1]};
@@ -37,7 +47,8 @@ static int run_command(int argc, char **argv)
         fprintf(stderr, "mskit: %s; flags follow a command (mskit generate --help)\n", err.text);
         return EXIT_USAGE;
     }
-    return command->run(command, argc - 1, argv + 1);
+    return command->run ? command->run(command, argc - 1, argv + 1)
+                        : command->run_of_all(command, COMMANDS, argc - 1, argv + 1);
 }
 
 /* A file must not be opened under the number of a stream that the caller has closed: what is

@@ -35,7 +35,7 @@ size_t ms_choice_distance(const char *a, size_t n, const char *b, size_t m)
     return row[n % 3][m];
 }
 
-static size_t length_of(const ms_choice *choice)
+static size_t typed_length(const ms_choice *choice)
 {
     return choice->length ? choice->length : strlen(choice->typed);
 }
@@ -53,7 +53,7 @@ static int begins(const char *word, size_t length, const char *start, size_t n)
 static void keep_if_nearer(ms_choice *choice, const char *word, size_t length)
 {
     enum { LEAST_BEGINNING = 3 };
-    const size_t n = length_of(choice), longer = n > length ? n : length, shorter = least(n, length);
+    const size_t n = typed_length(choice), longer = n > length ? n : length, shorter = least(n, length);
     if (longer >= MS_CHOICE_LONGEST) {
         return;
     }
@@ -75,7 +75,7 @@ int ms_choice_offer_part(ms_choice *choice, const char *word, size_t length)
     const size_t used = strlen(choice->list);
     snprintf(choice->list + used, sizeof choice->list - used, "%s%.*s", used ? ", " : "", (int)length, word);
     keep_if_nearer(choice, word, length);
-    return length_of(choice) == length && memcmp(choice->typed, word, length) == 0;
+    return typed_length(choice) == length && memcmp(choice->typed, word, length) == 0;
 }
 
 int ms_choice_offer(ms_choice *choice, const char *word)

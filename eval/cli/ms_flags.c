@@ -6,12 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ms_choice.h"
 #include "base/ms_text.h"
 #include "ms_generator.h"
 
 /* Room for the flags of a command and the options of all generators. */
 enum { MAX_FLAGS = 128, HELP_COLUMN = 28 };
+
+const ms_command *ms_flags_find_command(ms_choice *choice, const ms_command *const *all)
+{
+    for (const ms_command *const *c = all; *c; c++) {
+        if (ms_choice_offer(choice, (*c)->name)) {
+            return *c;
+        }
+    }
+    return NULL;
+}
 
 static void print_flag(const ms_flag *flag)
 {

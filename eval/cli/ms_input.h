@@ -55,7 +55,8 @@ typedef struct ms_input {
 
 /**
  * Reads a mesh or a volume; mends a mesh, and if it is closed takes its volume, centre and
- * inertia. "-" is standard input, which is a mesh of up to --max-memory bytes. What was mended, and whether bodies overlap, is said on stderr.
+ * inertia. What was mended, and whether bodies overlap, is said on stderr. "-" is standard input, which is a mesh of up
+ * to --max-memory bytes.
  */
 ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err);
 

@@ -51,7 +51,7 @@ static const char ZSH[] = "#compdef mskit\n"
                           "    compdef _mskit mskit\n"
                           "fi\n";
 
-static int run_completion(const ms_command *command, int argc, char **argv)
+static int run_completion(const ms_command *command, const ms_command *const *all, int argc, char **argv)
 {
     int first;
     ms_error err;
@@ -60,7 +60,7 @@ static int run_completion(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first > 1 && strcmp(argv[first], "words") == 0) {
-        ms_complete_print(stdout, argv + first + 1, (size_t)(argc - first - 1));
+        ms_complete_print(stdout, all, argv + first + 1, (size_t)(argc - first - 1));
         return EXIT_DONE;
     }
     if (argc - first != 1) {
@@ -84,5 +84,5 @@ const ms_command ms_command_completion = {
     .usage = MS_COMPLETION_SHELLS,
     .example = "mskit completion bash",
     .flags = NO_FLAGS,
-    .run = run_completion,
+    .run_of_all = run_completion,
 };

@@ -102,9 +102,9 @@ static json_t *command_json(const ms_command *command)
 
 static int print_command(const ms_command *other)
 {
-    char name[32], help[] = "--help", *words[] = {name, help, NULL};
-    snprintf(name, sizeof name, "%s", other->name);
-    return other->run(other, 2, words);
+    int first;
+    char name[] = "mskit", help[] = "--help", *words[] = {name, help, NULL};
+    return ms_flags_parse(&first, other, 0, 2, words, NULL, NULL);
 }
 
 static int fail_help(const ms_command *command, ms_choice *choice)
@@ -117,7 +117,7 @@ static int fail_help(const ms_command *command, ms_choice *choice)
     return ms_flags_wrong_usage(command, err.text);
 }
 
-static int run_help(const ms_command *command, int argc, char **argv)
+static int run_help(const ms_command *command, const ms_command *const *all, int argc, char **argv)
 {
     int first, json = 0;
     ms_error err;
@@ -129,7 +129,7 @@ static int run_help(const ms_command *command, int argc, char **argv)
         return ms_flags_wrong_usage(command, "takes the name of one generator or command");
     }
     ms_choice choice = {.typed = argv[first]};
-    const ms_command *other = ms_commands_find(&choice);
+    const ms_command *other = ms_flags_find_command(&choice, all);
     const ms_generator *generator = other ? NULL : ms_generator_find(argv[first], NULL);
     if (!other && !generator) {
         return fail_help(command, &choice);
@@ -152,7 +152,7 @@ const ms_command ms_command_help = {
     .usage = "[NAME] [--json]",
     .example = "mskit help mss",
     .flags = JSON_FLAGS,
-    .run = run_help,
+    .run_of_all = run_help,
 };
 
 static int run_version(const ms_command *command, int argc, char **argv)

@@ -2,7 +2,6 @@
 #ifndef MS_COMMANDS_H
 #define MS_COMMANDS_H
 
-#include "base/ms_choice.h"
 #include "cli/ms_flags.h"
 
 /* Shells that mskit completion knows. */
@@ -21,11 +20,5 @@ extern const ms_command ms_command_score;
 extern const ms_command ms_command_shape;
 extern const ms_command ms_command_stability;
 extern const ms_command ms_command_version;
-
-/** All of them, in the order of the help; ends with NULL. */
-extern const ms_command *const ms_commands[];
-
-/** The command that was typed; NULL if there is none, and all are offered. */
-const ms_command *ms_commands_find(ms_choice *choice);
 
 #endif

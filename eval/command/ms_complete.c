@@ -13,6 +13,7 @@
 /* The place that is completed. */
 typedef struct place {
     FILE *stream;
+    const ms_command *const *all;
     const ms_command *command;
     char *const *word; /* the last is being typed */
     size_t count;
@@ -121,7 +122,7 @@ static void offer_settings(const place *p)
 
 static void offer_commands(const place *p)
 {
-    for (const ms_command *const *c = ms_commands; *c; c++) {
+    for (const ms_command *const *c = p->all; *c; c++) {
         offer(p, (*c)->name, "");
     }
 }
@@ -167,7 +168,7 @@ typedef struct words_of {
     void (*offer)(const place *p);
 } words_of;
 
-/* What the argument of a flag is; of others it is one of "a|b" where the table of flags says so, a number, or a file. */
+/* What the argument of a flag is. Of others the table of flags says it: one of "a|b", a file, or a number. */
 static const words_of ARGUMENTS[] = {
     {"generator", offer_generators}, {"format", offer_formats}, {"until", offer_stops},     {"tolerance", offer_goals},
     {"mean-tolerance", offer_mean},  {"set", offer_settings},   {"perturb", offer_changes}, {0},
@@ -268,9 +269,9 @@ static int offer_behind_equals(place *p)
     return offer_after(p, word, (size_t)(equals - word));
 }
 
-void ms_complete_print(FILE *stream, char *const *word, size_t count)
+void ms_complete_print(FILE *stream, const ms_command *const *all, char *const *word, size_t count)
 {
-    place p = {.stream = stream, .word = word, .count = count, .typed = word[count - 1]};
+    place p = {.stream = stream, .all = all, .word = word, .count = count, .typed = word[count - 1]};
     if (count == 1) {
         offer_commands(&p);
         offer(&p, "--help", "");
@@ -278,7 +279,7 @@ void ms_complete_print(FILE *stream, char *const *word, size_t count)
         return;
     }
     ms_choice choice = {.typed = word[0]};
-    p.command = ms_commands_find(&choice);
+    p.command = ms_flags_find_command(&choice, all);
     if (!p.command || offer_behind_equals(&p) || offer_after(&p, word[count - 2], strlen(word[count - 2]))) {
         return;
     }
