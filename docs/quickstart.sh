@@ -8,5 +8,5 @@ sh docs/install-packages.sh
 ninja -C build
 mkdir -p demo
 build/eval/mskit shape grain -o demo/grain.stl
-build/eval/mskit generate demo/grain.stl --generator mss --spheres 50 \
+build/eval/mskit generate demo/grain.stl --spheres 50 \
     -o demo/grain.csv -o demo/grain.json -o demo/grain.vtk

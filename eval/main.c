@@ -28,7 +28,7 @@ static void print_usage(FILE *stream)
         fprintf(stream, "  %-12s %s\n", (*c)->name, (*c)->summary);
     }
     fputs("\n'mskit COMMAND --help' tells more.\n"
-          "example: mskit generate grain.stl --generator mss --spheres 50 -o grain.csv\n",
+          "example: mskit generate grain.stl --spheres 50 -o grain.csv\n",
           stream);
 }
 

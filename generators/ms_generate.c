@@ -26,7 +26,7 @@ static void free_shape(shape *s)
 static ms_generate_request fill_in(const ms_generate_request *request)
 {
     ms_generate_request all = request ? *request : (ms_generate_request){0};
-    all.generator = all.generator ? all.generator : "mss";
+    all.generator = all.generator ? all.generator : MS_GENERATOR_DEFAULT;
     all.cells = all.cells > 0 ? all.cells : DEFAULT_CELLS;
     all.seed = all.seed ? all.seed : 1;
     all.max_bytes = all.max_bytes > 0 ? all.max_bytes : ms_target_default_bytes();

@@ -16,7 +16,7 @@ typedef struct ms_generate_option {
 
 /** What is asked for; all borrowed. A zeroed struct asks for what `mskit generate FILE` does. */
 typedef struct ms_generate_request {
-    const char *generator;             /* ms_generator_find; NULL: "mss" */
+    const char *generator;             /* ms_generator_find; NULL: MS_GENERATOR_DEFAULT */
     const ms_generate_option *options; /* ends with a NULL name; NULL: those of the generator */
     ms_stop stop;                      /* asks for nothing: 50 spheres */
     double cells;                      /* voxels along the shortest side of a mesh's box; 0: 100 */

@@ -67,6 +67,10 @@ typedef struct ms_generator {
     ms_status (*generate)(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err);
 } ms_generator;
 
+/** The one that commands and ms_generate_file take where none is named: the least mismatch of nearly all shapes and
+ * numbers of spheres (docs/comparison.md). */
+#define MS_GENERATOR_DEFAULT "variational"
+
 /** All generators; ends with NULL. */
 MS_API extern const ms_generator *const ms_generators[];
 

@@ -150,11 +150,10 @@ static ms_status open_locked(ms_csv *csv, int resume, ms_error *err)
 {
     csv->fd = open(csv->path, O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | (resume ? 0 : O_EXCL), 0666);
     if (csv->fd < 0 && errno == EEXIST) {
-        return ms_fail(
-            err, MS_ERR_IO,
-            "%s: exists already, and rows of results are not replaced; name another file (compare --resume goes "
-            "on with one)",
-            csv->path);
+        return ms_fail(err, MS_ERR_IO,
+                       "%s: exists already, and rows of results are not replaced; name another file (--resume goes "
+                       "on with one)",
+                       csv->path);
     }
     if (csv->fd < 0) {
         return ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s; check that its folder exists and may be written to",

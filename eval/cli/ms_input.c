@@ -198,7 +198,7 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
 
 enum { DEFAULT_CELLS = 100 };
 
-static double shortest_side(const ms_mesh *mesh)
+double ms_input_shortest_side(const ms_mesh *mesh)
 {
     double lo[3], hi[3];
     ms_mesh_box(lo, hi, mesh);
@@ -254,16 +254,16 @@ static double cells_to_try(double cells, double misfit)
     return ceil(cells * fmin(MOST_TIMES, fabs(misfit) / AIM) - 1e-9);
 }
 
-void ms_input_say_misfit(const char *name, double misfit, double voxel_size, const ms_mesh *mesh)
+void ms_input_say_misfit(const char *name, double misfit, double voxel_size, double shortest_side)
 {
     if (!(fabs(misfit) >= MS_INPUT_MISFIT)) {
         return;
     }
-    const double cells = shortest_side(mesh) / voxel_size, more = cells_to_try(cells, misfit);
+    const double cells = shortest_side / voxel_size, more = cells_to_try(cells, misfit);
     fprintf(stderr,
             "%s: the voxels hold %.3g %% %s than the shape: they are too coarse for it, and measures on them are of "
             "another body; try --cells %.0f (now %.3g) or --voxel-size %.4g\n",
-            name, 100 * fabs(misfit), misfit > 0 ? "more" : "less", more, cells, shortest_side(mesh) / more);
+            name, 100 * fabs(misfit), misfit > 0 ? "more" : "less", more, cells, shortest_side / more);
 }
 
 static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, ms_error *err)
@@ -295,7 +295,7 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
                 "inertia are those of the voxels\n",
                 input->path, input->report.open_edges, input->target.disagree, input->target.voxels);
     } else if (status == MS_OK) {
-        ms_input_say_misfit(input->path, ms_target_misfit(&input->target), h, &input->mesh);
+        ms_input_say_misfit(input->path, ms_target_misfit(&input->target), h, ms_input_shortest_side(&input->mesh));
     }
     return status;
 }
@@ -312,15 +312,24 @@ static void say_pieces(const ms_input *input)
     }
 }
 
-static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags, ms_error *err)
+/* Voxels of the grid of a label along each axis; 0 if it has none. */
+static int measure_label(double n[3], const ms_input *input, const ms_input_flags *flags)
 {
     int lo[3], hi[3];
     uint32_t other;
+    const int has_voxels = ms_target_label_box(lo, hi, &other, &input->volume, flags->label);
+    for (int a = 0; a < 3 && has_voxels; a++) {
+        n[a] = hi[a] - lo[a] + 2 * MS_GRID_HULL;
+    }
+    return has_voxels;
+}
+
+static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags, ms_error *err)
+{
+    double n[3];
     ms_error cause;
     ms_status status = MS_OK;
-    if (ms_target_label_box(lo, hi, &other, &input->volume, flags->label)) { /* without voxels the target says why */
-        const double n[3] = {hi[0] - lo[0] + 2 * MS_GRID_HULL, hi[1] - lo[1] + 2 * MS_GRID_HULL,
-                             hi[2] - lo[2] + 2 * MS_GRID_HULL};
+    if (measure_label(n, input, flags)) { /* without voxels the target says why */
         status = check_memory(n, flags, err);
     }
     if (status == MS_OK) {
@@ -349,6 +358,20 @@ ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flag
         return ms_fail(err, MS_ERR_ARG, "%s is a mesh; --label is for volumes", input->path);
     }
     return MS_OK;
+}
+
+double ms_input_bytes(const ms_input *input, const ms_input_flags *flags)
+{
+    double h, n[3];
+    ms_error ignored;
+    if (input->volume.label) {
+        return measure_label(n, input, flags) ? ms_target_bytes(n) : 0;
+    }
+    if (choose_voxel_size(&h, input, flags, &ignored) != MS_OK) {
+        return 0;
+    }
+    ms_voxelize_extents(n, &input->mesh, h);
+    return ms_target_bytes(n);
 }
 
 ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err)

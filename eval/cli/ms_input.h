@@ -63,6 +63,9 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
 /** Refuses flags that do not apply to what was read. @return MS_OK; MS_ERR_ARG */
 ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flags, ms_error *err);
 
+/** Bytes of the target that ms_input_target would make, and of a generator on it; 0 where it would fail before. */
+double ms_input_bytes(const ms_input *input, const ms_input_flags *flags);
+
 /**
  * Makes the target; says the size of the grid on stderr, and if its voxels do not hold the shape. Refuses open meshes
  * unless allowed.
@@ -73,9 +76,12 @@ ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error
  * Says on stderr that the voxels do not hold the shape, with the figures and a number of cells to try, if they are
  * off by 1 % or more of its volume.
  *
- * @param misfit as ms_target_misfit
+ * @param misfit        as ms_target_misfit
+ * @param shortest_side of the shape's box
  */
-void ms_input_say_misfit(const char *name, double misfit, double voxel_size, const ms_mesh *mesh);
+void ms_input_say_misfit(const char *name, double misfit, double voxel_size, double shortest_side);
+
+double ms_input_shortest_side(const ms_mesh *mesh);
 
 /** The largest grid that the memory allowed admits. */
 size_t ms_input_max_voxels(const ms_input_flags *flags);

@@ -101,16 +101,12 @@ static ms_status add_all_generators(ms_methods *methods, ms_error *err)
     return status;
 }
 
-const char *ms_methods_file(const ms_method *method)
-{
-    return method->generator ? method->settings.clump_file : method->options;
-}
-
 ms_status ms_methods_list_files(ms_files *files, const ms_methods *methods, ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t m = 0; m < methods->count && status == MS_OK; m++) {
-        const char *file = ms_methods_file(&methods->method[m]);
+        const ms_method *method = &methods->method[m];
+        const char *file = method->generator ? method->settings.clump_file : method->options;
         status = file ? ms_files_add(files, file, MS_FILE_READ, err) : MS_OK;
     }
     return status;

@@ -38,9 +38,6 @@ ms_status ms_methods_add_clump(ms_methods *methods, const char *text, ms_error *
  */
 ms_status ms_methods_check(ms_methods *methods, ms_error *err);
 
-/** The file that a method reads: the clump of another tool, or that to start from; NULL for none. Borrowed. */
-const char *ms_methods_file(const ms_method *method);
-
 /** Adds the files that methods read: clumps of other tools, and those to start from. @return MS_OK; MS_ERR_NOMEM */
 ms_status ms_methods_list_files(ms_files *files, const ms_methods *methods, ms_error *err);
 

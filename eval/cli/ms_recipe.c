@@ -1,5 +1,6 @@
 #include "ms_recipe.h"
 
+#include <stdio.h>
 #include <string.h>
 
 ms_status ms_recipe_assignment(char name[64], const char **value, const char *text, ms_error *err)
@@ -55,6 +56,20 @@ ms_status ms_recipe_flag(int *taken, ms_recipe *recipe, const char *name, const 
     return MS_OK;
 }
 
+/* An option that another generator has: which ones is said. */
+static ms_status set_wish(ms_recipe *recipe, const char *name, const char *value, ms_error *err)
+{
+    char names[128] = "";
+    for (const ms_generator *const *g = ms_generators; *g && !ms_option_find(recipe->generator->options, name); g++) {
+        if (ms_option_find((*g)->options, name)) {
+            const size_t used = strlen(names);
+            snprintf(names + used, sizeof names - used, "%s-g %s", used ? " or " : "", (*g)->name);
+        }
+    }
+    return names[0] ? ms_fail(err, MS_ERR_ARG, "%s has no option '%s'; give %s beside it", recipe->name, name, names)
+                    : ms_option_settings_set(&recipe->settings, name, value, err);
+}
+
 ms_status ms_recipe_resolve(ms_recipe *recipe, ms_error *err)
 {
     recipe->generator = ms_generator_find(recipe->name, err);
@@ -68,7 +83,7 @@ ms_status ms_recipe_resolve(ms_recipe *recipe, ms_error *err)
             status = ms_recipe_assignment(name, &value, wish->text, err);
         }
         if (status == MS_OK) {
-            status = ms_option_settings_set(&recipe->settings, wish->name ? wish->name : name, value, err);
+            status = set_wish(recipe, wish->name ? wish->name : name, value, err);
         }
     }
     return status;

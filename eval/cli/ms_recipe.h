@@ -8,9 +8,9 @@
 enum { MS_RECIPE_MAX_OPTIONS = 256 };
 
 /* clang-format off */
-#define MS_RECIPE_FLAGS(fallback) \
+#define MS_RECIPE_FLAGS \
     {"generator", 'g', "NAME", \
-     "the method, mss, setcover, fcm or variational (" fallback "); mskit generators lists them"}, \
+     "the method, variational, mss, setcover or fcm (" MS_GENERATOR_DEFAULT "); mskit generators lists them"}, \
     {"set", 0, "OPTION=VALUE", "an option of the method (mskit help NAME); --OPTION VALUE does the same"}, \
     {"seed", 0, "S", "seed of methods that draw random numbers (1)"}
 /* clang-format on */
@@ -21,7 +21,7 @@ typedef struct ms_wish {
     const char *text;
 } ms_wish;
 
-/** Begins as {.name = "mss", .seed = 1}. */
+/** Begins as {.name = MS_GENERATOR_DEFAULT, .seed = 1}. */
 typedef struct ms_recipe {
     const char *name;
     ms_wish wish[MS_RECIPE_MAX_OPTIONS];

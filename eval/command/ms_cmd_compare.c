@@ -113,7 +113,7 @@ static ms_status check_files(const ms_comparison *c, const char *output, ms_erro
 {
     ms_files files = {0};
     for (size_t s = 0; s < c->n_shapes; s++) {
-        if (!ms_file_is_standard(c->shape[s]) && access(c->shape[s], R_OK) != 0) {
+        if (access(c->shape[s], R_OK) != 0) {
             return ms_file_fail_open(err, c->shape[s], errno);
         }
     }
@@ -160,23 +160,16 @@ static int execute_compare(const ms_command *command, const compare_arguments *a
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
-/* Of shapes, clumps and spheres to start from. */
+/* A shape is read for each resolution. */
 static ms_status check_standard(const ms_comparison *c, ms_error *err)
 {
-    const size_t count = c->n_shapes + c->methods.count;
-    const char **input = malloc((count + 1) * sizeof *input);
-    if (!input) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu inputs", count);
-    }
     for (size_t s = 0; s < c->n_shapes; s++) {
-        input[s] = c->shape[s];
+        if (ms_file_is_standard(c->shape[s])) {
+            return ms_fail(err, MS_ERR_ARG,
+                           "compare may read a shape several times, and - once; save it and name the file");
+        }
     }
-    for (size_t m = 0; m < c->methods.count; m++) {
-        input[c->n_shapes + m] = ms_methods_file(&c->methods.method[m]);
-    }
-    const ms_status status = ms_files_check_standard(input, count, err);
-    free(input);
-    return status;
+    return MS_OK;
 }
 
 /* What follows from all flags together. */
@@ -192,6 +185,9 @@ static ms_status resolve_compare(ms_comparison *c, ms_error *err)
     }
     if (ms_methods_clumps(&c->methods) > 0 && c->n_shapes > 1) {
         return ms_fail(err, MS_ERR_ARG, "--clump belongs to one shape; compare the others by themselves");
+    }
+    if (c->input.label) {
+        snprintf(c->label, sizeof c->label, "%lu", (unsigned long)c->input.label);
     }
     const ms_status status = check_standard(c, err);
     return status == MS_OK ? ms_methods_check(&c->methods, err) : status;

@@ -18,7 +18,7 @@
 enum { DEFAULT_SPHERES = 50 };
 
 static const ms_flag FLAGS[] = {
-    MS_RECIPE_FLAGS("mss"),
+    MS_RECIPE_FLAGS,
     {"spheres", 'n', "N", "at most N spheres (50, if no --until is given)"},
     {"until", 0, "MEASURE=VALUE",
      "end when " MS_MEASURE_GOAL_NAMES
@@ -28,7 +28,9 @@ static const ms_flag FLAGS[] = {
     MS_MASS_FLAGS,
     {"target-grid", 0, "FILE", "also write the voxels of the shape as VTK"},
     {"curve", 0, "FILE",
-     "also write the scores of the clumps of 1 to n spheres as CSV; each is a run of its own if they are not prefixes"},
+     "also write the scores of the clumps of 1 to n spheres as CSV; where prefixes are no clumps (variational), each "
+     "is a run "
+     "of its own"},
     {"json", 0, NULL, "scores and settings as JSON on standard output"},
     MS_INPUT_FLAGS,
     {0},
@@ -360,7 +362,7 @@ static ms_status resolve_generate(generate_arguments *a, ms_error *err)
 
 static int run_generate(const ms_command *command, int argc, char **argv)
 {
-    generate_arguments a = {.recipe = {.name = "mss", .seed = 1}};
+    generate_arguments a = {.recipe = {.name = MS_GENERATOR_DEFAULT, .seed = 1}};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);
@@ -383,7 +385,7 @@ const ms_command ms_command_generate = {
     .name = "generate",
     .summary = "make a clump for a shape, score it and write it",
     .usage = "SHAPE [-g NAME] [-n N] [--until MEASURE=VALUE]... [-o FILE]...",
-    .example = "mskit generate grain.stl --generator mss --spheres 50 --cells 100 -o grain.csv -o grain.json",
+    .example = "mskit generate grain.stl --spheres 50 --cells 100 -o grain.csv -o grain.json",
     .flags = FLAGS,
     .run = run_generate,
 };

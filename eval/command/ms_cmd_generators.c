@@ -1,5 +1,6 @@
 /* mskit generators */
 #include <stdio.h>
+#include <string.h>
 
 #include "cli/ms_json_object.h"
 #include "cli/ms_report.h"
@@ -34,7 +35,8 @@ static int run_generators(const ms_command *command, int argc, char **argv)
             ms_json_object_append(&list, json_pack("{s:s,s:s,s:s,s:b}", "name", (*g)->name, "summary", (*g)->summary,
                                                    "source", (*g)->source, "nested", (*g)->nested));
         } else {
-            printf("%-12s %s\n%-12s %s\n", (*g)->name, (*g)->summary, "", (*g)->source);
+            printf("%-12s %s%s\n%-12s %s\n", (*g)->name, (*g)->summary,
+                   strcmp((*g)->name, MS_GENERATOR_DEFAULT) == 0 ? " (the default)" : "", "", (*g)->source);
         }
     }
     if (json && ms_report_print(stdout, list, &err) != MS_OK) {

@@ -26,7 +26,7 @@ static const ms_flag FLAGS[] = {
     {"knee", 0, "PART", "each shape's number of spheres from which a further one takes away less than this part of D"},
     {"max-spheres", 0, "N", "spheres of the largest template (100)"},
     {"min-radius", 0, "R", "no sphere smaller than this, for the sake of the time step"},
-    MS_RECIPE_FLAGS("variational"),
+    MS_RECIPE_FLAGS,
     {"output", 'o', "DIR", "write the templates into this folder, each by the name of its shape"},
     {"format", 0, "F", "format of the templates: csv, json or vtk (csv)"},
     {"json", 0, NULL, "as JSON"},
@@ -334,7 +334,7 @@ static int read_and_work(const ms_command *command, scene_arguments *a)
 
 static int run_scene(const ms_command *command, int argc, char **argv)
 {
-    scene_arguments a = {.max_spheres = DEFAULT_MAX_SPHERES, .recipe = {.name = "variational", .seed = 1}};
+    scene_arguments a = {.max_spheres = DEFAULT_MAX_SPHERES, .recipe = {.name = MS_GENERATOR_DEFAULT, .seed = 1}};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);

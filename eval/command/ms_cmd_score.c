@@ -12,7 +12,9 @@
 
 static const ms_flag FLAGS[] = {
     {"target", 't', "SHAPE", "the mesh or volume that the clump stands for"},
-    {"curve", 0, NULL, "scores of every prefix as CSV: n" MS_MEASURE_CURVE_NAMES},
+    {"curve", 0, NULL,
+     "scores of every prefix as CSV: n" MS_MEASURE_CURVE_NAMES
+     "; those of variational are no clumps: see generate --curve"},
     {"json", 0, NULL, "as JSON"},
     MS_INPUT_FLAGS,
     {0},

@@ -36,6 +36,7 @@
     X(REPEATS, "repeats") \
     X(MEMORY, "peak_memory_kb") \
     X(THREADS, "threads") \
+    X(BESIDE, "beside") \
     X(VERSION, "version") \
     X(CAUSE, "cause")
 /* clang-format on */

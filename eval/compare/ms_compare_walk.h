@@ -22,6 +22,7 @@ typedef struct ms_comparison {
     ms_input_flags input; /* without its resolution */
     ms_methods methods;
     ms_numbers asked, cells; /* numbers of spheres; resolutions, which a volume does not take */
+    char label[20];          /* as text; "" for none */
     double repeats, seed;
     FILE *words;        /* where rows are said */
     const char *charts; /* folder, which exists; NULL for none */
@@ -32,8 +33,9 @@ typedef struct ms_comparison {
 ms_status ms_compare_list_files(ms_files *files, const ms_comparison *comparison, ms_error *err);
 
 /**
- * Walks through the comparison in a fixed order and adds a row for each run; those that are there already must be its
- * first rows, and are not run again. Says each row. Then draws the charts.
+ * Adds the rows of all runs, in a fixed order; those that are there already must be its first rows, and are not run
+ * again. Runs go side by side (ms_queue.h), unless times are the result: with charts, or repeats. Says each row.
+ * Then draws the charts.
  *
  * @param csv with ms_compare_header
  * @return MS_OK, also where some runs failed: that is in their rows; MS_ERR_SHAPE where each of the new ones did, when

@@ -77,7 +77,8 @@ static int note_progress(void *context, size_t spheres, double dice)
 static ms_status run_once(ms_trial *trial, double *seconds, const ms_trial_run *run, const ms_target *target,
                           ms_error *err)
 {
-    trial_watch w = {.run = run, .start = omp_get_wtime(), .seconds = seconds, .terminal = isatty(STDERR_FILENO)};
+    trial_watch w = {
+        .run = run, .start = omp_get_wtime(), .seconds = seconds, .terminal = !run->beside && isatty(STDERR_FILENO)};
     ms_run one = {.target = target,
                   .settings = run->settings,
                   .seed = run->seed,
@@ -120,11 +121,13 @@ ms_status ms_trial_make(ms_trial *trial, const ms_trial_run *run, const ms_targe
     ms_status status = seconds && one && trial->seconds
                            ? MS_OK
                            : ms_fail(err, MS_ERR_NOMEM, "no memory for the times of %zu runs", repeats);
-    forget_peak();
+    if (!run->beside) {
+        forget_peak();
+    }
     for (size_t r = 0; r < repeats && status == MS_OK; r++) {
         status = run_once(trial, seconds + r * n, run, target, err);
     }
-    trial->memory = peak_memory();
+    trial->memory = run->beside ? (double)NAN : peak_memory();
     for (size_t k = 0; k < n && status == MS_OK; k++) {
         for (size_t r = 0; r < repeats; r++) {
             one[r] = seconds[r * n + k];

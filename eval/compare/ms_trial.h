@@ -12,6 +12,7 @@ typedef struct ms_trial_run {
     const ms_settings *settings;
     uint64_t seed;
     int repeats;         /* times are the medians of as many runs */
+    int beside;          /* other runs at the same time, which share the memory that can be measured */
     const size_t *asked; /* numbers of spheres, ascending; more than one of a nested generator only */
     size_t n_asked;
     const char *title; /* begins the line of progress on a terminal */
@@ -22,7 +23,7 @@ typedef struct ms_trial {
     ms_clump clump; /* of the largest number */
     ms_stop_reason reason;
     double *seconds; /* for each number: until there were as many spheres; of the largest the whole run */
-    double memory;   /* largest resident memory of the runs, kB */
+    double memory;   /* largest resident memory of the runs, kB; NAN where other runs were beside it */
 } ms_trial;
 
 /**

@@ -1,6 +1,7 @@
 #include "ms_scene.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 #include "cli/ms_progress.h"
 #include "cli/ms_report.h"
 #include "ms_curve.h"
+#include "queue/ms_queue.h"
 
 const ms_clump *ms_scene_clump(const ms_scene_shape *shape)
 {
@@ -119,7 +121,7 @@ static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const 
 }
 
 static ms_status make_templates(ms_scene_shape *shape, const char *title, const ms_input *input,
-                                const ms_scene_run *how, ms_error *err)
+                                const ms_scene_run *how, int beside, ms_error *err)
 {
     const ms_recipe *recipe = how->recipe;
     ms_progress_line line = {.name = title};
@@ -129,7 +131,9 @@ static ms_status make_templates(ms_scene_shape *shape, const char *title, const 
     ms_run run = {.target = &input->target, .settings = &recipe->settings, .seed = (uint64_t)recipe->seed};
     run.stop.spheres = how->max_spheres;
     run.stop.radius = how->min_radius;
-    ms_progress_show(&run, &line);
+    if (!beside) { /* else the queue has the line */
+        ms_progress_show(&run, &line);
+    }
     ms_progress_say_remarks(&run, &line);
     shape->input = ms_report_input_json(input);
     ms_status status = ms_generator_run(&clump, &reason, recipe->generator, &run, &cause);
@@ -142,39 +146,74 @@ static ms_status make_templates(ms_scene_shape *shape, const char *title, const 
     return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
 }
 
-static ms_status make_shape(ms_scene *scene, size_t at, const ms_manifest_row *row, const ms_scene_run *run,
-                            const ms_goal *goal, ms_error *err)
+/* How the making of a shape ended. */
+typedef struct scene_outcome {
+    ms_status status;
+    ms_error cause;
+} scene_outcome;
+
+/* The shapes in the making. */
+typedef struct scene_work {
+    ms_scene *scene;
+    const ms_manifest *manifest;
+    const ms_scene_run *run;
+    const ms_goal *goal;
+    scene_outcome *outcome; /* of each shape */
+} scene_work;
+
+static ms_status make_shape(const scene_work *w, size_t at, ms_queue_place *place, ms_error *err)
 {
     ms_input input;
-    ms_scene_shape *shape = &scene->shape[at];
+    ms_input_flags flags = *w->run->input;
+    ms_scene_shape *shape = &w->scene->shape[at];
     char title[80];
-    snprintf(title, sizeof title, "%.40s (%zu of %zu)", row->path, at + 1, scene->count);
-    shape->row = row;
-    ms_status status = ms_input_read(&input, row->path, run->input, err);
+    shape->row = &w->manifest->row[at];
+    snprintf(title, sizeof title, "%.40s (%zu of %zu)", shape->row->path, at + 1, w->scene->count);
+    flags.threads = 0; /* those of the queue */
+    ms_status status = ms_input_read(&input, shape->row->path, &flags, err);
     if (status != MS_OK) {
         return status;
     }
-    status = ms_input_target(&input, run->input, err);
+    ms_queue_need_memory(place, ms_input_bytes(&input, &flags), flags.max_memory);
+    status = ms_input_target(&input, &flags, err);
     if (status == MS_OK) {
-        status = make_templates(shape, title, &input, run, err);
+        status = make_templates(shape, title, &input, w->run, ms_queue_beside(place), err);
     }
     ms_input_free(&input);
-    return status == MS_OK ? choose_alone(shape, goal, err) : status;
+    return status == MS_OK ? choose_alone(shape, w->goal, err) : status;
+}
+
+static void work_shape(void *context, size_t at, ms_queue_place *place)
+{
+    scene_work *w = context;
+    w->outcome[at].status = make_shape(w, at, place, &w->outcome[at].cause);
+}
+
+/* The first shape that fails ends it all. */
+static ms_status take_shape(void *context, size_t at, size_t *failed, ms_error *err)
+{
+    const scene_work *w = context;
+    *err = w->outcome[at].cause;
+    *failed += w->outcome[at].status != MS_OK;
+    return w->outcome[at].status;
 }
 
 ms_status ms_scene_make(ms_scene *scene, const ms_manifest *manifest, const ms_scene_run *run, const ms_goal *goal,
                         ms_error *err)
 {
     *scene = (ms_scene){.count = manifest->count, .shape = calloc(manifest->count, sizeof *scene->shape)};
-    if (!scene->shape) {
-        *scene = (ms_scene){0};
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu shapes", manifest->count);
-    }
-    ms_status status = MS_OK;
-    for (size_t s = 0; s < scene->count && status == MS_OK; s++) {
-        status = make_shape(scene, s, &manifest->row[s], run, goal, err);
-    }
+    scene_work work = {scene, manifest, run, goal, calloc(manifest->count, sizeof *work.outcome)};
+    const ms_queue queue = {.count = manifest->count,
+                            .threads = run->input->threads ? run->input->threads : omp_get_max_threads(),
+                            .context = &work,
+                            .work = work_shape,
+                            .take = take_shape};
+    ms_status status = scene->shape && work.outcome
+                           ? ms_queue_run(&queue, err)
+                           : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu shapes", manifest->count);
+    free(work.outcome);
     if (status != MS_OK) {
+        scene->count = scene->shape ? scene->count : 0;
         ms_scene_free(scene);
     }
     return status;

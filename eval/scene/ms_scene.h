@@ -58,8 +58,8 @@ typedef struct ms_scene_run {
 } ms_scene_run;
 
 /**
- * Makes the templates of all shapes, one shape after another (ms_curve_clumps). What the goal can say of a shape alone
- * is settled as soon as its templates are known.
+ * Makes the templates of all shapes (ms_curve_clumps), several side by side (ms_queue.h). What the goal can say of a
+ * shape alone is settled as soon as its templates are known.
  *
  * @param[out] scene    the caller frees it; empty on failure
  * @param      manifest borrowed until then

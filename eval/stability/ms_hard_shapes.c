@@ -22,6 +22,8 @@ const ms_hard_shape ms_hard_shapes[] = {
     {.name = "open", .kind = "grain", .value = {1, 1.3, 1.2, 0.1, 16, 3, 1, 16}, .deq = 40, .holes = 0.02},
     {0}};
 
+_Static_assert(sizeof ms_hard_shapes / sizeof *ms_hard_shapes <= MS_HARD_SHAPES_MOST + 1, "room for each name");
+
 /* The flags with a voxel size in the place of a diameter. */
 static void choose_voxels(ms_input_flags *flags, const ms_hard_shape *shape, const ms_solid *solid)
 {
@@ -33,18 +35,27 @@ static void choose_voxels(ms_input_flags *flags, const ms_hard_shape *shape, con
     flags->cells = flags->deq = 0;
 }
 
-ms_status ms_hard_shapes_make(ms_input *input, const ms_hard_shape *shape, const ms_input_flags *flags, ms_error *err)
+const ms_hard_shape *ms_hard_shapes_find(ms_choice *choice)
 {
-    ms_input_flags own = *flags;
+    for (const ms_hard_shape *shape = ms_hard_shapes; shape->name; shape++) {
+        if (ms_choice_offer(choice, shape->name)) {
+            return shape;
+        }
+    }
+    return NULL;
+}
+
+ms_status ms_hard_shapes_read(ms_input *input, const ms_hard_shape *shape, ms_input_flags *flags, ms_error *err)
+{
     memset(input, 0, sizeof *input);
     input->path = shape->name;
     ms_status status = ms_shape_make(&input->mesh, ms_shape_find(shape->kind, err), shape->value, err);
     if (status == MS_OK) {
         status = ms_solid_mesh(&input->solid, &input->mesh, err); /* before it has holes */
-        choose_voxels(&own, shape, &input->solid);
+        choose_voxels(flags, shape, &input->solid);
     }
     if (status == MS_OK && shape->holes > 0) {
-        own.allow_open = 1;
+        flags->allow_open = 1;
         status = ms_perturb_open(&input->mesh, shape->holes, 1, err);
     }
     if (status == MS_OK) {
@@ -53,7 +64,6 @@ ms_status ms_hard_shapes_make(ms_input *input, const ms_hard_shape *shape, const
     if (status == MS_OK) {
         const ms_bytes bytes = {(uint8_t *)input->mesh.vertex, input->mesh.n_vertices * sizeof *input->mesh.vertex};
         input->checksum = ms_file_checksum(&bytes);
-        status = ms_input_target(input, &own, err);
     }
     if (status != MS_OK) {
         ms_input_free(input);

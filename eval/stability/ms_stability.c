@@ -3,17 +3,21 @@
 #include <inttypes.h>
 #include <math.h>
 #include <omp.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "base/ms_text.h"
+#include "chart/ms_csv.h"
 
 #define OUTCOME_NAME(code, name) name,
 static const char *const OUTCOMES[] = {MS_OUTCOME_LIST(OUTCOME_NAME)};
 
 /* What --until-dice allows, over the number of spheres asked for. */
 enum { UNTIL_FACTOR = 10 };
+
+enum { MOST_COLUMNS = 32 + MS_MEASURES };
 
 /* The shape and the run as they were changed. */
 static ms_status apply_change(ms_changed *c, const ms_stability_run *run, const ms_stability *s, ms_error *err)
@@ -26,7 +30,7 @@ static ms_status apply_change(ms_changed *c, const ms_stability_run *run, const 
     *c = (ms_changed){.motion = ms_perturb_motion_none(),
                       .seed = s->seed,
                       .voxel_size = s->input->target.grid.h,
-                      .threads = s->threads};
+                      .threads = omp_get_max_threads()};
     ms_status status = ms_perturb_copy(&c->mesh, &s->input->mesh, err);
     if (status == MS_OK) {
         status = run->change->apply(c, &order, err);
@@ -43,6 +47,7 @@ static ms_status make_target(ms_target *target, const ms_changed *c, const ms_st
         return ms_fail(err, MS_ERR_LIMIT, "a grid of %.6gx%.6gx%.6g voxels takes more than the memory allowed", n[0],
                        n[1], n[2]);
     }
+    ms_queue_need_memory(s->place, ms_target_bytes(n), s->flags->max_memory);
     return ms_target_from_mesh(target, &c->mesh, s->input->report.closed, c->voxel_size, s->flags->rule, err);
 }
 
@@ -53,15 +58,15 @@ static uint64_t sum_spheres(const ms_clump *clump)
 }
 
 /* The number of spheres at fixed D, by the method's own stop rule on the shape as it was changed. */
-static ms_status seek_number(ms_stability_run *run, ms_run job, const ms_stability *s, ms_error *err)
+static ms_status seek_number(ms_stability_run *run, ms_run job, ms_error *err)
 {
     ms_clump clump;
     ms_stop_reason reason;
     job.stop = (ms_stop){0};
     job.stop.spheres =
-        s->spheres < MS_CLUMP_MAX_SPHERES / UNTIL_FACTOR ? s->spheres * UNTIL_FACTOR : MS_CLUMP_MAX_SPHERES;
-    job.stop.dice = s->until_dice;
-    ms_status status = ms_generator_run(&clump, &reason, s->method->generator, &job, err);
+        run->asked < MS_CLUMP_MAX_SPHERES / UNTIL_FACTOR ? run->asked * UNTIL_FACTOR : MS_CLUMP_MAX_SPHERES;
+    job.stop.dice = run->until_dice;
+    ms_status status = ms_generator_run(&clump, &reason, run->method->generator, &job, err);
     run->spheres_until = status == MS_OK && reason == MS_STOP_DICE ? clump.n_spheres : 0;
     ms_clump_free(&clump);
     return status;
@@ -71,28 +76,30 @@ static ms_status run_method(ms_stability_run *run, const ms_target *target, cons
                             const ms_stability *s, ms_error *err)
 {
     ms_clump clump;
-    ms_run job = {.target = target, .settings = &s->method->settings, .seed = run->seed};
-    job.stop.spheres = s->spheres;
+    ms_run job = {.target = target, .settings = &run->method->settings, .seed = run->seed};
+    job.stop.spheres = run->asked;
     const double start = omp_get_wtime();
-    ms_status status = ms_generator_run(&clump, &run->reason, s->method->generator, &job, err);
+    ms_status status = ms_generator_run(&clump, &run->reason, run->method->generator, &job, err);
     run->seconds = omp_get_wtime() - start;
     if (status == MS_OK) {
         ms_perturb_motion_undo(&clump, motion);
         run->checksum = sum_spheres(&clump);
         status = ms_metrics_compute(&run->metrics, NULL, &s->input->target, &clump, ms_input_max_voxels(s->flags), err);
     }
-    if (status == MS_OK && s->until_dice > 0) {
-        status = seek_number(run, job, s, err);
+    if (status == MS_OK && run->until_dice > 0) {
+        status = seek_number(run, job, err);
     }
     ms_clump_free(&clump);
     return status;
 }
 
-/* Changes the shape, makes its target, runs the method. */
-static void try_change(ms_stability_run *run, const ms_stability *s)
+void ms_stability_try(ms_stability_run *run, const ms_stability *s)
 {
+    const int threads = omp_get_max_threads();
     ms_changed c;
     ms_target target = {0};
+    run->shape_checksum = s->input->checksum;
+    run->shortest_side = ms_input_shortest_side(&s->input->mesh);
     ms_status status = apply_change(&c, run, s, &run->cause);
     run->seed = c.seed;
     run->voxel_size = c.voxel_size;
@@ -107,26 +114,12 @@ static void try_change(ms_stability_run *run, const ms_stability *s)
     } else if (run_method(run, &target, &c.motion, s, &run->cause) != MS_OK) {
         run->outcome = MS_OUTCOME_FAILED;
     } else {
-        run->outcome = run->metrics.spheres < s->spheres ? MS_OUTCOME_SHORT : MS_OUTCOME_OK;
+        run->outcome = run->metrics.spheres < run->asked ? MS_OUTCOME_SHORT : MS_OUTCOME_OK;
         run->cause.text[0] = 0;
     }
-    omp_set_num_threads(s->threads);
+    omp_set_num_threads(threads);
     ms_target_free(&target);
     ms_mesh_free(&c.mesh);
-}
-
-void ms_stability_try(ms_stability_run *run, const ms_stability *s, const ms_change *change, int number)
-{
-    memset(run, 0, sizeof *run);
-    run->shape = s->input->path;
-    run->method = s->method;
-    run->shape_checksum = s->input->checksum;
-    run->change = change;
-    run->number = number;
-    run->level = ms_change_level(change, s->seed, number, s->runs);
-    run->asked = s->spheres;
-    run->until_dice = s->until_dice;
-    try_change(run, s);
 }
 
 ms_label ms_stability_label(const ms_method *method)
@@ -163,7 +156,7 @@ static size_t list_measures(const ms_measure *listed[MS_MEASURES])
     return count;
 }
 
-void ms_stability_header(FILE *stream)
+static void print_header(FILE *stream)
 {
     const ms_measure *listed[MS_MEASURES];
     const size_t count = list_measures(listed);
@@ -172,7 +165,7 @@ void ms_stability_header(FILE *stream)
     for (size_t m = 0; m < count; m++) {
         fprintf(stream, ",%s", ms_measure_column(listed[m], listed[m]->in_stability));
     }
-    fputs(",n_until,seconds,spheres_fnv1a,cause", stream);
+    fputs(",n_until,seconds,beside,spheres_fnv1a,cause", stream);
 }
 
 /* Empty where there is none. */
@@ -198,13 +191,14 @@ static void put_results(FILE *stream, const ms_stability_run *run)
     }
     put_field(stream, gave && run->spheres_until ? (double)run->spheres_until : nothing);
     put_field(stream, gave ? run->seconds : nothing);
+    put_field(stream, gave ? run->beside : nothing);
     fputc(',', stream);
     if (gave) {
         fprintf(stream, "%016" PRIx64, run->checksum);
     }
 }
 
-void ms_stability_row(FILE *stream, const ms_stability_run *run)
+static void print_row(FILE *stream, const ms_stability_run *run)
 {
     ms_escape_csv_path(stream, run->shape);
     fprintf(stream, ",%016" PRIx64 ",", run->shape_checksum);
@@ -219,4 +213,98 @@ void ms_stability_row(FILE *stream, const ms_stability_run *run)
     put_results(stream, run);
     fputc(',', stream);
     ms_escape_csv(stream, run->cause.text);
+}
+
+char *ms_stability_line(const ms_stability_run *run)
+{
+    char *line = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&line, &size);
+    if (!stream) {
+        return NULL;
+    }
+    if (run) {
+        print_row(stream, run);
+    } else {
+        print_header(stream);
+    }
+    return fclose(stream) == 0 ? line : NULL;
+}
+
+/* A line and its fields, which are within it. */
+typedef struct stability_fields {
+    char *line, *field[MOST_COLUMNS];
+    size_t count;
+} stability_fields;
+
+static void cut_line(stability_fields *f, char *line)
+{
+    f->line = line;
+    f->count = line ? ms_csv_split(f->field, MOST_COLUMNS, line) : 0;
+}
+
+/* Whether a column says what a run is, which is known before it. */
+static int is_key(const char *column)
+{
+    static const char *const KEYS[] = {"shape", "checksum", "generator", "options", "perturbation", "level", "n_asked"};
+    for (size_t k = 0; k < sizeof KEYS / sizeof *KEYS; k++) {
+        if (strcmp(column, KEYS[k]) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static double read_number(const char *text)
+{
+    double value;
+    const ms_word word = {text, strlen(text)};
+    return ms_text_to_double(&value, &word) ? value : (double)NAN;
+}
+
+/* What the statistics and the charts are made of. */
+static void take_field(ms_stability_run *run, const char *column, const char *text)
+{
+    if (strcmp(column, "status") == 0) {
+        for (int o = 0; o < MS_OUTCOMES; o++) {
+            run->outcome = strcmp(text, OUTCOMES[o]) == 0 ? (ms_outcome)o : run->outcome;
+        }
+    } else if (strcmp(column, "voxel_size") == 0) {
+        run->voxel_size = read_number(text);
+    } else if (strcmp(column, ms_measure_column(&ms_measures[MS_MEASURE_DICE],
+                                                ms_measures[MS_MEASURE_DICE].in_stability)) == 0) {
+        run->metrics.score.dice = read_number(text);
+    } else if (strcmp(column, ms_measure_column(&ms_measures[MS_MEASURE_INERTIA],
+                                                ms_measures[MS_MEASURE_INERTIA].in_stability)) == 0) {
+        run->metrics.inertia.weighted = read_number(text);
+    } else if (strcmp(column, "n_until") == 0) {
+        run->spheres_until = text[0] ? (size_t)read_number(text) : 0;
+    } else if (strcmp(column, "spheres_fnv1a") == 0) {
+        run->checksum = strtoull(text, NULL, 16);
+    } else if (strcmp(column, "cause") == 0) {
+        snprintf(run->cause.text, sizeof run->cause.text, "%s", text);
+    }
+}
+
+ms_status ms_stability_read_row(ms_stability_run *run, const char *row, ms_error *err)
+{
+    stability_fields header, own, there;
+    cut_line(&header, ms_stability_line(NULL));
+    cut_line(&own, ms_stability_line(run));
+    cut_line(&there, strdup(row));
+    ms_status status = header.line && own.line && there.line ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "has no memory");
+    for (size_t c = 0; c < header.count && status == MS_OK; c++) {
+        if (there.count != header.count || (is_key(header.field[c]) && strcmp(own.field[c], there.field[c]) != 0)) {
+            status = ms_fail(err, MS_ERR_ARG,
+                             "is of another run: %s should be '%.200s'; --resume takes shapes, methods and numbers as "
+                             "they were",
+                             header.field[c], own.field[c]);
+        } else {
+            take_field(run, header.field[c], there.field[c]);
+        }
+    }
+    free(header.line);
+    free(own.line);
+    free(there.line);
+    return status;
 }

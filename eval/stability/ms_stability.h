@@ -8,6 +8,7 @@
 #include "cli/ms_methods.h"
 #include "measure/ms_metrics.h"
 #include "ms_change.h"
+#include "queue/ms_queue.h"
 
 /** How a run ended. */
 #define MS_OUTCOME_LIST(X)                                                  \
@@ -20,30 +21,27 @@
 typedef enum ms_outcome { MS_OUTCOME_LIST(MS_OUTCOME_ENUM) MS_OUTCOMES } ms_outcome;
 #undef MS_OUTCOME_ENUM
 
-/** What the runs of a method on a shape share. Everything is borrowed. */
+/** What a run takes place with. Everything is borrowed. */
 typedef struct ms_stability {
-    const ms_input *input; /* unchanged, with its target: the judge of all runs */
-    const ms_method *method;
-    size_t spheres;
-    double until_dice; /* 0: not asked for */
-    uint64_t seed;
-    int threads;
-    int runs; /* levels of each change */
+    const ms_input *input; /* of the shape, unchanged, with its target: the judge of all runs */
+    uint64_t seed;         /* of all runs */
     const ms_input_flags *flags;
+    ms_queue_place *place;
 } ms_stability;
 
-/** A run. What it did not get to is NAN or 0. */
+/** A run: what it is, and what it gave. What it did not get to is NAN or 0. */
 typedef struct ms_stability_run {
     const char *shape;       /* borrowed */
     const ms_method *method; /* borrowed */
     uint64_t shape_checksum;
+    double shortest_side; /* of the shape's box */
     const ms_change *change;
     int number; /* from 1 */
     double level;
     uint64_t seed;
     double voxel_size;
-    double misfit; /* of the changed shape and its voxels: ms_target_misfit */
-    int threads;
+    double misfit;       /* of the changed shape and its voxels: ms_target_misfit */
+    int threads, beside; /* of this run; other runs at the same time */
     size_t asked;
     double until_dice; /* 0: not asked for */
     ms_outcome outcome;
@@ -59,9 +57,9 @@ typedef struct ms_stability_run {
  * Changes the shape, runs the method on it, moves the spheres back and judges them on the grid of the unchanged shape.
  * A failure is a result: it stands in the run.
  *
- * @param number from 1 to ms_change_runs
+ * @param[in,out] run shape, method, change, number, level and what is asked for; gets all else
  */
-void ms_stability_try(ms_stability_run *run, const ms_stability *s, const ms_change *change, int number);
+void ms_stability_try(ms_stability_run *run, const ms_stability *s);
 
 /** What a method is called in tables: NAME or NAME:OPTIONS, cut if it is long. */
 typedef struct ms_label {
@@ -80,8 +78,16 @@ int ms_stability_gave(const ms_stability_run *run);
  */
 const ms_stability_run *ms_stability_unchanged(const ms_stability_run *runs, const ms_stability_run *run);
 
-/** The columns of the CSV, and a run as its row, without the end of the line. */
-void ms_stability_header(FILE *stream);
-void ms_stability_row(FILE *stream, const ms_stability_run *run);
+/** A run as its row in the CSV, without the end of the line; NULL: the names of the columns. The caller frees it; NULL
+ * without memory. */
+char *ms_stability_line(const ms_stability_run *run);
+
+/**
+ * Takes what a run gave from its row: outcome, D, inertia error, n_until, checksum and cause.
+ *
+ * @param[in,out] run what it is, which the row must say, too
+ * @return MS_OK; MS_ERR_ARG for a row of another run, a sentence that follows "line N"; MS_ERR_NOMEM
+ */
+ms_status ms_stability_read_row(ms_stability_run *run, const char *row, ms_error *err);
 
 #endif

@@ -63,14 +63,14 @@ class Columns(Case):
                          "overshoot,off_volume,protrusion_max,protrusion_rms,gap_max,gap_rms,smallest_radius_ratio,"
                          "pieces,inertia_union,inertia_corrected,epsilon,products_epsilon,centre_epsilon,voxel_size,"
                          "seconds_read,seconds_voxelize,seconds_distance,seconds_generate,seconds_score,"
-                         "seconds_correct,repeats,peak_memory_kb,threads,version,cause")
+                         "seconds_correct,repeats,peak_memory_kb,threads,beside,version,cause")
 
     def test_csv_of_stability(self):
         self.mskit("stability", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10, "--runs", 1, "--perturb", "seed")
         self.assertEqual(self.header("stability.csv"),
                          "shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,status,"
                          "n,stopped_by,eta,dice,coverage,overshoot,off_volume,inertia_error,smallest_radius_ratio,"
-                         "pieces,n_until,seconds,spheres_fnv1a,cause")
+                         "pieces,n_until,seconds,beside,spheres_fnv1a,cause")
 
     def test_json_of_generate(self):
         run = self.generate("grain.stl", "-g", "mss", "-n", 5, "--cells", 15, "-o", "c.json")

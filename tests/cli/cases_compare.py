@@ -15,10 +15,10 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 import zlib
 
-from support import MSKIT, Case, box_obj, fnv1a, npy
+from support import MSKIT, TIMEOUT, Case, box_obj, fnv1a, npy
 
 TIMES = ("seconds_read", "seconds_voxelize", "seconds_distance", "seconds_generate", "seconds_score",
-         "seconds_correct", "peak_memory_kb")
+         "seconds_correct", "peak_memory_kb", "beside")
 RUN = ("-g", "mss", "-g", "setcover", "-g", "variational", "-n", "3,6", "--cells", "12",
        "-j", "1")
 
@@ -87,12 +87,28 @@ class Rows(Compare):
 
     def test_threads_do_not_matter(self):
         found = []
+        self.write("cube.obj", box_obj((0, 0, 0), (1, 1, 1)))
         for threads in ("1", "3"):
-            self.mskit("compare", "box.obj", "-n", "5,9", "--cells", "16", "-j", threads, "-o", threads + ".csv")
-            found.append([{k: v for k, v in row.items() if k != "threads"}
-                          for row in without_times(self.rows(threads + ".csv"))])
+            self.mskit("compare", "box.obj", "cube.obj", "-g", "mss", "-g", "variational", "-n", "5,9", "--cells", "12,16",
+                       "-j", threads, "-o", threads + ".csv")
+            rows = self.rows(threads + ".csv")
+            self.assertEqual({row["threads"] for row in rows}, {"1"}, "each run has one, side by side")
+            self.assertEqual({row["beside"] for row in rows}, {str(int(threads) - 1)})
+            found.append(without_times(rows))
         self.assertEqual(*found)
-        self.assertEqual(len(found[0]), 8)
+        self.assertEqual(len(found[0]), 16)
+
+    def test_runs_go_in_turn_where_times_are_the_result(self):
+        rows = self.compare("box.obj", "-g", "mss", "-n", "5", "--cells", "12,16", "--repeat", "2", "-j", "2")
+        self.assertEqual({(row["threads"], row["beside"]) for row in rows}, {("2", "0")})
+        self.assertTrue(all(row["peak_memory_kb"] for row in rows))
+
+    def test_a_large_run_is_alone(self):
+        """12 cells fit into a third of the memory allowed, 24 only into all of it."""
+        rows = self.compare("box.obj", "-g", "mss", "-g", "variational", "-n", "5", "--cells", "12,24", "-j", "3",
+                            "--max-memory", "3M")
+        self.assertEqual([(row["cells"], row["threads"], row["beside"], row["cause"]) for row in rows],
+                         [("12", "1", "2", "")] * 2 + [("24", "3", "0", "")] * 2)
 
     def test_tables_of_the_documents(self):
         """The script beside the documents: every D stands in its place."""
@@ -171,7 +187,7 @@ class Resume(Compare):
         for rows_there in (1, 4):
             process = subprocess.Popen([MSKIT, *args, "-o", "killed.csv"], cwd=self.dir, stdout=subprocess.DEVNULL,
                                        stderr=subprocess.DEVNULL)
-            deadline = time.monotonic() + 30
+            deadline = time.monotonic() + TIMEOUT
             while time.monotonic() < deadline and process.poll() is None:
                 if os.path.exists(self.path("killed.csv")) and self.read("killed.csv").count(b"\n") > rows_there:
                     break

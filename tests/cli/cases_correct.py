@@ -111,8 +111,8 @@ class Correct(Case):
     def test_formats_are_repeatable(self):
         self.mskit("generate", "box.obj", *GRID, "-n", "30", "--correct", "--density", "1", "--format", "liggghts",
                    "--format", "csv")
-        self.assertEqual([n for n in self.files() if n.startswith("box-mss")],
-                         ["box-mss.csv", "box-mss.frame.json", "box-mss.liggghts", "box-mss.liggghts.in"])
+        self.assertEqual([n for n in self.files() if n.startswith("box-variational")],
+                         ["box-variational" + ending for ending in (".csv", ".frame.json", ".liggghts", ".liggghts.in")])
 
     def test_there_and_back(self):
         """A template with its frame gives the spheres of the shape again."""
@@ -192,7 +192,7 @@ class Correct(Case):
         endings = "clu csv deme frame.json json lammps lammps.in mercury mfix pfc vtk yade yade.py".split()
         self.assertEqual(sorted(os.listdir(self.path("out"))), ["one." + ending for ending in endings])
         self.generate(ball, "-n", "1", *GRID, "--correct", "--density", "1000", "--all-formats", "made")
-        self.assertEqual(sorted(os.listdir(self.path("made"))), ["ball-mss." + ending for ending in endings])
+        self.assertEqual(sorted(os.listdir(self.path("made"))), ["ball-variational." + ending for ending in endings])
         run = self.mskit("correct", "one.csv", "--target", ball, "--density", "1", "-o", "a.liggghts", code=1)
         self.assert_says(run, "mskit correct: LIGGGHTS", "one sphere", "particletemplate/sphere")
         self.assertNotIn("a.liggghts", self.files())

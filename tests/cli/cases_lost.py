@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 
-from support import MSKIT, Case, box_obj, parse_spheres
+from support import MSKIT, TIMEOUT, Case, box_obj, parse_spheres
 
 RUN = ("--cells", "10", "-n", "4", "-j", "1")
 MASSES = ("--density", "2650")
@@ -215,7 +215,7 @@ class Tables(Lost):
             first.stdout.readline()  # it has written a row
             result = self.mskit(*run[1:], "--resume", code=1)
             self.assertIsNone(first.poll(), "the first still runs")
-            first.communicate(timeout=60)
+            first.communicate(timeout=TIMEOUT)
         self.assert_says(result, "t.csv", "another run")
         rows = list(csv.DictReader(io.StringIO(self.read("t.csv").decode())))
         self.assertEqual([row["n_asked"] for row in rows], [str(n) for n in range(1, 30)])
@@ -248,14 +248,14 @@ class Unfinished(Lost):
             self.wait_until_caught(process, number, generator != "variational")
             time.sleep(seconds)
             process.send_signal(number)
-            err = process.communicate(timeout=60)[1].decode()
+            err = process.communicate(timeout=TIMEOUT)[1].decode()
         return process.returncode, err
 
     @staticmethod
     def wait_until_caught(process, number, is_caught):
         """By Linux's list of signals caught; elsewhere, or where it is not to be, the method has begun after a while."""
         status = f"/proc/{process.pid}/status"
-        for _ in range(600 if is_caught and os.path.exists(status) else 20):
+        for _ in range(20 * TIMEOUT if is_caught and os.path.exists(status) else 20):
             time.sleep(0.05)
             with open(status, encoding="ascii") if os.path.exists(status) else io.StringIO("SigCgt: 0") as f:
                 mask = next(int(line.split()[1], 16) for line in f if line.startswith("SigCgt"))
@@ -264,7 +264,7 @@ class Unfinished(Lost):
 
     def test_interrupted(self):
         for number in (signal.SIGINT, signal.SIGTERM):
-            for seconds in (0.5, 2, 8, 30):  # until there are spheres, however busy the machine is
+            for seconds in (0.5, 2, 8, 30, 120):  # until there are spheres, however busy the machine is
                 code, err = self.interrupt("mss", number, seconds=seconds)
                 if code != -number:
                     break

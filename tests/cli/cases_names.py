@@ -68,7 +68,7 @@ class Templates(Hostile):
             by_ending = {name.rsplit(".", 1)[1]: (name, text) for name, text in texts.items()}
             self.check_scripts(by_ending)
             record = json.loads(by_ending["json"][1] if not by_ending["json"][0].endswith("frame.json")
-                                else next(t for n, t in texts.items() if n.endswith("-mss.json")))
+                                else next(t for n, t in texts.items() if n.endswith("-variational.json")))
             self.assertEqual(record["input"]["path"], shape.decode("utf-8", "replace").replace("\ufffd", "?"))
 
         self.each(check)

@@ -4,7 +4,7 @@ import re
 import stat
 import subprocess
 
-from support import MSKIT, Case, box_obj
+from support import MSKIT, TIMEOUT, Case, box_obj
 
 RUN = ("--cells", "20", "-n", "3", "-j", "1")
 
@@ -22,7 +22,7 @@ class Names(Case):
                 self.assertEqual(self.mskit("info", "--json", "--", shape).json["path"], shape)
                 self.mskit("score", "--target", shape, "--cells", "20", "--", clump)
                 self.mskit("generate", *RUN, "--", shape)
-                self.assertIn(re.sub('[\n"$\\\\*|]', "_", name) + "-mss.csv", self.files())
+                self.assertIn(re.sub('[\n"$\\\\*|]', "_", name) + "-variational.csv", self.files())
                 result = self.assert_refused("info", "--", name + "missing.stl", code=1)
                 self.assertIn(name + "missing.stl: cannot be opened", result.err)
 
@@ -94,14 +94,14 @@ class Environment(Case):
                                   stderr=subprocess.DEVNULL)
         writer.stdout.read(10)
         writer.stdout.close()
-        self.assertNotEqual(writer.wait(60), 0)
+        self.assertNotEqual(writer.wait(TIMEOUT), 0)
         self.assertEqual(self.files(), ["a.csv", "box.obj"])
 
     def test_pipe_as_output(self):
         os.mkfifo(self.path("pipe"))
         with subprocess.Popen(["cat", "pipe"], cwd=self.dir, stdout=subprocess.PIPE) as reader:
             self.mskit("generate", "box.obj", *RUN, "--format", "csv", "-o", "pipe")
-            self.assertEqual(reader.communicate(timeout=60)[0], self.read("a.csv"))
+            self.assertEqual(reader.communicate(timeout=TIMEOUT)[0], self.read("a.csv"))
         self.assertTrue(stat.S_ISFIFO(os.stat(self.path("pipe")).st_mode), "the pipe is still one")
 
     def test_pipe_as_input(self):

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import unittest
 
-from support import SHARED, Case, box_obj
+from support import SHARED, TIMEOUT, Case, box_obj
 
 GRID = ("--cells", "30")
 
@@ -157,7 +157,7 @@ class Judge(Score):
         compiler = next((c for c in (os.environ.get("CC"), "cc", "gcc", "clang") if c and shutil.which(c)), None)
         if not os.path.exists(source) or not compiler:
             raise unittest.SkipTest("the independent judge shared/tools/score.c or a C compiler is missing here")
-        subprocess.run([compiler, "-O2", "-w", "-o", self.path("judge"), source, "-lm"], check=True, timeout=60)
+        subprocess.run([compiler, "-O2", "-w", "-o", self.path("judge"), source, "-lm"], check=True, timeout=TIMEOUT)
         return self.path("judge")
 
     def test_agrees_with_an_independent_judge(self):
@@ -171,9 +171,9 @@ class Judge(Score):
         judge = self.judge()
         for kind, longest, n in (("ellipsoid", 4, 8), ("torus", 8, 16)):
             name = self.shape(kind)
-            self.mskit("generate", name, "--cells", "50", "-n", n, "--radius-offset", "0.6", "-o", "c.csv")
+            self.mskit("generate", name, "-g", "mss", "--cells", "50", "-n", n, "--radius-offset", "0.6", "-o", "c.csv")
             ours = self.score("c.csv", "--voxel-size", longest / 200, target=name)
-            printed = subprocess.run([judge, name, "c.csv", "200"], cwd=self.dir, check=True, timeout=60,
+            printed = subprocess.run([judge, name, "c.csv", "200"], cwd=self.dir, check=True, timeout=TIMEOUT,
                                      stdout=subprocess.PIPE).stdout
             theirs = json.loads(printed)
             self.assertEqual(theirs["n"], n)

@@ -79,6 +79,28 @@ class Stability(Case):
         self.assertEqual([row["seed"] for row in rows], ["1", "2", "3"])
         self.assertEqual(len({row["spheres_fnv1a"] for row in rows}), 3)
 
+    def test_threads_make_no_difference_and_a_killed_run_goes_on(self):
+        """Rows of one and of three threads, and of a table cut at any place and taken up, are the same but for times."""
+        args = ("stability", "cube", "speck", "-g", "mss", "-g", "fcm:tries=10", "-n", "4", "--cells", "12", "--runs", "2",
+                "--perturb", "rotation", "--perturb", "noise", "--json")
+        def known(name):
+            return [{k: v for k, v in row.items() if k not in ("seconds", "beside")}
+                    for row in rows_of(self.read(name).decode())]
+        one = self.mskit(*args, "-j", 1, "-o", "one.csv").json
+        self.assertEqual(one, self.mskit(*args, "-j", 3, "-o", "three.csv").json)
+        self.assertEqual(known("one.csv"), known("three.csv"))
+        text = self.read("one.csv")
+        ends = [at for at, byte in enumerate(text) if byte == ord("\n")]
+        for size in (0, 5, ends[0] + 1, ends[0] + 40, ends[3], ends[3] + 1, ends[12] + 9, len(text)):
+            self.write("cut.csv", text[:size])
+            self.assertEqual(self.mskit(*args, "--resume", "-o", "cut.csv").json, one, f"cut after {size} bytes")
+            self.assertEqual(known("cut.csv"), known("one.csv"))
+        for other in (("cube",), ("speck", "cube"), ("cube", "speck", "-n", "5"), ("cube", "speck", "--perturb", "seed")):
+            more = [word for word in args[1:] if word not in ("cube", "speck")]
+            result = self.mskit("stability", *more, *other, "--resume", "-o", "one.csv", code=1)
+            self.assert_says(result, "one.csv", "other")
+            self.assertEqual(self.read("one.csv"), text)
+
     def test_levels(self):
         """Ladders in equal ratios from end to end; the voxels go with the resolution."""
         rows = self.rows("cube", "-g", "mss", "-n", "1", "--cells", "10", "--runs", "3", "--perturb", "resolution",
@@ -170,7 +192,7 @@ class Stability(Case):
         runs = [self.rows(*args, "-j", threads) for threads in ("1", "2")]
         for one, two in zip(*runs, strict=True):
             for column in one:
-                if column not in ("seconds", "threads"):
+                if column not in ("seconds", "beside"):
                     self.assertEqual(one[column], two[column], column)
 
     def test_rows_on_standard_output(self):

@@ -77,6 +77,7 @@ class WrongUsage(Case):
 
     def test_choices_are_listed(self):
         generate = ("generate", "box.obj")
+        mss = (*generate, "-g", "mss")
         for args, says in (
             (("nonsense",), ("'nonsense'", "generate", "score", "shape")),
             (("",), ("''", "generate")),
@@ -94,11 +95,11 @@ class WrongUsage(Case):
             ((*generate, "-g", "nonsense"), ("'nonsense'", "mss")),
             ((*generate, "-gnonsense"), ("'nonsense'", "mss")),
             ((*generate, "--gen", "nonsense"), ("'nonsense'", "mss")),
-            ((*generate, "--set", "nonsense=1"), ("'nonsense'", "spacing", "confine", "plane")),
+            ((*mss, "--set", "nonsense=1"), ("'nonsense'", "spacing", "confine", "plane")),
             ((*generate, "--set", ""), ("name=value",)),
             ((*generate, "--set", "=1"), ("name=value",)),
-            ((*generate, "--order", "nonsense"), ("nonsense", "radius, gain")),
-            ((*generate, "--set", "confine=perhaps"), ("perhaps", "on", "off")),
+            ((*mss, "--order", "nonsense"), ("nonsense", "radius, gain")),
+            ((*mss, "--set", "confine=perhaps"), ("perhaps", "on", "off")),
             ((*generate, "--format", "nonsense"), ("'nonsense'", "csv", "json", "vtk")),
             ((*generate, "-o", "clump.nonsense"), ("clump.nonsense", "csv", "json", "vtk", "--format")),
             ((*generate, "-o", "clump"), ("clump", "csv", "json", "vtk", "--format")),
@@ -142,7 +143,7 @@ class WrongUsage(Case):
         ):
             for value in values:
                 with self.subTest(flag=flag, value=value):
-                    self.assert_refused("generate", "box.obj", flag, value, code=2, says=says)
+                    self.assert_refused("generate", "box.obj", "-g", "mss", flag, value, code=2, says=says)
 
     def test_number_of_words(self):
         for args, says in (

@@ -113,7 +113,7 @@ class Volume(Case):
     def test_flags_that_do_not_apply(self):
         for flag, value in (("--cells", "20"), ("--deq", "20"), ("--voxel-size", "0.5")):
             self.assert_refused("generate", "one.npy", flag, value, code=1, says=("voxels of its own", flag))
-        self.assert_refused("generate", "one.npy", "--confine", code=1, says=("confine", "closed mesh"))
+        self.assert_refused("generate", "one.npy", "-g", "mss", "--confine", code=1, says=("confine", "closed mesh"))
 
     def test_rule_applies_to_the_union(self):
         """Of the surface voxels of small balls, some are covered by more than half and not at their centre, or the

@@ -124,7 +124,7 @@ class Clump:
     def path(self, name):
         return os.path.join(self.folder, name)
 
-    def run(self, *command, timeout=240):
+    def run(self, *command, timeout=1200):
         process = subprocess.run(command, cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                  stderr=subprocess.STDOUT, timeout=timeout, check=False)
         out = process.stdout.decode("utf-8", "replace")

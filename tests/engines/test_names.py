@@ -12,6 +12,7 @@ import tempfile
 import unittest
 
 MSKIT = os.environ.get("MSKIT", "mskit")
+TIMEOUT = 1200  # seconds
 # Of shapes: the names of their templates follow from them.
 SHAPES = ("a\nshell touch PWNED\n#", "b');__import__('os').system('touch PWNED')#", "c\" shell touch PWNED", "d & $x ${y}",
           "`touch PWNED`$(touch PWNED)", "=1+1 %d", "O\u2019Brien \u201cx\u201d", "\u00fcmlaut", "\u7c92")
@@ -49,7 +50,7 @@ class Names(unittest.TestCase):
         self.mskit("shape", "grain", "-o", "plain.stl")
 
     def mskit(self, *args):
-        done = subprocess.run([MSKIT, *args], cwd=self.dir, capture_output=True, timeout=60, check=False)
+        done = subprocess.run([MSKIT, *args], cwd=self.dir, capture_output=True, timeout=TIMEOUT, check=False)
         self.assertEqual(done.returncode, 0, f"{args}: {done.stderr.decode('utf-8', 'replace')}")
 
     def generate(self, shape, *more):
@@ -63,7 +64,7 @@ class Names(unittest.TestCase):
         with open(os.path.join(self.dir, script), encoding="utf-8") as f:
             text = f.read()
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
-        done = subprocess.run(program_of(ending) + ["./" + script], cwd=self.dir, capture_output=True, timeout=60,
+        done = subprocess.run(program_of(ending) + ["./" + script], cwd=self.dir, capture_output=True, timeout=TIMEOUT,
                               check=False, env=environment)
         said = (done.stdout + done.stderr).decode("utf-8", "replace")
         self.assertEqual(done.returncode, 0, f"{text}\n{said}")

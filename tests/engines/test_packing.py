@@ -86,7 +86,7 @@ for clump in clumps:
         state = O.bodies[i].state
         print('SPHERE', *state.pos, O.bodies[i].shape.radius, *body.state.vel)
 """)
-        out = self.clump.run("yade", "-x", "-n", "pack.py", str(COUNT), timeout=1800)
+        out = self.clump.run("yade", "-x", "-n", "pack.py", str(COUNT), timeout=3000)
         self.check([numbers(line) for line in re.findall(r"(?m)^SPHERE (.*)", out)])
 
 

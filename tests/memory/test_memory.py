@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 MSKIT = os.environ["MSKIT"]
 LIBRARY = os.environ["FAILING_MALLOC"]
-TIMEOUT = 60  # seconds
+TIMEOUT = 1200  # seconds
 
 SMALL = ["--cells", "8", "-j", "1"]
 COMMANDS = {

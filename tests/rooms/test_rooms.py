@@ -50,10 +50,11 @@ ROOMS = {
                      "common/mesh/formats", "common/shape", "common/voxel", "generators", "generators/table",
                      "eval/chart", "eval/cli", "eval/compare", "eval/scene", "eval/stability"],
     "eval/compare": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
-                     "common/voxel", "generators", "eval/chart", "eval/cli"],
-    "eval/scene": ["common/base", "common/clump", "common/measure", "generators", "eval/cli"],
+                     "common/volume", "common/voxel", "generators", "eval/chart", "eval/cli", "eval/queue"],
+    "eval/queue": ["common/base", "eval/cli"],
+    "eval/scene": ["common/base", "common/clump", "common/measure", "generators", "eval/cli", "eval/queue"],
     "eval/stability": ["common/base", "common/clump", "common/measure", "common/mesh", "common/shape", "common/voxel",
-                       "generators", "eval/chart", "eval/cli"],
+                       "generators", "eval/chart", "eval/cli", "eval/queue"],
 }
 
 

@@ -34,6 +34,11 @@ static ms_status read_standard(ms_clump *clump, ms_particle *particle, ms_error 
     ms_bytes bytes;
     ms_text text;
     ms_status status = ms_file_read_standard(&bytes, MOST_BYTES, err);
+    if (status == MS_OK && bytes.size == 0) {
+        ms_file_free(&bytes);
+        return ms_fail(err, MS_ERR_FORMAT, "%s: is empty (0 bytes); it can be read once, so that - is given once",
+                       name);
+    }
     if (status != MS_OK) {
         return status;
     }
