@@ -70,7 +70,7 @@ class Input(Case):
 
     def test_twice(self):
         for args in (("score", "-", "--target", "-"), ("correct", "-", "--target", "-", "--density", 1, "-o", "x.csv"),
-                     ("generate", "-", "-g", "variational", "--refine", "-"), 
+                     ("generate", "-", "-g", "variational", "--refine", "-"),
                      ("scene", "-", "--knee", 0.1, "-g", "variational", "--refine", "-")):
             with self.subTest(args=args):
                 self.assert_refused(*args, code=2, says=("- is given for 2 inputs", "read once"),
