@@ -3,9 +3,11 @@
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "base/ms_choice.h"
 #include "base/ms_file.h"
 #include "base/ms_text.h"
 #include "mesh/formats/ms_mesh_read.h"
@@ -43,14 +45,13 @@ static ms_status parse_max_voxels(double *voxels, const char *text, ms_error *er
 
 static ms_status parse_rule(ms_voxel_rule *rule, const char *text, ms_error *err)
 {
-    if (strcmp(text, "half") == 0) {
-        *rule = MS_VOXEL_HALF;
-    } else if (strcmp(text, "centre") == 0) {
-        *rule = MS_VOXEL_CENTRE;
-    } else {
-        return ms_fail(err, MS_ERR_ARG, "--rule %s is not half or centre", text);
+    ms_choice choice = {.typed = text};
+    *rule = MS_VOXEL_HALF;
+    if (ms_choice_offer(&choice, "half")) {
+        return MS_OK;
     }
-    return MS_OK;
+    *rule = MS_VOXEL_CENTRE;
+    return ms_choice_offer(&choice, "centre") ? MS_OK : ms_choice_fail(&choice, err, "there is no --rule '%s'", text);
 }
 
 /* Takes a flag if it is one of MS_INPUT_MENDING_FLAGS. */
@@ -184,10 +185,11 @@ static ms_status name_file(ms_error *err, ms_status status, const ms_input *inpu
     return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", input->path, cause->text);
 }
 
-static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, const ms_mesh_mending *mending, ms_error *err)
+static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, const char *path, const ms_mesh_mending *mending,
+                            ms_error *err)
 {
     ms_error cause, remark;
-    ms_status status = ms_mesh_parse(&input->mesh, &remark, bytes, input->path, err);
+    ms_status status = ms_mesh_parse(&input->mesh, &remark, bytes, path, err);
     if (status == MS_OK && remark.text[0]) {
         fprintf(stderr, "%s\n", remark.text);
     }
@@ -207,12 +209,19 @@ static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, const ms_mes
     return status;
 }
 
+/* What never ends is given up where it is longer than the memory that is allowed. */
+static ms_status read_standard_input(ms_bytes *bytes, const ms_input_flags *flags, ms_error *err)
+{
+    const double most = fmin(flags->max_memory, (double)PTRDIFF_MAX);
+    return ms_file_read_standard(bytes, (size_t)most, err);
+}
+
 ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err)
 {
     ms_bytes bytes;
     const double start = omp_get_wtime();
     memset(input, 0, sizeof *input);
-    input->path = path;
+    input->path = ms_file_name(path);
     if (flags->threads) {
         omp_set_num_threads(flags->threads);
     }
@@ -220,7 +229,8 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
         return ms_fail(err, MS_ERR_IO, "the name of the shape is empty; name a mesh or a volume");
     }
     open_line(input, "reading");
-    ms_status status = ms_file_read(&bytes, path, err);
+    const int is_standard = ms_file_is_standard(path);
+    ms_status status = is_standard ? read_standard_input(&bytes, flags, err) : ms_file_read(&bytes, path, err);
     if (status != MS_OK) {
         ms_progress_close();
         return status;
@@ -228,8 +238,8 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
     input->checksum = ms_file_checksum(&bytes);
     if (ms_volume_is_volume_path(path)) {
         status = ms_volume_parse(&input->volume, &bytes, path, ms_input_max_voxels(flags), err);
-    } else if (ms_mesh_read_is_mesh_path(path)) {
-        status = parse_mesh(input, &bytes, &flags->mending, err);
+    } else if (is_standard || ms_mesh_read_is_mesh_path(path)) {
+        status = parse_mesh(input, &bytes, path, &flags->mending, err);
     } else {
         status = ms_fail(err, MS_ERR_FORMAT,
                          "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
