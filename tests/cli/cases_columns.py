@@ -106,7 +106,7 @@ class Columns(Case):
                                      MENDED + " " + body).split())
 
     def test_json_of_generators(self):
-        self.assertEqual(keys(self.mskit("generators", "--json").json), "name summary source nested".split())
+        self.assertEqual(keys(self.mskit("generators", "--json").json), "name summary source nested baseline".split())
 
     def test_json_of_help(self):
         about = self.mskit("help", "mss", "--json").json
