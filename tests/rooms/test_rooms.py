@@ -22,6 +22,7 @@ ROOMS = {
     "common/base": [],
     "common/clump": ["common/base", "common/mesh", "common/voxel"],
     "common/clump/formats": ["common/base", "common/clump", "common/mesh"],
+    "common/expect": ["common/base", "common/mesh", "common/voxel"],
     "common/measure": ["common/base", "common/clump", "common/mesh", "common/voxel"],
     "common/mesh": ["common/base"],
     "common/mesh/formats": ["common/base", "common/mesh"],
