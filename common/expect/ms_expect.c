@@ -64,16 +64,16 @@ static ms_expect_pair blend(const ms_expect_pair *a, double spheres)
     return (ms_expect_pair){spheres, a->error + part * (b->error - a->error), a->lost + part * (b->lost - a->lost)};
 }
 
-/* By how much ln D falls with ln n over the last quarter of the numbers computed; where part of the body is lost up to
- * there, that of a sheet. */
+/* By how much ln D falls with ln n over the last quarter of the numbers computed, or that part of it where next to
+ * nothing is lost; where that is too short to tell, as for a thin wall, that of a sheet. */
 static double last_slope(const ms_expect_curve *curve)
 {
-    static const double OF_SHEET = 1;
+    static const double OF_SHEET = 1, SHORT = 1.5;
     const ms_expect_pair *last = &curve->pair[curve->count - 1], *before = last;
-    while (before > curve->pair && 4 * before->spheres > last->spheres) {
+    while (before > curve->pair && before[-1].lost < WHOLE && 4 * before->spheres > last->spheres) {
         before--;
     }
-    return before->lost < WHOLE && dice_of(last) > 0
+    return before->spheres * SHORT < last->spheres && dice_of(last) > 0
                ? log(dice_of(before) / dice_of(last)) / log(last->spheres / before->spheres)
                : OF_SHEET;
 }

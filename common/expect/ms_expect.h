@@ -29,8 +29,8 @@ typedef struct ms_expect {
     ms_expect_curve curve[MS_EXPECT_KINDS];
 } ms_expect;
 
-/** Measured clumps have D from 1 / this to this times what is expected, with 10 spheres and more; see docs/expected.md. */
-#define MS_EXPECT_RANGE 1.5
+/** The least D measured was from 1 / this to this times what is expected, with 10 to 300 spheres; docs/expected.md. */
+#define MS_EXPECT_RANGE 1.6
 
 /**
  * An expected least, not a bound: the least error for a price on each sphere, from inscribed balls and the points of

@@ -119,7 +119,7 @@ static void corner_normal(double out[3], const ms_mesh *mesh, const fans *f, uin
     normalise(out);
 }
 
-/* The i-th point, in a triangle: places follow an additive recurrence that fills the plane evenly (Roberts 2018, R2). */
+/* The i-th point, in a triangle: places follow an additive recurrence that fills the plane evenly (Roberts 2018). */
 static void put_point(ms_expect_points *points, int i, const ms_mesh *mesh, const fans *f, uint32_t triangle)
 {
     double part[3], face[3], normal[3] = {0}, corner[3];

@@ -264,7 +264,7 @@ static ms_status make_offers(offer *o, const ms_expect_points *points, const lev
 /* Prices from high to low until there are too many spheres for the level. from: a price in error, and the last one */
 static void add_pairs(ms_expect_curve *curve, double *from, store *r, const level *l, int kind, double volume)
 {
-    static const double STEP = 1.3;
+    static const double STEP = 1.4;
     double sum = 0;
     for (int b = 0; b < l->balls; b++) {
         sum += r->offer[b].radius;
