@@ -113,10 +113,10 @@ static json_t *pair_json(const char *name, double value, double free, double ins
 json_t *ms_expectation_json(const ms_expect *expect)
 {
     json_t *dice = json_array(), *spheres = json_array();
-    for (int i = 0; i < N_NUMBERS; i++) {
-        ms_json_object_append(&dice,
-                              pair_json("spheres", NUMBERS[i], ms_expect_dice(expect, MS_EXPECT_FREE, NUMBERS[i]),
-                                        ms_expect_dice(expect, MS_EXPECT_INSCRIBED, NUMBERS[i])));
+    for (size_t i = 0; i < sizeof ALL_NUMBERS / sizeof *ALL_NUMBERS; i++) {
+        const double n = ALL_NUMBERS[i];
+        ms_json_object_append(&dice, pair_json("spheres", n, ms_expect_dice(expect, MS_EXPECT_FREE, n),
+                                               ms_expect_dice(expect, MS_EXPECT_INSCRIBED, n)));
     }
     for (int i = 0; i < N_MISMATCHES; i++) {
         ms_json_object_append(&spheres, pair_json("dice", MISMATCHES[i], find_number(expect, 0, MISMATCHES[i]),
