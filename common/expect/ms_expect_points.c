@@ -14,14 +14,14 @@ static const double CREASE = 0.8660254037844387;
 static const double TOLERANCE = 1e-4;
 
 /* A triangle by where it stands on the curve. */
-typedef struct place {
+typedef struct curve_place {
     uint64_t key;
     uint32_t triangle;
-} place;
+} curve_place;
 
 static int compare_places(const void *a, const void *b)
 {
-    const place *p = a, *q = b;
+    const curve_place *p = a, *q = b;
     return p->key != q->key ? (p->key > q->key) - (p->key < q->key)
                             : (p->triangle > q->triangle) - (p->triangle < q->triangle);
 }
@@ -37,14 +37,14 @@ static uint64_t spread_bits(uint64_t bits)
 }
 
 /* Triangles in Morton's order of their centres. */
-static void order_triangles(place *order, const ms_mesh *mesh)
+static void order_triangles(curve_place *order, const ms_mesh *mesh)
 {
     double lo[3], hi[3];
     ms_mesh_box(lo, hi, mesh);
     const double size = fmax(hi[0] - lo[0], fmax(hi[1] - lo[1], hi[2] - lo[2]));
     for (size_t t = 0; t < mesh->n_triangles; t++) {
         const uint32_t *corner = mesh->triangle[t];
-        order[t] = (place){0, (uint32_t)t};
+        order[t] = (curve_place){0, (uint32_t)t};
         for (int a = 0; a < 3; a++) {
             const double centre =
                 (mesh->vertex[corner[0]][a] + mesh->vertex[corner[1]][a] + mesh->vertex[corner[2]][a]) / 3;
@@ -152,7 +152,7 @@ static void put_point(ms_expect_points *points, int i, const ms_mesh *mesh, cons
 ms_status ms_expect_points_spread(ms_expect_points *points, const ms_mesh *mesh, ms_error *err)
 {
     fans f = {0};
-    place *order = malloc(mesh->n_triangles * sizeof *order);
+    curve_place *order = malloc(mesh->n_triangles * sizeof *order);
     ms_status status = order
                            ? build_fans(&f, mesh, err)
                            : ms_fail(err, MS_ERR_NOMEM, "no memory for the order of %zu triangles", mesh->n_triangles);

@@ -18,8 +18,8 @@ typedef struct ms_expect_points {
 
 /**
  * Points in proportion to area. The normal is the mean over the corners of the triangle, and at a corner that over the
- * triangles there that bend by less than 30 degrees from it: of a smooth body it is that of the body, at an edge that of
- * the face.
+ * triangles there that bend by less than 30 degrees from it: of a smooth body it is that of the body, at an edge that
+ * of the face.
  *
  * @param[out] points the radii are left alone
  * @param      mesh   closed, wound outward, area above 0

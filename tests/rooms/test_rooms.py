@@ -47,7 +47,7 @@ ROOMS = {
     "eval/chart": ["common/base", "common/clump", "common/mesh", "common/voxel"],
     "eval/cli": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure", "common/mesh",
                  "common/mesh/formats", "common/volume", "common/voxel", "generators", "generators/table"],
-    "eval/command": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure", "common/mesh",
+    "eval/command": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
                      "common/mesh/formats", "common/shape", "common/volume", "common/voxel", "generators",
                      "generators/table", "eval/chart", "eval/cli", "eval/compare", "eval/grains", "eval/scene", "eval/stability"],
     "eval/compare": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure", "common/mesh",
