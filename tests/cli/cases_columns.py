@@ -78,12 +78,13 @@ class Columns(Case):
         run = self.generate("grain.stl", "-g", "mss", "-n", 5, "--cells", 15, "-o", "c.json")
         record = (RECORD.split() + under("input", TARGET) + under("scores", SCORES) + under("seconds", SECONDS) +
                   ["threads", "peak_memory_kb"])
-        self.assertEqual(keys(run), record + ["expected.dice", "expected.factor"])
+        expected = under("expected", "dice factor")
+        self.assertEqual(keys(run), record + expected)
         written = json.loads(self.read("c.json"))
         self.assertEqual(keys(written), ["mskit"] + record + ["columns", "spheres"])
         self.assertEqual(written["columns"], ["x", "y", "z", "r"])
         run = self.generate("grain.stl", "-g", "mss", "-n", 5, "--cells", 15, "--correct", "--density", 1000)
-        self.assertEqual(keys(run), record + under("particle", PARTICLE) + under("masses", MASSES))
+        self.assertEqual(keys(run), record + under("particle", PARTICLE) + under("masses", MASSES) + expected)
 
     def test_json_of_score(self):
         self.clump()
