@@ -33,6 +33,7 @@
 #include "ms_option.h"
 #include "ms_stop.h"
 #include "shape/ms_shape.h"
+#include "volume/ms_labels.h"
 #include "volume/ms_volume.h"
 #include "voxel/ms_grid.h"
 #include "voxel/ms_solid.h"

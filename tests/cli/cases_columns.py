@@ -62,7 +62,8 @@ class Columns(Case):
         self.assertEqual(self.header("compare.csv"),
                          "shape,checksum,label,generator,options,seed,cells,n_asked,n,stopped_by,eta,dice,coverage,"
                          "overshoot,off_volume,protrusion_max,protrusion_rms,gap_max,gap_rms,smallest_radius_ratio,"
-                         "pieces,inertia_union,inertia_corrected,epsilon,products_epsilon,centre_epsilon,voxel_size,"
+                         "pieces,inertia_union,expected,inertia_corrected,epsilon,products_epsilon,centre_epsilon,"
+                         "voxel_size,"
                          "seconds_read,seconds_voxelize,seconds_distance,seconds_generate,seconds_score,"
                          "seconds_correct,repeats,peak_memory_kb,threads,beside,version,cause")
 
@@ -77,12 +78,13 @@ class Columns(Case):
         run = self.generate("grain.stl", "-g", "mss", "-n", 5, "--cells", 15, "-o", "c.json")
         record = (RECORD.split() + under("input", TARGET) + under("scores", SCORES) + under("seconds", SECONDS) +
                   ["threads", "peak_memory_kb"])
-        self.assertEqual(keys(run), record)
+        expected = under("expected", "dice factor")
+        self.assertEqual(keys(run), record + expected)
         written = json.loads(self.read("c.json"))
         self.assertEqual(keys(written), ["mskit"] + record + ["columns", "spheres"])
         self.assertEqual(written["columns"], ["x", "y", "z", "r"])
         run = self.generate("grain.stl", "-g", "mss", "-n", 5, "--cells", 15, "--correct", "--density", 1000)
-        self.assertEqual(keys(run), record + under("particle", PARTICLE) + under("masses", MASSES))
+        self.assertEqual(keys(run), record + under("particle", PARTICLE) + under("masses", MASSES) + expected)
 
     def test_json_of_score(self):
         self.clump()
