@@ -330,7 +330,7 @@ static ms_status order_spheres(ms_clump *clump, const attempt *a, const ms_run *
     ms_cover *cover = NULL;
     uint8_t *taken = calloc(a->count + 1, sizeof *taken);
     size_t which;
-    ms_status status = taken ? ms_cover_build(&cover, &run->target->grid, a->ball, a->count, 0, err)
+    ms_status status = taken ? ms_cover_build(&cover, &run->target->grid, a->ball, a->count, MS_COVER_ANY, err)
                              : ms_fail(err, MS_ERR_NOMEM, "no memory to order %zu spheres", a->count);
     while (status == MS_OK && ms_cover_next(&which, cover) > 0) {
         taken[which] = 1;
@@ -462,6 +462,7 @@ const ms_generator ms_generator_fcm = {
     .summary = "random spheres that touch the surface, put together by fuzzy c-means",
     .source = "F. Westbrink, A. Schwung, COMPLAS XIV (2017)",
     .nested = 0,
+    .bytes_per_voxel = 5,
     .options = OPTIONS,
     .generate = generate_by_fcm,
 };
