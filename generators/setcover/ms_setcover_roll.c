@@ -100,7 +100,7 @@ typedef struct cell_entry {
 } cell_entry;
 
 /* By cell, in it the largest first. */
-static int compare_entries(const void *one, const void *other)
+static int compare_rolled(const void *one, const void *other)
 {
     const cell_entry *a = one, *b = other;
     if (a->cell != b->cell) {
@@ -112,7 +112,7 @@ static int compare_entries(const void *one, const void *other)
     return a->index < b->index ? -1 : 1;
 }
 
-static uint64_t find_cell(const ms_setcover_field *f, const double centre[3])
+static uint64_t find_end_cell(const ms_setcover_field *f, const double centre[3])
 {
     uint64_t cell = 0;
     const double from[3] = {centre[0] - f->origin[0], centre[1] - f->origin[1], centre[2] - f->origin[2]};
@@ -127,9 +127,9 @@ static void keep_largest(ms_setcover_start *start, size_t *count, cell_entry *en
 {
     size_t kept = 0;
     for (size_t i = 0; i < *count; i++) {
-        entry[i] = (cell_entry){find_cell(f, start[i].centre), start[i].radius, i};
+        entry[i] = (cell_entry){find_end_cell(f, start[i].centre), start[i].radius, i};
     }
-    qsort(entry, *count, sizeof *entry, compare_entries);
+    qsort(entry, *count, sizeof *entry, compare_rolled);
     for (size_t i = 1; i < *count; i++) {
         if (entry[i].cell == entry[i - 1].cell) {
             start[entry[i].index].radius = 0;
