@@ -57,13 +57,12 @@ typedef struct ms_run {
  *   without a bound on their number eta 0.25, D 0.11, coverage 0.83 and inertia error 0.3. A baseline is spared this.
  */
 typedef struct ms_generator {
-    const char *name;    /* what --generator takes */
-    const char *summary; /* one line for `mskit generators` */
-    const char *source;  /* the paper: authors, year, DOI or arXiv number */
-    int nested;          /* nonzero: the first k spheres of a run are the clump of k spheres */
-    double
-        bytes_per_voxel; /* that a run takes beyond the target's, for 50 spheres at 100 cells; 0: as ms_target_bytes */
-    int baseline;        /* nonzero: something plain to compare with, which promises no quality */
+    const char *name;         /* what --generator takes */
+    const char *summary;      /* one line for `mskit generators` */
+    const char *source;       /* the paper: authors, year, DOI or arXiv number */
+    int nested;               /* nonzero: the first k spheres of a run are the clump of k spheres */
+    double bytes_per_voxel;   /* that a run takes beyond the target's at its peak; 0: as ms_target_bytes */
+    int baseline;             /* nonzero: something plain to compare with, which promises no quality */
     const ms_option *options; /* ends with a NULL name */
     /**
      * REQUIRED. Target in, ordered spheres out, in the unit and frame of the shape. A nested method that chooses one
