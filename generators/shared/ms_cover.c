@@ -341,7 +341,7 @@ static int compare_members(const void *one, const void *other)
     return a->index < b->index ? -1 : 1;
 }
 
-static uint64_t find_cell(const ms_ball *ball, int class)
+static uint64_t find_group_cell(const ms_ball *ball, int class)
 {
     const double side = ldexp(GROUP_SIDE, class);
     uint64_t cell = (uint64_t) class;
@@ -364,7 +364,7 @@ static ms_status form_groups(ms_cover *cover, ms_error *err)
         const ms_ball *ball = &cover->candidate[c];
         const int class = ball->radius >= 1 ? find_class(ball->radius) : 0;
         cover->largest_class = class > cover->largest_class ? class : cover->largest_class;
-        entry[c] = (group_entry){find_cell(ball, class), ball->radius, (uint32_t)c};
+        entry[c] = (group_entry){find_group_cell(ball, class), ball->radius, (uint32_t)c};
     }
     qsort(entry, cover->count, sizeof *entry, compare_members);
     for (size_t c = 0; c < cover->count; c++) {
