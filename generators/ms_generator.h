@@ -61,6 +61,7 @@ typedef struct ms_generator {
     const char *summary;      /* one line for `mskit generators` */
     const char *source;       /* the paper: authors, year, DOI or arXiv number */
     int nested;               /* nonzero: the first k spheres of a run are the clump of k spheres */
+    double bytes_per_voxel;   /* that a run takes beyond the target's at its peak; 0: as ms_target_bytes */
     int baseline;             /* nonzero: something plain to compare with, by name; promises no quality */
     const ms_option *options; /* ends with a NULL name */
     /**

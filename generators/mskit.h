@@ -21,6 +21,7 @@
 #include "clump/ms_density.h"
 #include "clump/ms_particle.h"
 #include "clump/ms_template.h"
+#include "expect/ms_expect.h"
 #include "measure/ms_measure.h"
 #include "measure/ms_metrics.h"
 #include "mesh/formats/ms_mesh_read.h"

@@ -342,6 +342,7 @@ static ms_status resolve_generate(generate_arguments *a, ms_error *err)
     ms_until_resolve(&a->stop);
     ms_status status = ms_recipe_resolve(&a->recipe, err);
     if (status == MS_OK) {
+        a->input.method_bytes = a->recipe.generator->bytes_per_voxel;
         const char *const inputs[] = {a->shape, a->recipe.settings.clump_file};
         status = ms_files_check_standard(inputs, 2, err);
     }

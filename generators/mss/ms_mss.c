@@ -314,6 +314,7 @@ const ms_generator ms_generator_mss = {
     .summary = "spheres at the maxima of the distance field, then of twice it less that of the spheres",
     .source = "F. Buchele, T. Poeschel, P. Mueller, Powder Technology (2026), arXiv:2603.05877",
     .nested = 1,
+    .bytes_per_voxel = 9,
     .options = OPTIONS,
     .generate = generate_by_mss,
 };

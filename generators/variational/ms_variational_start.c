@@ -83,7 +83,7 @@ ms_status ms_variational_start_cover(ms_ball *ball, size_t *count, const ms_coar
     *count = 0;
     ms_status status = list_ridge(&candidate, &candidates, view, least, err);
     if (status == MS_OK) {
-        status = ms_cover_build(&cover, &view->grid, candidate, candidates, 0, err);
+        status = ms_cover_build(&cover, &view->grid, candidate, candidates, MS_COVER_ANY, err);
     }
     while (status == MS_OK && *count < wanted && ms_cover_next(&which, cover)) {
         ball[(*count)++] = ms_coarse_view_target_ball(view, &candidate[which]);
