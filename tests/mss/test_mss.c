@@ -87,7 +87,7 @@ static void field_equals_recomputation(void **state)
         }
         assert_int_equal(ms_distance(distance, covered, target.grid.n, &err), MS_OK);
         for (size_t v = 0; v < voxels; v++) {
-            assert_true(field.star[v] == 2 * target.distance[v] - distance[v]);
+            assert_true(field.within[v] == distance[v]);
         }
     }
     free(covered);

@@ -1,0 +1,114 @@
+#include "ms_mss_open.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WORD = 64 };
+
+/* Voxels on a ball's surface but for rounding belong to it, so that mirror images agree. */
+static const double ON_SURFACE = 1e-9;
+
+ms_status ms_mss_open_init(ms_mss_open *open, const ms_grid *grid, ms_error *err)
+{
+    memset(open, 0, sizeof *open);
+    memcpy(open->n, grid->n, sizeof open->n);
+    open->words = ((size_t)grid->n[0] + WORD - 1) / WORD;
+    const size_t rows = (size_t)grid->n[1] * (size_t)grid->n[2];
+    open->inside = calloc(rows * open->words, sizeof *open->inside);
+    open->outside = calloc(rows * open->words, sizeof *open->outside);
+    if (!open->inside || !open->outside) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for bits of %zu voxels; use fewer cells", ms_grid_voxels(grid));
+    }
+#pragma omp parallel for if (ms_grid_voxels(grid) >= MS_GRID_THREADS_FROM)
+    for (size_t row = 0; row < rows; row++) {
+        const uint8_t *inside = grid->inside + row * (size_t)grid->n[0];
+        for (int i = 0; i < grid->n[0]; i++) {
+            uint64_t *bits = (inside[i] ? open->inside : open->outside) + row * open->words;
+            bits[i / WORD] |= (uint64_t)1 << i % WORD;
+        }
+    }
+    return MS_OK;
+}
+
+void ms_mss_open_free(ms_mss_open *open)
+{
+    free(open->inside);
+    free(open->outside);
+}
+
+void ms_mss_open_cover(ms_mss_open *open, const ms_raster *raster, const int lo[3], const int hi[3])
+{
+    for (int k = lo[2]; k < hi[2]; k++) {
+        for (int j = lo[1]; j < hi[1]; j++) {
+            const uint16_t *first = raster->first + ms_grid_index(raster->grid, 0, j, k);
+            const size_t row = ((size_t)j + (size_t)open->n[1] * (size_t)k) * open->words;
+            for (int i = lo[0]; i < hi[0]; i++) {
+                const uint64_t keep = ~((uint64_t)(first[i] != MS_RASTER_NONE) << i % WORD);
+                open->inside[row + (size_t)(i / WORD)] &= keep;
+                open->outside[row + (size_t)(i / WORD)] &= keep;
+            }
+        }
+    }
+}
+
+static int clamp_index(double value, int lo, int hi)
+{
+    return value < lo ? lo : value > hi ? hi : (int)value;
+}
+
+/* Open voxels inside less those outside, from <= i < to of a row. */
+static long count_row(const uint64_t *inside, const uint64_t *outside, int from, int to)
+{
+    long sum = 0;
+    for (int w = from / WORD; w * WORD < to; w++) {
+        uint64_t mask = ~(uint64_t)0;
+        if (w * WORD < from) {
+            mask &= ~(uint64_t)0 << from % WORD;
+        }
+        if ((w + 1) * WORD > to) {
+            mask &= ~(uint64_t)0 >> (WORD - to % WORD);
+        }
+        sum += __builtin_popcountll(inside[w] & mask) - __builtin_popcountll(outside[w] & mask);
+    }
+    return sum;
+}
+
+long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball)
+{
+    const double *c = ball->centre, r = ball->radius, square = r * r + ON_SURFACE;
+    const int lo_z = clamp_index(ceil(c[2] - r), 0, open->n[2]), hi_z = clamp_index(floor(c[2] + r) + 1, 0, open->n[2]);
+    long sum = 0;
+    for (int k = lo_z; k < hi_z; k++) {
+        const double z = k - c[2], rest = square - z * z, wide = rest > 0 ? sqrt(rest) : 0;
+        const int lo_y = clamp_index(ceil(c[1] - wide), 0, open->n[1]);
+        const int hi_y = clamp_index(floor(c[1] + wide) + 1, 0, open->n[1]);
+        for (int j = lo_y; j < hi_y; j++) {
+            const double y = j - c[1], left = rest - y * y;
+            if (left >= 0) {
+                const double half = sqrt(left);
+                const int from = clamp_index(ceil(c[0] - half), 0, open->n[0]);
+                const int to = clamp_index(floor(c[0] + half) + 1, 0, open->n[0]);
+                const size_t row = ((size_t)j + (size_t)open->n[1] * (size_t)k) * open->words;
+                sum += from < to ? count_row(open->inside + row, open->outside + row, from, to) : 0;
+            }
+        }
+    }
+    return sum;
+}
+
+long ms_mss_open_fit(double *radius, const ms_mss_open *open, const double centre[3], double lo, double hi,
+                     double step)
+{
+    long most = 0;
+    *radius = lo;
+    for (int s = 0; lo + s * step <= hi + ON_SURFACE; s++) {
+        const ms_ball ball = {{centre[0], centre[1], centre[2]}, lo + s * step};
+        const long gain = ball.radius > 0 ? ms_mss_open_gain(open, &ball) : 0;
+        if (gain > most) {
+            most = gain;
+            *radius = ball.radius;
+        }
+    }
+    return most;
+}

@@ -1,0 +1,33 @@
+/** The voxels that no sphere covers yet, as bits, and what a sphere would gain by covering them. Private to ms_mss. */
+#ifndef MS_MSS_OPEN_H
+#define MS_MSS_OPEN_H
+
+#include "voxel/ms_raster.h"
+
+typedef struct ms_mss_open {
+    int n[3];
+    size_t words;      /* of a row */
+    uint64_t *inside;  /* voxels of the shape that are not covered */
+    uint64_t *outside; /* voxels of the background that are not covered */
+} ms_mss_open;
+
+/** Nothing is covered. @param[out] open the caller frees it @return MS_OK; MS_ERR_NOMEM. A quarter byte a voxel */
+ms_status ms_mss_open_init(ms_mss_open *open, const ms_grid *grid, ms_error *err);
+
+/** Takes out the voxels of a box that the raster covers. */
+void ms_mss_open_cover(ms_mss_open *open, const ms_raster *raster, const int lo[3], const int hi[3]);
+
+/**
+ * By how many voxels |S xor S~| falls if a ball is added: those inside less those outside that it covers first, by their
+ * centres.
+ * Cost: the rows of the ball, 64 voxels at a time.
+ */
+long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball);
+
+/** Of the radii lo, lo + step, ... hi the least of those of the largest gain; that gain. */
+long ms_mss_open_fit(double *radius, const ms_mss_open *open, const double centre[3], double lo, double hi,
+                     double step);
+
+void ms_mss_open_free(ms_mss_open *open);
+
+#endif
