@@ -1,116 +1,126 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/ms_vector.h"
 #include "ms_mss_open.h"
+#include "ms_mss_polish.h"
 #include "ms_mss_run.h"
 
-static double envd(const char *n, double d) { const char *s = getenv(n); return s ? atof(s) : d; }
-static double UP, DOWN, STEP, SHARE, SPACING, WMAX, W0, REL, WSTEP, FIRSTREL;
-static long n_counts, n_steps;
+/* Radii that are tried, in voxels from E: E is to the centre of the nearest background voxel, half a voxel beyond the
+ * surface, and spheres that stand out a little lower the mismatch. Twice as far out is better up to 50 spheres and worse
+ * from 100 up, where what the first spheres cover too much cannot be made good. */
+static const double LEAST_OVER_E = -0.5, FIRST_OVER_E = 0.25, MOST_OVER_E = 1, RADIUS_STEP = 0.25;
+
+/* A step takes all maxima that gain at least this share of what the best one does. */
+static const double SHARE = 0.5;
+
+/* w, and delta_min in voxels, to begin with, where they are left to us. With w = 1 smooth bodies run out of maxima that
+ * are worth their sphere (D of pear and octahedron by 50 is a third to a half higher), 3 to 9 differ by some percent. */
+static const double FIRST_BOOST = 5, LAST_BOOST = 40, FIRST_SPACING = 3;
+
+/* Half the diagonal of a voxel. */
+static const double HALF_DIAGONAL = 0.86602540378443871;
 
 typedef struct best {
     ms_mss_run *m;
     ms_mss_open open;
 } best;
 
-/* No sphere gains more than it has voxels. */
-static double bound_gain(const ms_mss_run *m, const ms_mss_candidate *c)
+/* What a new candidate gains at most: no more than a ball of its largest radius has voxels; and than the one that was
+ * at its voxel before, the gain of which has not risen since, and what its centre has moved by sweeps. */
+static double bound_gain(const ms_mss_run *m, const ms_mss_candidate *c, const ms_mss_candidate *before)
 {
     (void)m;
-    const double r = c->e + UP + REL * c->e + 0.87;
-    return 4.19 * r * r * r;
+    const double r = c->e + MOST_OVER_E + HALF_DIAGONAL, ball = 4.19 * r * r * r;
+    if (!before) {
+        return ball;
+    }
+    return fmin(ball, before->rank + 3.15 * r * r * sqrt(ms_squared_distance(before->ball.centre, c->ball.centre)));
 }
 
-static long fit_radius(ms_ball *ball, double e, best *b)
+/* Gives a ball the radius that lowers |S xor S~| most. @return by how many voxels; 0 if there is no room for one */
+static double fit_ball(ms_ball *ball, double e, best *b)
 {
-    const double up = UP + REL * e;
-    long gain = ms_mss_open_fit(&ball->radius, &b->open, ball->centre, fmax(e - DOWN, 0.5), e + up, fmax(STEP, (up + DOWN) / 8));
+    ball->radius = e + FIRST_OVER_E;
+    const long gain = ms_mss_open_fit(ball, &b->open, fmax(e + LEAST_OVER_E, 0.5), e + MOST_OVER_E, RADIUS_STEP);
+    const double fitted = ball->radius;
     if (!ms_mss_run_confine(ball, b->m)) {
         return 0;
     }
-    return gain;
+    return (double)(ball->radius < fitted ? ms_mss_open_gain(&b->open, ball) : gain);
 }
 
+/* Counts what candidates gain of which at least `from` is to be expected. */
 static void count_candidates(best *b, double from)
 {
     ms_mss_run *m = b->m;
-    const double apart = m->spacing * m->spacing * (1 - 1e-9);
-#pragma omp parallel for schedule(dynamic, 4)
+#pragma omp parallel for schedule(dynamic, 4) if (ms_grid_voxels(&m->run->target->grid) >= MS_GRID_THREADS_FROM)
     for (size_t c = 0; c < m->n_candidates; c++) {
         ms_mss_candidate *k = &m->candidates[c];
-        if (!k->counted && k->apart >= apart && k->rank >= from) {
-            k->rank = (double)fit_radius(&k->ball, k->e, b);
+        if (!k->counted && k->rank >= from && ms_mss_select_is_apart(k, m->spacing)) {
+            k->rank = fit_ball(&k->ball, k->e, b);
             k->counted = 1;
-#pragma omp atomic
-            n_counts++;
         }
     }
 }
 
+/* The largest gain of a candidate. Gains are kept from step to step, as bounds (lazy evaluation; Minoux 1978): only
+ * those are counted again that may be worth a sphere of this step. */
 static double count_gains(best *b)
 {
-    ms_mss_run *m = b->m;
-    const double apart = m->spacing * m->spacing * (1 - 1e-9);
+    const ms_mss_run *m = b->m;
     for (;;) {
-        double most = 0, stale = 0;
+        double most = 0, bound = 0;
         for (size_t c = 0; c < m->n_candidates; c++) {
             const ms_mss_candidate *k = &m->candidates[c];
-            if (k->apart < apart) {
-                continue;
-            }
-            if (k->counted) {
-                most = fmax(most, k->rank);
-            } else {
-                stale = fmax(stale, k->rank);
+            if (ms_mss_select_is_apart(k, m->spacing)) {
+                most = k->counted ? fmax(most, k->rank) : most;
+                bound = k->counted ? bound : fmax(bound, k->rank);
             }
         }
-        if (stale <= SHARE * most || stale <= 0) {
+        if (bound <= SHARE * most) {
             return most;
         }
-        count_candidates(b, fmax(SHARE * most, 0.8 * stale));
+        count_candidates(b, fmax(SHARE * most, 0.8 * bound));
     }
 }
 
-static void mark_stale(ms_mss_run *m, size_t first)
+/* The gains of candidates that overlap new spheres are bounds from now on. */
+static void mark_overlapping(ms_mss_run *m, size_t first_new)
 {
     for (size_t c = 0; c < m->n_candidates; c++) {
         ms_mss_candidate *k = &m->candidates[c];
-        for (size_t s = first; s < m->field.raster.n_balls && k->counted; s++) {
-            const ms_ball *o = &m->field.raster.ball[s];
-            const double reach = o->radius + k->e * (1 + REL) + UP + 1;
-            double d = 0;
-            for (int a = 0; a < 3; a++) {
-                d += (o->centre[a] - k->ball.centre[a]) * (o->centre[a] - k->ball.centre[a]);
-            }
-            if (d < reach * reach) {
-                k->counted = 0;
-            }
+        for (size_t s = first_new; s < m->field.raster.n_balls && k->counted; s++) {
+            const ms_ball *sphere = &m->field.raster.ball[s];
+            const double reach = sphere->radius + k->e + MOST_OVER_E + 2 * HALF_DIAGONAL;
+            k->counted = ms_squared_distance(sphere->centre, k->ball.centre) > reach * reach;
         }
     }
 }
 
+/* The radius at the mean of several maxima (ms_mss_select_rule). */
 static int fit_mean(ms_ball *ball, void *context)
 {
     best *b = context;
     const double e = ms_mss_run_e_at(b->m, ball->centre);
-    return e > 0 && fit_radius(ball, e, b) > 0;
+    return e > 0 && fit_ball(ball, e, b) > 0;
 }
 
 static void report(size_t chosen, void *context)
 {
-    ms_mss_run_report(chosen, ((best *)context)->m);
+    const best *b = context;
+    ms_mss_run_report(chosen, b->m);
 }
 
+/* The spheres of a step: of those that are worth it the ones that do not overlap, so that what they gain adds up. */
 static size_t choose_spheres(ms_ball *chosen, size_t limit, best *b)
 {
-    ms_mss_run *m = b->m;
+    const ms_mss_run *m = b->m;
     const double most = count_gains(b);
-    if (most <= 0) {
-        return 0;
-    }
     ms_mss_select_rule rule = {.spacing = m->spacing,
                                .least_rank = fmax(SHARE * most, 1),
                                .disjoint = 1,
+                               .may_wait = m->spacing > 1,
                                .fit = fit_mean,
                                .report = report,
                                .context = b};
@@ -119,42 +129,44 @@ static size_t choose_spheres(ms_ball *chosen, size_t limit, best *b)
                          &rule);
 }
 
+/* Adds the spheres of a step to S~ and to the clump, and finds the new maxima. */
 static ms_status add_spheres(ms_clump *clump, ms_stop_reason *reason, best *b, const ms_ball *chosen, size_t count,
                              ms_error *err)
 {
     ms_mss_run *m = b->m;
     const size_t before = m->field.raster.n_balls;
     ms_status status = ms_mss_field_add(&m->field, chosen, count, err);
-    n_steps++;
     if (status == MS_OK) {
         status = ms_mss_run_accept(clump, reason, m, before, err);
     }
-    for (size_t c = 0; c < m->field.n_changed; c++) {
-        ms_mss_open_cover(&b->open, &m->field.raster, m->field.changed[c].lo, m->field.changed[c].hi);
-    }
     if (status == MS_OK && *reason == MS_STOP_NOT) {
+        for (size_t c = 0; c < m->field.n_changed; c++) {
+            ms_mss_open_cover(&b->open, &m->field.raster, m->field.changed[c].lo, m->field.changed[c].hi);
+        }
         status = ms_mss_run_update(m, before, err);
-        mark_stale(m, before);
+        mark_overlapping(m, before);
     }
     return status;
 }
 
-static ms_status look_closer(ms_stop_reason *reason, best *b, ms_error *err)
+/* No maximum that is far enough from the spheres gains anything: delta_min is halved, then w doubled, if they are left
+ * to us. */
+static ms_status look_closer(ms_stop_reason *reason, ms_mss_run *m, ms_error *err)
 {
-    ms_mss_run *m = b->m;
-    if ((double)m->field.weight < WMAX) {
-        m->field.weight += (float)WSTEP;
-        ms_status status = ms_mss_field_touch_all(&m->field, err);
-        return status == MS_OK ? ms_mss_run_update(m, m->field.raster.n_balls, err) : status;
-    }
-    if (m->spacing > 1) {
+    if (ms_mss_run_option(m, MS_MSS_SPACING) == 0 && m->spacing > 1) {
         m->spacing = fmax(1, m->spacing / 2);
         return MS_OK;
+    }
+    if (ms_mss_run_option(m, MS_MSS_BOOST) == 0 && (double)m->field.weight < LAST_BOOST) {
+        m->field.weight *= 2;
+        const ms_status status = ms_mss_field_touch_all(&m->field, err);
+        return status == MS_OK ? ms_mss_run_update(m, m->field.raster.n_balls, err) : status;
     }
     *reason = m->too_small ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
     return MS_OK;
 }
 
+/* One step: place what is worth placing, or look closer. */
 static ms_status step(ms_clump *clump, ms_stop_reason *reason, best *b, ms_error *err)
 {
     const size_t left = ms_mss_run_left(b->m);
@@ -168,7 +180,7 @@ static ms_status step(ms_clump *clump, ms_stop_reason *reason, best *b, ms_error
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", limit);
     }
     const size_t taken = choose_spheres(chosen, limit, b);
-    ms_status status = taken > 0 ? add_spheres(clump, reason, b, chosen, taken, err) : look_closer(reason, b, err);
+    ms_status status = taken > 0 ? add_spheres(clump, reason, b, chosen, taken, err) : look_closer(reason, b->m, err);
     free(chosen);
     return status;
 }
@@ -176,11 +188,10 @@ static ms_status step(ms_clump *clump, ms_stop_reason *reason, best *b, ms_error
 ms_status ms_mss_best_generate(ms_clump *clump, ms_stop_reason *reason, ms_mss_run *m, ms_error *err)
 {
     best b = {.m = m};
-    UP = envd("UP", 1); DOWN = envd("DOWN", .5); STEP = envd("STEP", .25); SHARE = envd("SHARE", .5);
-    SPACING = envd("SPACING", 5); WMAX = envd("WMAX", 5); W0 = envd("W0", 1); REL = envd("REL", 0); WSTEP = envd("WSTEP", 1);
+    const double spacing = ms_mss_run_option(m, MS_MSS_SPACING), boost = ms_mss_run_option(m, MS_MSS_BOOST);
     m->rank = bound_gain;
-    m->spacing = SPACING;
-    m->field.weight = (float)W0;
+    m->spacing = spacing > 0 ? spacing : FIRST_SPACING;
+    m->field.weight = (float)(boost > 0 ? boost : FIRST_BOOST);
     ms_status status = ms_mss_open_init(&b.open, &m->run->target->grid, err);
     if (status == MS_OK) {
         status = ms_mss_run_update(m, 0, err);
@@ -189,7 +200,9 @@ ms_status ms_mss_best_generate(ms_clump *clump, ms_stop_reason *reason, ms_mss_r
         status = step(clump, reason, &b, err);
         ms_mss_run_report(0, m);
     }
-    if (getenv("VERB")) fprintf(stderr, "counts %ld steps %ld w %g spacing %g\n", n_counts, n_steps, m->field.weight, m->spacing);
     ms_mss_open_free(&b.open);
+    if (status == MS_OK && ms_mss_run_option(m, MS_MSS_POLISH) != 0) {
+        status = ms_mss_polish(clump, m, err);
+    }
     return status;
 }

@@ -152,13 +152,13 @@ static ms_mss_box find_changed(const ms_mss_field *field, const ms_mss_box *cove
     for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
         for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
             const int z = find_gap(k, covered->lo[2], covered->hi[2]), y = find_gap(j, covered->lo[1], covered->hi[1]);
-            const float away = sqrtf((float)(z * z + y * y));
+            const float away = sqrtf((float)(z * z + y * y)); /* the distance is no less, and no less than along x */
             const float *within = field->within + ms_grid_index(grid, 0, j, k);
             int from = reach.lo[0], to = reach.hi[0];
-            while (from < to && within[from] < fmaxf(away, (float)(covered->lo[0] - from))) {
+            while (from < to && (within[from] < away || within[from] < (float)(covered->lo[0] - from))) {
                 from++;
             }
-            while (from < to && within[to - 1] < fmaxf(away, (float)(to - covered->hi[0]))) {
+            while (from < to && (within[to - 1] < away || within[to - 1] < (float)(to - covered->hi[0]))) {
                 to--;
             }
             if (from < to) {
@@ -259,8 +259,8 @@ static ms_status update_around(int *done, size_t *cost, ms_mss_field *field, con
 {
     const size_t all = ms_grid_voxels(&field->target->grid);
     const ms_mss_box box = find_changed(field, covered), part = find_surroundings(field, &box);
-    const size_t columns = (size_t)(box.hi[0] - box.lo[0]) * (size_t)(box.hi[1] - box.lo[1]) *
-                           (size_t)(part.hi[2] - part.lo[2]);
+    const size_t columns =
+        (size_t)(box.hi[0] - box.lo[0]) * (size_t)(box.hi[1] - box.lo[1]) * (size_t)(part.hi[2] - part.lo[2]);
     *cost += (count_box(&part) + columns + count_box(&box)) / 3;
     *done = 0;
     /* no more memory than the flags of the whole grid would take, and no more time */

@@ -74,8 +74,8 @@ static int list_reserve(maxima_list *l, size_t more)
 }
 
 /* Takes the maxima of a part into the list, but for those of earlier boxes. */
-static int take_maxima(maxima_list *l, const float *star, const ms_mss_field *field, const ms_mss_box *part,
-                       size_t box, const size_t *voxel, size_t count)
+static int take_maxima(maxima_list *l, const float *star, const ms_mss_field *field, const ms_mss_box *part, size_t box,
+                       const size_t *voxel, size_t count)
 {
     const int n[3] = {part->hi[0] - part->lo[0], part->hi[1] - part->lo[1], part->hi[2] - part->lo[2]};
     if (!list_reserve(l, count)) {
@@ -121,7 +121,8 @@ static ms_status find_in_box(maxima_list *l, const ms_mss_field *field, size_t b
     const int *n = field->target->grid.n;
     ms_mss_box whole = ms_mss_field_grow(&field->changed[box], AROUND, n), slab = whole;
     const ms_mss_box around = ms_mss_field_grow(&whole, AROUND, n);
-    const int planes = around.hi[2] - around.lo[2] < SLAB + 2 * AROUND ? around.hi[2] - around.lo[2] : SLAB + 2 * AROUND;
+    const int planes =
+        around.hi[2] - around.lo[2] < SLAB + 2 * AROUND ? around.hi[2] - around.lo[2] : SLAB + 2 * AROUND;
     const size_t plane = (size_t)(around.hi[0] - around.lo[0]) * (size_t)(around.hi[1] - around.lo[1]);
     float *star = malloc(plane * (size_t)planes * sizeof *star);
     ms_status status = star ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for the field E* of %d planes", planes);

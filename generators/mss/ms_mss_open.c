@@ -57,6 +57,15 @@ static int clamp_index(double value, int lo, int hi)
     return value < lo ? lo : value > hi ? hi : (int)value;
 }
 
+/* Without a machine instruction that all machines have, __builtin_popcountll is a call. */
+static int count_bits(uint64_t x)
+{
+    x -= x >> 1 & 0x5555555555555555u;
+    x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
+    x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+    return (int)(x * 0x0101010101010101u >> 56);
+}
+
 /* Open voxels inside less those outside, from <= i < to of a row. */
 static long count_row(const uint64_t *inside, const uint64_t *outside, int from, int to)
 {
@@ -69,7 +78,8 @@ static long count_row(const uint64_t *inside, const uint64_t *outside, int from,
         if ((w + 1) * WORD > to) {
             mask &= ~(uint64_t)0 >> (WORD - to % WORD);
         }
-        sum += __builtin_popcountll(inside[w] & mask) - __builtin_popcountll(outside[w] & mask);
+        const uint64_t in = inside[w] & mask, out = outside[w] & mask;
+        sum += (in ? count_bits(in) : 0) - (out ? count_bits(out) : 0);
     }
     return sum;
 }
@@ -97,17 +107,18 @@ long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball)
     return sum;
 }
 
-long ms_mss_open_fit(double *radius, const ms_mss_open *open, const double centre[3], double lo, double hi,
-                     double step)
+long ms_mss_open_fit(ms_ball *ball, const ms_mss_open *open, double lo, double hi, double step)
 {
-    long most = 0;
-    *radius = lo;
-    for (int s = 0; lo + s * step <= hi + ON_SURFACE; s++) {
-        const ms_ball ball = {{centre[0], centre[1], centre[2]}, lo + s * step};
-        const long gain = ball.radius > 0 ? ms_mss_open_gain(open, &ball) : 0;
-        if (gain > most) {
+    long most = ms_mss_open_gain(open, ball);
+    for (int up = 1; up >= -1; up -= 2) {
+        ms_ball next = *ball;
+        for (next.radius += up * step; next.radius >= lo && next.radius <= hi; next.radius += up * step) {
+            const long gain = ms_mss_open_gain(open, &next);
+            if (gain <= most) {
+                break;
+            }
             most = gain;
-            *radius = ball.radius;
+            ball->radius = next.radius;
         }
     }
     return most;

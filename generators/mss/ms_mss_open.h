@@ -24,9 +24,11 @@ void ms_mss_open_cover(ms_mss_open *open, const ms_raster *raster, const int lo[
  */
 long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball);
 
-/** Of the radii lo, lo + step, ... hi the least of those of the largest gain; that gain. */
-long ms_mss_open_fit(double *radius, const ms_mss_open *open, const double centre[3], double lo, double hi,
-                     double step);
+/**
+ * Climbs from the ball's radius, in steps, as long as the gain rises; within lo and hi.
+ * @return the gain
+ */
+long ms_mss_open_fit(ms_ball *ball, const ms_mss_open *open, double lo, double hi, double step);
 
 void ms_mss_open_free(ms_mss_open *open);
 

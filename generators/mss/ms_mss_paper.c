@@ -4,8 +4,9 @@
 #include "ms_mss_run.h"
 
 /* Of a candidate: its radius, or (E - E~) E. */
-static double rank_candidate(const ms_mss_run *m, const ms_mss_candidate *c)
+static double rank_candidate(const ms_mss_run *m, const ms_mss_candidate *c, const ms_mss_candidate *before)
 {
+    (void)before;
     if (ms_mss_run_option(m, MS_MSS_ORDER) != MS_MSS_BY_GAIN) {
         return c->ball.radius;
     }
@@ -42,8 +43,8 @@ static size_t choose_spheres(ms_ball *chosen, size_t limit, ms_mss_run *m)
 }
 
 /* Adds the spheres of a step to S~ and to the clump, and finds the new maxima. */
-static ms_status add_spheres(ms_clump *clump, ms_stop_reason *reason, ms_mss_run *m, const ms_ball *chosen, size_t count,
-                             ms_error *err)
+static ms_status add_spheres(ms_clump *clump, ms_stop_reason *reason, ms_mss_run *m, const ms_ball *chosen,
+                             size_t count, ms_error *err)
 {
     const size_t before = m->field.raster.n_balls;
     ms_status status = ms_mss_field_add(&m->field, chosen, count, err);
@@ -73,7 +74,7 @@ static ms_status look_closer(ms_stop_reason *reason, ms_mss_run *m, ms_error *er
         m->spacing = fmax(1, m->spacing / 2);
         return MS_OK;
     }
-    if ((double)m->field.weight < ms_mss_run_option(m, MS_MSS_BOOST)) {
+    if ((double)m->field.weight < ms_mss_run_option(m, MS_MSS_BOOST)) { /* 0: eq. 25 as it is */
         m->spacing = first_spacing(m);
         m->field.weight += 1;
         ms_status status = ms_mss_field_touch_all(&m->field, err);

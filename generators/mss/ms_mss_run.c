@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "mesh/ms_closest.h"
 #include "ms_mss_maxima.h"
@@ -21,7 +22,10 @@ int ms_mss_run_confine(ms_ball *ball, ms_mss_run *m)
         ball->radius = allowed / target->grid.h;
     }
     if (!(radius > 0) || radius < m->run->stop.radius) {
-        m->too_small |= radius > 0;
+        if (radius > 0) {
+#pragma omp atomic write
+            m->too_small = 1;
+        }
         return 0;
     }
     return 1;
@@ -52,48 +56,56 @@ static int place_candidate(ms_mss_candidate *c, ms_mss_run *m, const ms_mss_maxi
     c->ball.radius = c->e + ms_mss_run_option(m, MS_MSS_OFFSET);
     c->voxel = maximum->voxel;
     c->counted = 0;
-    if (!ms_mss_run_confine(&c->ball, m)) {
-        return 0;
-    }
-    c->rank = m->rank(m, c);
-    return 1;
+    return ms_mss_run_confine(&c->ball, m);
 }
 
-/* Forgets the candidates where the maxima are found anew. */
-static void forget_candidates(ms_mss_run *m)
+static int by_voxel(const void *first, const void *second)
+{
+    const ms_mss_candidate *a = first, *b = second;
+    return a->voxel < b->voxel ? -1 : a->voxel > b->voxel;
+}
+
+/* Moves the candidates where the maxima are found anew behind the others, in the order of their voxels; how many. */
+static size_t set_stale_apart(ms_mss_run *m)
 {
     size_t kept = 0;
     for (size_t c = 0; c < m->n_candidates; c++) {
         if (!ms_mss_maxima_is_stale(&m->field, m->candidates[c].voxel)) {
-            m->candidates[kept++] = m->candidates[c];
+            const ms_mss_candidate swap = m->candidates[c];
+            m->candidates[c] = m->candidates[kept];
+            m->candidates[kept++] = swap;
         }
     }
-    m->n_candidates = kept;
+    qsort(m->candidates + kept, m->n_candidates - kept, sizeof *m->candidates, by_voxel);
+    return m->n_candidates - kept;
 }
 
-static ms_status add_candidates(ms_mss_run *m, const ms_mss_maximum *maximum, size_t count, ms_error *err)
+/* Puts the new maxima in the place of the last `stale` candidates. */
+static ms_status replace_candidates(ms_mss_run *m, size_t stale, const ms_mss_maximum *maximum, size_t count,
+                                    ms_error *err)
 {
-    const size_t first = m->n_candidates;
-    if (m->n_candidates + count > m->room) {
-        const size_t room = m->n_candidates + m->n_candidates / 2 + count;
-        ms_mss_candidate *grown = realloc(m->candidates, room * sizeof *grown);
-        if (!grown) {
-            return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu maxima; use fewer cells", room);
-        }
-        m->candidates = grown;
-        m->room = room;
+    const size_t kept = m->n_candidates - stale;
+    size_t used = kept;
+    ms_mss_candidate *all = malloc((kept + count + 1) * sizeof *all);
+    if (!all) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu maxima; use fewer cells", kept + count);
     }
+    memcpy(all, m->candidates, kept * sizeof *all);
     for (size_t p = 0; p < count; p++) {
-        ms_mss_candidate *next = &m->candidates[m->n_candidates];
-        if (place_candidate(next, m, &maximum[p])) {
-            next->apart = HUGE_VAL;
-            m->n_candidates++;
+        const ms_mss_candidate key = {.voxel = maximum[p].voxel};
+        const ms_mss_candidate *before =
+            stale ? bsearch(&key, m->candidates + kept, stale, sizeof key, by_voxel) : NULL;
+        if (place_candidate(&all[used], m, &maximum[p])) {
+            all[used].rank = m->rank(m, &all[used], before);
+            all[used++].apart = HUGE_VAL;
         }
     }
-    ms_mss_candidate *added = m->candidates + first;
     for (size_t s = 0; s < m->field.raster.n_balls; s++) {
-        ms_mss_select_keep_apart(added, m->n_candidates - first, &m->field.raster.ball[s]);
+        ms_mss_select_keep_apart(all + kept, used - kept, &m->field.raster.ball[s]);
     }
+    free(m->candidates);
+    m->candidates = all;
+    m->n_candidates = used;
     return MS_OK;
 }
 
@@ -101,13 +113,13 @@ ms_status ms_mss_run_update(ms_mss_run *m, size_t first_new, ms_error *err)
 {
     ms_mss_maximum *maximum;
     size_t count;
-    forget_candidates(m);
+    const size_t stale = set_stale_apart(m);
     for (size_t s = first_new; s < m->field.raster.n_balls; s++) {
-        ms_mss_select_keep_apart(m->candidates, m->n_candidates, &m->field.raster.ball[s]);
+        ms_mss_select_keep_apart(m->candidates, m->n_candidates - stale, &m->field.raster.ball[s]);
     }
     ms_status status = ms_mss_maxima_find(&maximum, &count, &m->field, err);
     if (status == MS_OK) {
-        status = add_candidates(m, maximum, count, err);
+        status = replace_candidates(m, stale, maximum, count, err);
         free(maximum);
     }
     return status;

@@ -24,11 +24,12 @@ typedef struct ms_mss_run {
     const ms_run *run;
     ms_mss_field field;
     ms_mss_candidate *candidates; /* maxima of E* where a sphere may be placed */
-    size_t n_candidates, room;
+    size_t n_candidates;
     double spacing; /* delta_min, in voxels */
     int too_small;  /* a maximum was passed over because its sphere would be too small */
     ms_tally sum;   /* of the spheres so far */
-    double (*rank)(const struct ms_mss_run *m, const ms_mss_candidate *c); /* of a new candidate */
+    /** The rank of a new candidate; `before`: the one that was at its voxel before E* changed, NULL if none was. */
+    double (*rank)(const struct ms_mss_run *m, const ms_mss_candidate *c, const ms_mss_candidate *before);
 } ms_mss_run;
 
 static inline double ms_mss_run_option(const ms_mss_run *m, int which)

@@ -29,6 +29,11 @@ static double least_square(double spacing)
     return spacing * spacing * (1 - 1e-9);
 }
 
+int ms_mss_select_is_apart(const ms_mss_candidate *candidate, double spacing)
+{
+    return candidate->apart >= least_square(spacing);
+}
+
 /* The mean of a cluster, with the least radius of its members. */
 static ms_ball mean_ball(const ms_mss_candidate *cluster, size_t count)
 {

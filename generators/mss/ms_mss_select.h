@@ -15,6 +15,9 @@ typedef struct ms_mss_candidate {
     int counted;  /* the rank is what the sphere gains now; else no less */
 } ms_mss_candidate;
 
+/** Is it as far from all spheres as delta_min demands? */
+int ms_mss_select_is_apart(const ms_mss_candidate *candidate, double spacing);
+
 /** What is demanded of the spheres of a step. */
 typedef struct ms_mss_select_rule {
     double spacing;      /* delta_min, in voxels */
