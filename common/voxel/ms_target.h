@@ -25,8 +25,8 @@ typedef struct ms_target {
     size_t largest_piece;       /* its voxels */
 } ms_target;
 
-/* S: 1, E: 4; a generator: E~ 4, first-cover index 2, flags 1. */
-enum { MS_TARGET_BYTES_PER_VOXEL = 12 };
+/* S: 1, E: 4; a generator: E~ 4, first-cover index 2, open voxels 1/4, work space 7/4. */
+enum { MS_TARGET_BYTES_PER_VOXEL = 13 };
 
 /** Bytes that the grid, the fields of the target and of a generator take at their peak. */
 MS_API double ms_target_bytes(const double n[3]);

@@ -10,6 +10,9 @@
 /* How far S~ may stand out of S, in voxels, beyond the distance to its background that E gives; write-back checks. */
 enum { STAND_OUT = 3 };
 
+/* A box is seen in at most so many cells along an axis where a bound on a distance is enough. */
+enum { CELLS = 24 };
+
 static size_t count_box(const ms_mss_box *b)
 {
     return (size_t)(b->hi[0] - b->lo[0]) * (size_t)(b->hi[1] - b->lo[1]) * (size_t)(b->hi[2] - b->lo[2]);
@@ -119,11 +122,6 @@ static ms_status update_whole(ms_mss_field *field, ms_error *err)
     return status;
 }
 
-static int find_gap(int at, int lo, int hi)
-{
-    return at < lo ? lo - at : at >= hi ? at - hi + 1 : 0;
-}
-
 /* Takes in the voxels lo <= (i,j,k) < hi. */
 static void include_box(ms_mss_box *b, const int lo[3], const int hi[3])
 {
@@ -139,55 +137,169 @@ static void join_boxes(ms_mss_box *b, const ms_mss_box *other)
 }
 #pragma omp declare reduction(hull:ms_mss_box : join_boxes(&omp_out, &omp_in)) initializer(omp_priv = omp_orig)
 
-/*
- * The voxels whose E~ may change by what has been covered in a box: those that are covered now, and those that had
- * their nearest background voxel among these, which then was as far as their old E~.
- */
-static ms_mss_box find_changed(const ms_mss_field *field, const ms_mss_box *covered)
+/* How far the voxels in the cells of a box are from those that ball b has covered first, at least. */
+typedef struct cell_map {
+    int n[3], size;
+    float *away;
+} cell_map;
+
+/* A cell and those that touch it, so that the distance of cells less one along each axis is a bound on that of voxels. */
+static void clear_around(uint8_t *clear, const cell_map *map, int i, int j, int k)
 {
-    const ms_grid *grid = &field->target->grid;
-    const ms_mss_box reach = ms_mss_field_grow(covered, (int)ceilf(field->deepest_within), grid->n);
-    ms_mss_box changed = *covered;
-#pragma omp parallel for schedule(dynamic, 4) reduction(hull : changed) if (count_box(&reach) >= MS_GRID_THREADS_FROM)
-    for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
-        for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
-            const int z = find_gap(k, covered->lo[2], covered->hi[2]), y = find_gap(j, covered->lo[1], covered->hi[1]);
-            const float away = sqrtf((float)(z * z + y * y)); /* the distance is no less, and no less than along x */
-            const float *within = field->within + ms_grid_index(grid, 0, j, k);
-            int from = reach.lo[0], to = reach.hi[0];
-            while (from < to && (within[from] < away || within[from] < (float)(covered->lo[0] - from))) {
-                from++;
-            }
-            while (from < to && (within[to - 1] < away || within[to - 1] < (float)(to - covered->hi[0]))) {
-                to--;
-            }
-            if (from < to) {
-                include_box(&changed, (int[3]){from, j, k}, (int[3]){to, j + 1, k + 1});
+    const int *n = map->n;
+    if (clear[i + n[0] * (j + n[1] * k)] == 2) {
+        return; /* done before */
+    }
+    for (int z = k > 0 ? k - 1 : 0; z <= k + 1 && z < n[2]; z++) {
+        for (int y = j > 0 ? j - 1 : 0; y <= j + 1 && y < n[1]; y++) {
+            for (int x = i > 0 ? i - 1 : 0; x <= i + 1 && x < n[0]; x++) {
+                uint8_t *cell = &clear[x + n[0] * (y + n[1] * z)];
+                *cell = *cell == 2 ? 2 : 0;
             }
         }
     }
-    return changed;
+    clear[i + n[0] * (j + n[1] * k)] = 2;
 }
 
-/* All voxels that may be the nearest background of one in the box: none is farther than E and what S~ stands out. */
-static ms_mss_box find_surroundings(const ms_mss_field *field, const ms_mss_box *box)
+static void mark_cells(uint8_t *clear, const cell_map *map, const ms_mss_field *field, const ms_mss_box *box, size_t b,
+                       const ms_mss_box *covered)
+{
+    for (int k = covered->lo[2]; k < covered->hi[2]; k++) {
+        for (int j = covered->lo[1]; j < covered->hi[1]; j++) {
+            const uint16_t *first = field->raster.first + ms_grid_index(&field->target->grid, 0, j, k);
+            for (int i = covered->lo[0]; i < covered->hi[0]; i++) {
+                if (first[i] == b) {
+                    clear_around(clear, map, (i - box->lo[0]) / map->size, (j - box->lo[1]) / map->size,
+                                 (k - box->lo[2]) / map->size);
+                }
+            }
+        }
+    }
+}
+
+static ms_status map_cells(cell_map *map, const ms_mss_field *field, const ms_mss_box *box, size_t b,
+                           const ms_mss_box *covered, ms_error *err)
+{
+    int longest = 0;
+    size_t cells = 1;
+    for (int a = 0; a < 3; a++) {
+        longest = box->hi[a] - box->lo[a] > longest ? box->hi[a] - box->lo[a] : longest;
+    }
+    map->size = longest > 2 * CELLS ? (longest + CELLS - 1) / CELLS : 2;
+    for (int a = 0; a < 3; a++) {
+        map->n[a] = (box->hi[a] - box->lo[a] + map->size - 1) / map->size;
+        cells *= (size_t)map->n[a];
+    }
+    uint8_t *clear = malloc(cells);
+    map->away = malloc(cells * sizeof *map->away);
+    ms_status status = MS_OK;
+    if (!clear || !map->away) {
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory for %zu cells", cells);
+    } else {
+        memset(clear, 1, cells);
+        mark_cells(clear, map, field, box, b, covered);
+        for (size_t c = 0; c < cells; c++) {
+            clear[c] = clear[c] == 1;
+        }
+        status = ms_distance(map->away, clear, map->n, err);
+    }
+    for (size_t c = 0; c < cells && status == MS_OK; c++) {
+        map->away[c] *= (float)map->size;
+    }
+    free(clear);
+    return status;
+}
+
+/* Where E~ may change: rows of a box, the voxels from <= i < to of each. */
+typedef struct changed_rows {
+    ms_mss_box box;
+    int (*span)[2]; /* of row j of plane k: j - lo + rows * (k - lo); all of the box that was looked at */
+    ms_mss_box within;
+} changed_rows;
+
+static int *span_of(const changed_rows *c, int j, int k)
+{
+    const size_t rows = (size_t)(c->within.hi[1] - c->within.lo[1]);
+    return c->span[(size_t)(j - c->within.lo[1]) + rows * (size_t)(k - c->within.lo[2])];
+}
+
+/*
+ * The voxels of a row whose E~ may change by what ball b has covered: those voxels, and those that had their nearest
+ * background voxel among them, which then was as far as their old E~.
+ */
+static void find_span(int span[2], const ms_mss_field *field, const cell_map *map, const ms_mss_box *box, size_t b,
+                      int j, int k)
+{
+    const size_t start = ms_grid_index(&field->target->grid, box->lo[0], j, k);
+    const float *within = field->within + start;
+    const uint16_t *first = field->raster.first + start;
+    const float *away = map->away + (size_t)map->n[0] * ((size_t)((j - box->lo[1]) / map->size) +
+                                                         (size_t)map->n[1] * (size_t)((k - box->lo[2]) / map->size));
+    const int n = box->hi[0] - box->lo[0];
+    int from = n, to = 0;
+    for (int cell = 0; cell < map->n[0]; cell++) {
+        const int end = (cell + 1) * map->size < n ? (cell + 1) * map->size : n;
+        for (int i = cell * map->size; i < end; i++) {
+            if ((within[i] >= away[cell] && within[i] > 0) || first[i] == b) {
+                from = i < from ? i : from;
+                to = i + 1;
+            }
+        }
+    }
+    span[0] = box->lo[0] + from;
+    span[1] = box->lo[0] + (from < to ? to : from);
+}
+
+/* @param[out] changed the caller frees its spans */
+static ms_status find_changed(changed_rows *changed, const ms_mss_field *field, size_t b, const ms_mss_box *covered,
+                              ms_error *err)
+{
+    const ms_mss_box reach = ms_mss_field_grow(covered, (int)ceilf(field->deepest_within), field->target->grid.n);
+    const size_t rows = (size_t)(reach.hi[1] - reach.lo[1]) * (size_t)(reach.hi[2] - reach.lo[2]);
+    cell_map map = {.away = NULL};
+    ms_mss_box box = *covered;
+    *changed = (changed_rows){.span = malloc(rows * sizeof *changed->span), .within = reach};
+    ms_status status = changed->span ? map_cells(&map, field, &reach, b, covered, err)
+                                     : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu rows", rows);
+    if (status == MS_OK) {
+#pragma omp parallel for schedule(dynamic, 4) reduction(hull : box) if (count_box(&reach) >= MS_GRID_THREADS_FROM)
+        for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
+            for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
+                int *span = span_of(changed, j, k);
+                find_span(span, field, &map, &reach, b, j, k);
+                if (span[0] < span[1]) {
+                    include_box(&box, (int[3]){span[0], j, k}, (int[3]){span[1], j + 1, k + 1});
+                }
+            }
+        }
+    }
+    free(map.away);
+    changed->box = box;
+    return status;
+}
+
+/* All voxels that may be the nearest background of a changed one: none is farther than E and what S~ stands out. */
+static ms_mss_box find_surroundings(const ms_mss_field *field, const changed_rows *changed)
 {
     const ms_grid *grid = &field->target->grid;
+    const ms_mss_box *box = &changed->box;
     ms_mss_box part = *box;
 #pragma omp parallel for reduction(hull : part) if (count_box(box) >= MS_GRID_THREADS_FROM)
     for (int k = box->lo[2]; k < box->hi[2]; k++) {
         for (int j = box->lo[1]; j < box->hi[1]; j++) {
             const float *e = field->target->distance + ms_grid_index(grid, 0, j, k);
-            float deepest = 0;
-            int lo = box->lo[0], hi = box->hi[0];
-            for (int i = box->lo[0]; i < box->hi[0]; i++) {
+            const int *span = span_of(changed, j, k);
+            int lo = box->hi[0], hi = box->lo[0], deepest = 0;
+            for (int i = span[0]; i < span[1]; i++) {
                 const int reach = (int)e[i] + 1 + STAND_OUT;
-                deepest = e[i] > deepest ? e[i] : deepest;
+                deepest = reach > deepest ? reach : deepest;
                 lo = i - reach < lo ? i - reach : lo;
                 hi = i + reach >= hi ? i + reach + 1 : hi;
             }
-            const int reach = (int)deepest + 1 + STAND_OUT;
-            include_box(&part, (int[3]){lo, j - reach, k - reach}, (int[3]){hi, j + reach + 1, k + reach + 1});
+            if (span[0] < span[1]) {
+                include_box(&part, (int[3]){lo, j - deepest, k - deepest},
+                            (int[3]){hi, j + deepest + 1, k + deepest + 1});
+            }
         }
     }
     return ms_mss_field_grow(&part, 0, grid->n);
@@ -209,19 +321,25 @@ static int find_depth(const ms_mss_box *part, const int n[3], int i, int j, int 
     return depth;
 }
 
-/* Notes the largest E~ of a box; 0 if a distance in it may be to background beyond the part. */
-static int check_exact(ms_mss_field *field, const ms_mss_box *part, const ms_mss_box *box)
+/* Writes E~ of the changed voxels; 0 if a distance may be to background beyond the part. */
+static int write_within(ms_mss_field *field, const float *distance, const ms_mss_box *part, const changed_rows *changed)
 {
     const ms_grid *grid = &field->target->grid;
+    const ms_mss_box *box = &changed->box;
+    const size_t row = (size_t)(box->hi[0] - box->lo[0]), plane = row * (size_t)(box->hi[1] - box->lo[1]);
     float deepest = field->deepest_within;
     int exact = 1;
 #pragma omp parallel for reduction(& : exact) reduction(max : deepest) if (count_box(box) >= MS_GRID_THREADS_FROM)
     for (int k = box->lo[2]; k < box->hi[2]; k++) {
         for (int j = box->lo[1]; j < box->hi[1]; j++) {
-            const float *within = field->within + ms_grid_index(grid, 0, j, k);
-            for (int i = box->lo[0]; i < box->hi[0]; i++) {
-                exact &= within[i] <= 1 + STAND_OUT || within[i] <= (float)find_depth(part, grid->n, i, j, k);
-                deepest = within[i] > deepest ? within[i] : deepest;
+            const float *from = distance + plane * (size_t)(k - box->lo[2]) + row * (size_t)(j - box->lo[1]);
+            float *within = field->within + ms_grid_index(grid, 0, j, k);
+            const int *span = span_of(changed, j, k);
+            for (int i = span[0]; i < span[1]; i++) {
+                const float d = from[i - box->lo[0]];
+                exact &= d <= 1 + STAND_OUT || d <= (float)find_depth(part, grid->n, i, j, k);
+                deepest = d > deepest ? d : deepest;
+                within[i] = d;
             }
         }
     }
@@ -230,49 +348,62 @@ static int check_exact(ms_mss_field *field, const ms_mss_box *part, const ms_mss
 }
 
 /* @param[out] done 0 if the part proved too small */
-static ms_status update_part(int *done, ms_mss_field *field, const ms_mss_box *part, const ms_mss_box *box,
+static ms_status update_part(int *done, ms_mss_field *field, const ms_mss_box *part, const changed_rows *changed,
                              ms_error *err)
 {
-    const ms_grid *grid = &field->target->grid;
+    const ms_mss_box *box = &changed->box;
     int n[3], lo[3], hi[3];
     for (int a = 0; a < 3; a++) {
         n[a] = part->hi[a] - part->lo[a];
         lo[a] = box->lo[a] - part->lo[a];
         hi[a] = box->hi[a] - part->lo[a];
     }
-    const size_t voxels = count_box(part), apart[2] = {(size_t)grid->n[0], (size_t)grid->n[0] * (size_t)grid->n[1]};
-    uint8_t *covered = malloc(voxels);
+    const size_t row = (size_t)(hi[0] - lo[0]), apart[2] = {row, row * (size_t)(hi[1] - lo[1])};
+    uint8_t *covered = malloc(count_box(part));
+    float *distance = malloc(count_box(box) * sizeof *distance);
+    ms_status status = MS_OK;
     *done = 0;
-    if (!covered) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
+    if (!covered || !distance) {
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", count_box(part));
+    } else {
+        copy_covered(covered, field, part);
+        status = ms_distance_box(distance, apart, covered, n, lo, hi, err);
     }
-    copy_covered(covered, field, part);
-    float *to = field->within + ms_grid_index(grid, box->lo[0], box->lo[1], box->lo[2]);
-    const ms_status status = ms_distance_box(to, apart, covered, n, lo, hi, err);
+    *done = status == MS_OK && write_within(field, distance, part, changed);
     free(covered);
-    *done = status == MS_OK && check_exact(field, part, box);
+    free(distance);
     return status;
 }
 
+/* What a sphere has covered first. */
+typedef struct covered_box {
+    size_t ball;
+    ms_mss_box box;
+} covered_box;
+
 /* Brings E~ up to date where one sphere has covered voxels; *cost grows by the voxels that it took. */
-static ms_status update_around(int *done, size_t *cost, ms_mss_field *field, const ms_mss_box *covered, ms_error *err)
+static ms_status update_around(int *done, size_t *cost, ms_mss_field *field, const covered_box *covered, ms_error *err)
 {
     const size_t all = ms_grid_voxels(&field->target->grid);
-    const ms_mss_box box = find_changed(field, covered), part = find_surroundings(field, &box);
-    const size_t columns =
-        (size_t)(box.hi[0] - box.lo[0]) * (size_t)(box.hi[1] - box.lo[1]) * (size_t)(part.hi[2] - part.lo[2]);
-    *cost += (count_box(&part) + columns + count_box(&box)) / 3;
+    changed_rows changed;
     *done = 0;
-    /* no more memory than the flags of the whole grid would take, and no more time */
-    if (*cost > all || count_box(&part) + sizeof(float) * columns > all) {
-        return MS_OK;
+    ms_status status = find_changed(&changed, field, covered->ball, &covered->box, err);
+    if (status == MS_OK) {
+        const ms_mss_box *box = &changed.box, part = find_surroundings(field, &changed);
+        const size_t columns = count_box(box) / (size_t)(box->hi[2] - box->lo[2]) * (size_t)(part.hi[2] - part.lo[2]);
+        const size_t bytes = count_box(&part) + sizeof(float) * (columns + count_box(box));
+        *cost += (count_box(&part) + columns + count_box(box)) / 3;
+        if (*cost <= all && bytes <= all / 4 * 7) { /* else the whole grid is sooner, or takes less memory */
+            status = add_changed(field, box, err);
+            status = status == MS_OK ? update_part(done, field, &part, &changed, err) : status;
+        }
     }
-    ms_status status = add_changed(field, &box, err);
-    return status == MS_OK ? update_part(done, field, &part, &box, err) : status;
+    free(changed.span);
+    return status;
 }
 
 /* Adds spheres to S~; lists the boxes of what each has covered. */
-static ms_status cover_balls(ms_mss_box *covered, size_t *n_covered, ms_mss_field *field, const ms_ball *balls,
+static ms_status cover_balls(covered_box *covered, size_t *n_covered, ms_mss_field *field, const ms_ball *balls,
                              size_t count, ms_error *err)
 {
     const ms_raster *raster = &field->raster;
@@ -281,9 +412,10 @@ static ms_status cover_balls(ms_mss_box *covered, size_t *n_covered, ms_mss_fiel
     for (size_t b = 0; b < count && status == MS_OK; b++) {
         status = ms_raster_add(&field->raster, &balls[b], 1, err);
         if (status == MS_OK && raster->hi[0] > raster->lo[0]) {
-            ms_mss_box *next = &covered[(*n_covered)++];
-            memcpy(next->lo, raster->lo, sizeof next->lo);
-            memcpy(next->hi, raster->hi, sizeof next->hi);
+            covered_box *next = &covered[(*n_covered)++];
+            next->ball = raster->n_balls - 1;
+            memcpy(next->box.lo, raster->lo, sizeof next->box.lo);
+            memcpy(next->box.hi, raster->hi, sizeof next->box.hi);
         }
     }
     return status;
@@ -293,7 +425,7 @@ ms_status ms_mss_field_add(ms_mss_field *field, const ms_ball *balls, size_t cou
 {
     size_t n_covered = 0, cost = 0;
     int done = 1;
-    ms_mss_box *covered = malloc((count + 1) * sizeof *covered);
+    covered_box *covered = malloc((count + 1) * sizeof *covered);
     field->n_changed = 0;
     if (!covered) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);

@@ -44,6 +44,10 @@ void ms_mss_open_cover(ms_mss_open *open, const ms_raster *raster, const int lo[
             const uint16_t *first = raster->first + ms_grid_index(raster->grid, 0, j, k);
             const size_t row = ((size_t)j + (size_t)open->n[1] * (size_t)k) * open->words;
             for (int i = lo[0]; i < hi[0]; i++) {
+                if (!(open->inside[row + (size_t)(i / WORD)] | open->outside[row + (size_t)(i / WORD)])) {
+                    i |= WORD - 1; /* nothing is open in this word */
+                    continue;
+                }
                 const uint64_t keep = ~((uint64_t)(first[i] != MS_RASTER_NONE) << i % WORD);
                 open->inside[row + (size_t)(i / WORD)] &= keep;
                 open->outside[row + (size_t)(i / WORD)] &= keep;
