@@ -12,7 +12,7 @@
 static const double LEAST_OVER_E = -0.5, FIRST_OVER_E = 0.25, MOST_OVER_E = 1, RADIUS_STEP = 0.25;
 
 /* A step takes all maxima that gain at least this share of what the best one does. */
-static const double SHARE = 0.5;
+static const double SHARE = 0.35;
 
 /* w, and delta_min in voxels, to begin with, where they are left to us. With w = 1 smooth bodies run out of maxima that
  * are worth their sphere (D of pear and octahedron by 50 is a third to a half higher), 3 to 9 differ by some percent. */
@@ -140,9 +140,7 @@ static ms_status add_spheres(ms_clump *clump, ms_stop_reason *reason, best *b, c
         status = ms_mss_run_accept(clump, reason, m, before, err);
     }
     if (status == MS_OK && *reason == MS_STOP_NOT) {
-        for (size_t c = 0; c < m->field.n_changed; c++) {
-            ms_mss_open_cover(&b->open, &m->field.raster, m->field.changed[c].lo, m->field.changed[c].hi);
-        }
+        ms_mss_open_cover(&b->open, &m->field.raster, before);
         status = ms_mss_run_update(m, before, err);
         mark_overlapping(m, before);
     }

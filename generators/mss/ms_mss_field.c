@@ -381,10 +381,29 @@ typedef struct covered_box {
     ms_mss_box box;
 } covered_box;
 
-/* Brings E~ up to date where one sphere has covered voxels; *cost grows by the voxels that it took. */
-static ms_status update_around(int *done, size_t *cost, ms_mss_field *field, const covered_box *covered, ms_error *err)
+/* What transforming a part takes, in voxels of which a lower envelope is made along two axes. */
+static size_t cost_of_part(const ms_mss_box *box, const ms_mss_box *part)
 {
-    const size_t all = ms_grid_voxels(&field->target->grid);
+    const size_t lines_y = count_box(part) / (size_t)(part->hi[0] - part->lo[0]) * (size_t)(box->hi[0] - box->lo[0]);
+    const size_t lines_z = lines_y / (size_t)(part->hi[1] - part->lo[1]) * (size_t)(box->hi[1] - box->lo[1]);
+    return count_box(part) / 4 + (lines_y + lines_z) / 2;
+}
+
+/* That of the grid: background is passed over. */
+static size_t cost_of_whole(const ms_target *target)
+{
+    return target->voxels + ms_grid_voxels(&target->grid) / 4;
+}
+
+/*
+ * Brings E~ up to date where one sphere has covered voxels, unless the whole grid is sooner.
+ *
+ * @param[in,out] cost what the spheres before took
+ * @param         left how many spheres there are with this one, which are taken to cost the same
+ */
+static ms_status update_around(int *done, size_t *cost, ms_mss_field *field, const covered_box *covered, size_t left,
+                               ms_error *err)
+{
     changed_rows changed;
     *done = 0;
     ms_status status = find_changed(&changed, field, covered->ball, &covered->box, err);
@@ -392,11 +411,12 @@ static ms_status update_around(int *done, size_t *cost, ms_mss_field *field, con
         const ms_mss_box *box = &changed.box, part = find_surroundings(field, &changed);
         const size_t columns = count_box(box) / (size_t)(box->hi[2] - box->lo[2]) * (size_t)(part.hi[2] - part.lo[2]);
         const size_t bytes = count_box(&part) + sizeof(float) * (columns + count_box(box));
-        *cost += (count_box(&part) + columns + count_box(box)) / 3;
-        if (*cost <= all && bytes <= all / 4 * 7) { /* else the whole grid is sooner, or takes less memory */
+        const size_t here = cost_of_part(box, &part), all = ms_grid_voxels(&field->target->grid);
+        if (*cost + left * here <= cost_of_whole(field->target) && bytes <= all / 4 * 7) {
             status = add_changed(field, box, err);
             status = status == MS_OK ? update_part(done, field, &part, &changed, err) : status;
         }
+        *cost += here;
     }
     free(changed.span);
     return status;
@@ -432,7 +452,7 @@ ms_status ms_mss_field_add(ms_mss_field *field, const ms_ball *balls, size_t cou
     }
     ms_status status = cover_balls(covered, &n_covered, field, balls, count, err);
     for (size_t b = 0; b < n_covered && done && status == MS_OK; b++) {
-        status = update_around(&done, &cost, field, &covered[b], err);
+        status = update_around(&done, &cost, field, &covered[b], n_covered - b, err);
     }
     free(covered);
     return done || status != MS_OK ? status : update_whole(field, err);

@@ -37,28 +37,42 @@ void ms_mss_open_free(ms_mss_open *open)
     free(open->outside);
 }
 
-void ms_mss_open_cover(ms_mss_open *open, const ms_raster *raster, const int lo[3], const int hi[3])
-{
-    for (int k = lo[2]; k < hi[2]; k++) {
-        for (int j = lo[1]; j < hi[1]; j++) {
-            const uint16_t *first = raster->first + ms_grid_index(raster->grid, 0, j, k);
-            const size_t row = ((size_t)j + (size_t)open->n[1] * (size_t)k) * open->words;
-            for (int i = lo[0]; i < hi[0]; i++) {
-                if (!(open->inside[row + (size_t)(i / WORD)] | open->outside[row + (size_t)(i / WORD)])) {
-                    i |= WORD - 1; /* nothing is open in this word */
-                    continue;
-                }
-                const uint64_t keep = ~((uint64_t)(first[i] != MS_RASTER_NONE) << i % WORD);
-                open->inside[row + (size_t)(i / WORD)] &= keep;
-                open->outside[row + (size_t)(i / WORD)] &= keep;
-            }
-        }
-    }
-}
-
 static int clamp_index(double value, int lo, int hi)
 {
     return value < lo ? lo : value > hi ? hi : (int)value;
+}
+
+/* Takes the covered voxels of a row out of its bits. */
+static void cover_row(uint64_t *inside, uint64_t *outside, const uint16_t *first, int from, int to)
+{
+    for (int i = from; i < to; i++) {
+        if (!(inside[i / WORD] | outside[i / WORD])) {
+            i |= WORD - 1; /* nothing is open in this word */
+            continue;
+        }
+        const uint64_t keep = ~((uint64_t)(first[i] != MS_RASTER_NONE) << i % WORD);
+        inside[i / WORD] &= keep;
+        outside[i / WORD] &= keep;
+    }
+}
+
+void ms_mss_open_cover(ms_mss_open *open, const ms_raster *raster, size_t first_new)
+{
+    for (size_t b = first_new; b < raster->n_balls; b++) {
+        const ms_ball *ball = &raster->ball[b];
+        int lo[3], hi[3];
+        for (int a = 0; a < 3; a++) { /* half a voxel of it is enough to cover one */
+            lo[a] = clamp_index(floor(ball->centre[a] - ball->radius), 0, open->n[a]);
+            hi[a] = clamp_index(ceil(ball->centre[a] + ball->radius) + 1, 0, open->n[a]);
+        }
+        for (int k = lo[2]; k < hi[2]; k++) {
+            for (int j = lo[1]; j < hi[1]; j++) {
+                const size_t row = ((size_t)j + (size_t)open->n[1] * (size_t)k) * open->words;
+                cover_row(open->inside + row, open->outside + row, raster->first + ms_grid_index(raster->grid, 0, j, k),
+                          lo[0], hi[0]);
+            }
+        }
+    }
 }
 
 /* Without a machine instruction that all machines have, __builtin_popcountll is a call. */

@@ -14,8 +14,8 @@ typedef struct ms_mss_open {
 /** Nothing is covered. @param[out] open the caller frees it @return MS_OK; MS_ERR_NOMEM. A quarter byte a voxel */
 ms_status ms_mss_open_init(ms_mss_open *open, const ms_grid *grid, ms_error *err);
 
-/** Takes out the voxels of a box that the raster covers. */
-void ms_mss_open_cover(ms_mss_open *open, const ms_raster *raster, const int lo[3], const int hi[3]);
+/** Takes out the voxels that the balls of a raster from `first_new` on cover. Cost: the voxels of their boxes. */
+void ms_mss_open_cover(ms_mss_open *open, const ms_raster *raster, size_t first_new);
 
 /**
  * By how many voxels |S xor S~| falls if a ball is added: those inside less those outside that it covers first, by their
