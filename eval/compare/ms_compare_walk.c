@@ -212,7 +212,7 @@ static ms_status compare_method(compare_walk *w, const ms_method *method, ms_err
     const ms_numbers *list = &w->a->asked;
     const double *asked = method->generator ? list->value : AS_IT_IS;
     const size_t count = method->generator ? list->count : 1;
-    const size_t batch = method->generator && method->generator->nested ? count : 1;
+    const size_t batch = method->generator && ms_generator_is_nested(method->generator, &method->settings) ? count : 1;
     ms_status status = MS_OK;
     for (size_t k = 0; k < count && status == MS_OK; k += batch) {
         size_t there = 0;

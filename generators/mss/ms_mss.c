@@ -77,6 +77,7 @@ const ms_generator ms_generator_mss = {
     .summary = "spheres at maxima of the distance field, then of that and how far the spheres fall short of it",
     .source = "F. Buchele, T. Poeschel, P. Mueller, Powder Technology (2026), arXiv:2603.05877",
     .nested = 1,
+    .unnested_by = "polish",
     .options = OPTIONS,
     .generate = generate_by_mss,
 };

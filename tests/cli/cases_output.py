@@ -244,10 +244,10 @@ class Memory(Output):
         self.assertLess(peak, 200, "MB taken")
 
     def test_limit(self):
-        """A grid of 304 x 204 x 104 voxels of 12 bytes is 77 MB."""
-        self.assert_refused("generate", "box.obj", "--max-memory", "77M", "-n", "1", code=1,
-                            says=("304x204x104", "0.0774 GB", "0.077 GB", "--max-memory"))
-        for size in ("78M", "78000k", "78000000", "0.078G", "1T"):
+        """A grid of 304 x 204 x 104 voxels of 13 bytes is 84 MB."""
+        self.assert_refused("generate", "box.obj", "--max-memory", "83M", "-n", "1", code=1,
+                            says=("304x204x104", "0.0838 GB", "0.083 GB", "--max-memory"))
+        for size in ("84M", "84000k", "84000000", "0.084G", "1T"):
             self.mskit("generate", "box.obj", "--max-memory", size, "-n", "1", "-o", "a.csv")
 
     def test_the_estimate_holds(self):
