@@ -7,15 +7,15 @@
 #include "ms_mss_run.h"
 
 /* Radii that are tried, in voxels from E: E is to the centre of the nearest background voxel, half a voxel beyond the
- * surface, and spheres that stand out a little lower the mismatch. Twice as far out is better up to 50 spheres and worse
- * from 100 up, where what the first spheres cover too much cannot be made good. */
+ * surface, and spheres that stand out a little lower the mismatch. Farther out is better for few
+ * spheres and worse for many, where what the first spheres cover too much cannot be made good. */
 static const double LEAST_OVER_E = -0.5, FIRST_OVER_E = 0.25, MOST_OVER_E = 1, RADIUS_STEP = 0.25;
 
 /* A step takes all maxima that gain at least this share of what the best one does. */
 static const double SHARE = 0.35;
 
 /* w, and delta_min in voxels, to begin with, where they are left to us. With w = 1 smooth bodies run out of maxima that
- * are worth their sphere (D of pear and octahedron by 50 is a third to a half higher), 3 to 9 differ by some percent. */
+ * are worth their sphere and end above other codes; 3 to 9 differ by some percent. */
 static const double FIRST_BOOST = 5, LAST_BOOST = 40, FIRST_SPACING = 3;
 
 /* Half the diagonal of a voxel. */

@@ -143,7 +143,7 @@ typedef struct cell_map {
     float *away;
 } cell_map;
 
-/* A cell and those that touch it, so that the distance of cells less one along each axis is a bound on that of voxels. */
+/* A cell and those that touch it: the distance to these, in cells, is a bound on that of voxels. */
 static void clear_around(uint8_t *clear, const cell_map *map, int i, int j, int k)
 {
     const int *n = map->n;
