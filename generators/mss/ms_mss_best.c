@@ -42,7 +42,12 @@ static double bound_gain(const ms_mss_run *m, const ms_mss_candidate *c, const m
 static double fit_ball(ms_ball *ball, double e, best *b)
 {
     ball->radius = e + FIRST_OVER_E;
-    const long gain = ms_mss_open_fit(ball, &b->open, fmax(e + LEAST_OVER_E, 0.5), e + MOST_OVER_E, RADIUS_STEP);
+    const double least = fmax(e + LEAST_OVER_E, 0.5);
+    long gain = ms_mss_open_fit(ball, &b->open, least, e + MOST_OVER_E, RADIUS_STEP);
+    if (gain <= 0) { /* specks of a voxel: the climb ends on a step too wide */
+        ball->radius = least;
+        gain = ms_mss_open_gain(&b->open, ball);
+    }
     const double fitted = ball->radius;
     if (!ms_mss_run_confine(ball, b->m)) {
         return 0;

@@ -18,8 +18,8 @@ ms_status ms_mss_open_init(ms_mss_open *open, const ms_grid *grid, ms_error *err
 void ms_mss_open_cover(ms_mss_open *open, const ms_raster *raster, size_t first_new);
 
 /**
- * By how many voxels |S xor S~| falls if a ball is added: those inside less those outside that it covers first, by their
- * centres.
+ * By how many voxels |S xor S~| falls if a ball is added: those inside less those outside that it covers first, by
+ * their centres.
  * Cost: the rows of the ball, 64 voxels at a time.
  */
 long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball);

@@ -59,7 +59,7 @@ void ms_mss_run_report(size_t chosen, void *context);
 /** How many spheres the run may still place. */
 size_t ms_mss_run_left(const ms_mss_run *m);
 
-/** The variant of the paper: all maxima of a step, radii inscribed. Parameters, errors: as of ms_generator's generate. */
+/** The variant of the paper: all maxima of a step, radii inscribed. Parameters: as of ms_generator's generate. */
 ms_status ms_mss_paper_generate(ms_clump *clump, ms_stop_reason *reason, ms_mss_run *m, ms_error *err);
 
 /** The variant of mskit: the maxima that gain most, each with the radius that suits it best. Parameters likewise. */
