@@ -109,13 +109,13 @@ static void lower_envelope(uint32_t *f, int first, int last, const lines *w)
 }
 
 /* The part of a line of n voxels that is asked for: from <= u < to. */
-typedef struct span {
+typedef struct line_part {
     int n, from, to;
-} span;
+} line_part;
 
 /* One line: background stays 0 and cuts it into runs, each with an envelope of its own that
  * the background voxels at its ends belong to. Runs with nothing that is asked for are left as they are. */
-static void transform_line(uint32_t *f, const span *s, const lines *w)
+static void transform_line(uint32_t *f, const line_part *s, const lines *w)
 {
     int u = 0;
     while (u < s->to) {
@@ -135,7 +135,7 @@ static void transform_line(uint32_t *f, const span *s, const lines *w)
 
 /* Transforms a block of up to BLOCK neighbouring lines, their voxels `stride` apart, in the
  * work space; 0 if all are background. */
-static int transform_block(const uint32_t *grid, int width, const span *s, size_t stride, const lines *w)
+static int transform_block(const uint32_t *grid, int width, const line_part *s, size_t stride, const lines *w)
 {
     uint32_t any = 0;
     for (int u = 0; u < s->n; u++) {
@@ -158,7 +158,7 @@ static int block_width(int n, int at)
 
 /* The pass along y of one plane of constant z, rows of `width_x` voxels; what is asked for goes to `out`, which may be
  * the plane itself. */
-static void transform_plane(uint32_t *out, const uint32_t *plane, int width_x, const span *y, const lines *w)
+static void transform_plane(uint32_t *out, const uint32_t *plane, int width_x, const line_part *y, const lines *w)
 {
     for (int i = 0; i < width_x; i += BLOCK) {
         const int width = block_width(width_x, i);
@@ -185,8 +185,8 @@ static void write_background(float *roots, int width, int n, size_t stride)
 
 /* The pass along z of all lines with one y, and the roots of what is asked for. `row` is the first voxel of that y,
  * of planes `stride` apart; the roots' planes are `apart`. */
-static void transform_slice(float *roots, size_t apart, const uint32_t *row, size_t stride, int width_x, const span *z,
-                            const lines *w)
+static void transform_slice(float *roots, size_t apart, const uint32_t *row, size_t stride, int width_x,
+                            const line_part *z, const lines *w)
 {
     for (int i = 0; i < width_x; i += BLOCK) {
         const int width = block_width(width_x, i);
@@ -222,7 +222,7 @@ ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms
         return status;
     }
     const size_t stride = (size_t)n[0] * (size_t)n[1];
-    const span y = {n[1], 0, n[1]}, z = {n[2], 0, n[2]};
+    const line_part y = {n[1], 0, n[1]}, z = {n[2], 0, n[2]};
     uint32_t *squared = (uint32_t *)(void *)distance;
     int out_of_memory = 0;
 #pragma omp parallel reduction(| : out_of_memory) if (stride * (size_t)n[2] >= MS_GRID_THREADS_FROM)
@@ -260,7 +260,7 @@ typedef struct box_job {
     uint32_t *between; /* after x and y: the box's columns, all planes */
     int wide, high;    /* of the box, along x and y */
     int lo_x, n_x;
-    span y, z;
+    line_part y, z;
 } box_job;
 
 /* The passes along x and y of plane k. */
