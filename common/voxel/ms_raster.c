@@ -202,8 +202,9 @@ static int clamp_index(double value, int lo, int hi)
     return value < lo ? lo : value > hi ? hi : (int)value;
 }
 
-/* The first voxel from i on that is not covered, or `to`. Most of a row is covered: four voxels in a word are passed over
- * at once, if none of the four numbers is the highest (of the complement, none is 0: Warren, Hacker's Delight, 6-1). */
+/* The first voxel from i on that is not covered, or `to`. Most of a row is covered: four voxels in a word are passed
+ * over at once, if none of the four numbers is the highest (of the complement, none is 0: Warren, Hacker's Delight,
+ * 6-1). */
 static int skip_covered(const uint16_t *first, int i, int to)
 {
     const uint64_t ones = 0x0001000100010001u, highest = 0x8000800080008000u;

@@ -163,7 +163,8 @@ static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_
     ms_progress_say_remarks(&run, &line);
     ms_progress_open(&line);
     const double start = omp_get_wtime();
-    ms_progress_catch(a->recipe.generator->nested); /* what others have before their end is no clump */
+    ms_progress_catch(
+        ms_generator_is_nested(a->recipe.generator, run.settings)); /* what others have before their end is no clump */
     ms_status status = ms_generator_run(&r->clump, &r->reason, a->recipe.generator, &run, err);
     ms_progress_catch(0);
     const double generated = omp_get_wtime();

@@ -83,7 +83,7 @@ static ms_status plan_run(compare_planner *p, ms_compare_run run, ms_error *err)
 static size_t count_asked(size_t *batch, const ms_comparison *a, const ms_method *method)
 {
     const size_t count = method->generator ? a->asked.count : 1;
-    *batch = method->generator && method->generator->nested ? count : 1;
+    *batch = method->generator && ms_generator_is_nested(method->generator, &method->settings) ? count : 1;
     return count;
 }
 

@@ -13,7 +13,7 @@ MASSES = ("epsilon products_epsilon centre_epsilon optimal least most error_mass
           "error_products seconds")
 PARTICLE = "scale density mass centre inertia principal_moments principal_axes"
 SECONDS = "read voxelize distance generate score cpu"
-RECORD = ("generator options.spacing options.boost options.radius-offset options.order options.confine options.plane "
+RECORD = ("generator options.variant options.spacing options.boost options.polish options.radius-offset options.order options.confine options.plane "
           "seed until.spheres stopped_by")
 
 
@@ -157,7 +157,7 @@ class Columns(Case):
     def test_json_of_scene(self):
         run = self.mskit("scene", "grain.stl", "-g", "mss", "--knee", 0.3, "--max-spheres", 4, "--cells", 10,
                          "--json").json
-        options = "spacing boost radius-offset order confine plane"
+        options = "variant spacing boost polish radius-offset order confine plane"
         self.assertEqual(keys(run), ["generator"] + under("options", options) +
                          "seed max_spheres min_radius goal.knee particles spheres mean_dice least_gain slack".split() +
                          under("even", "each spheres mean_dice") + under("smallest", "radius shape") +
