@@ -1,5 +1,6 @@
 #include "ms_caps.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/ms_vector.h"
@@ -29,16 +30,23 @@ void ms_caps_sort(ms_caps_window *s)
     qsort(s->end, s->n_small, sizeof *s->end, compare_ends);
 }
 
-static void set_cap(ms_caps *block, size_t at, const ms_ball *ball, const ms_ball *other, double square)
+static void set_cap(ms_caps *block, size_t at, const ms_ball *ball, const ms_ball *other, double square,
+                    const double turn[3][3])
 {
-    const double r = ball->radius;
+    const double r = ball->radius, least = (square + (r - other->radius) * (r + other->radius)) / (2 * r * r);
+    double way[3];
     for (int c = 0; c < 3; c++) {
-        block->axis[c][at] = (float)((other->centre[c] - ball->centre[c]) / r);
+        way[c] = (other->centre[c] - ball->centre[c]) / r;
     }
-    block->least[at] = (float)((square + (r - other->radius) * (r + other->radius)) / (2 * r * r));
+    for (int c = 0; c < 3; c++) {
+        block->axis[c][at] = (float)(turn[0][c] * way[0] + turn[1][c] * way[1] + turn[2][c] * way[2]);
+    }
+    block->least[at] = (float)least;
+    block->length[at] = (float)(sqrt(square) / r);
+    block->root[at] = (float)sqrt(fmax(0, square / (r * r) - least * least));
 }
 
-size_t ms_caps_find(ms_caps *block, const ms_caps_window *s, uint32_t self)
+size_t ms_caps_find(ms_caps *block, const ms_caps_window *s, uint32_t self, const double turn[3][3])
 {
     const ms_ball *ball = &s->ball[self];
     const double from = ball->centre[0] - ball->radius - s->widest, to = ball->centre[0] + ball->radius;
@@ -58,7 +66,7 @@ size_t ms_caps_find(ms_caps *block, const ms_caps_window *s, uint32_t self)
         const double square = ms_squared_distance(ball->centre, other->centre);
         const double deep = ball->radius - other->radius; /* those inside cover nothing of it */
         if (e->ball != self && square < reach * reach && !(deep > 0 && square < deep * deep)) {
-            set_cap(&block[found / MS_CAPS_BLOCK], found % MS_CAPS_BLOCK, ball, other, square);
+            set_cap(&block[found / MS_CAPS_BLOCK], found % MS_CAPS_BLOCK, ball, other, square, turn);
             found++;
         }
     }
@@ -67,6 +75,8 @@ size_t ms_caps_find(ms_caps *block, const ms_caps_window *s, uint32_t self)
             block[found / MS_CAPS_BLOCK].axis[c][found % MS_CAPS_BLOCK] = 0;
         }
         block[found / MS_CAPS_BLOCK].least[found % MS_CAPS_BLOCK] = 1; /* covers nothing */
+        block[found / MS_CAPS_BLOCK].length[found % MS_CAPS_BLOCK] = 0;
+        block[found / MS_CAPS_BLOCK].root[found % MS_CAPS_BLOCK] = 0;
     }
     return found / MS_CAPS_BLOCK;
 }

@@ -29,6 +29,8 @@ enum { MS_CAPS_BLOCK = 8 };
 typedef struct ms_caps {
     float axis[3][MS_CAPS_BLOCK]; /* to the other centres, in radii */
     float least[MS_CAPS_BLOCK];
+    float length[MS_CAPS_BLOCK]; /* of the axis */
+    float root[MS_CAPS_BLOCK];   /* of length^2 - least^2: length times the sine of the cap's angle */
 } ms_caps;
 
 /** Sorts the ends of `count` balls. */
@@ -38,9 +40,10 @@ void ms_caps_sort(ms_caps_window *s);
  * What other spheres cover of one's surface.
  *
  * @param[out] block room for count / MS_CAPS_BLOCK + 1
+ * @param      turn  its columns are the axes of the frame in which normals are given
  * @return how many blocks
  */
-size_t ms_caps_find(ms_caps *block, const ms_caps_window *s, uint32_t self);
+size_t ms_caps_find(ms_caps *block, const ms_caps_window *s, uint32_t self, const double turn[3][3]);
 
 /** Is the place with this normal covered? The block that covers it is tried first next time. */
 static inline int ms_caps_cover(size_t *first, const ms_caps *block, size_t blocks, const float normal[3])
@@ -55,6 +58,26 @@ static inline int ms_caps_cover(size_t *first, const ms_caps *block, size_t bloc
         }
         if (covered) {
             *first = at;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/** Does one of the caps cover all normals within an angle, up to a right one, of a centre? If in doubt, no. */
+static inline int ms_caps_cover_group(const ms_caps *block, size_t blocks, const float centre[3], float cosine,
+                                      float sine)
+{
+    for (size_t b = 0; b < blocks; b++) {
+        const ms_caps *c = &block[b];
+        int covered = 0;
+#pragma omp simd reduction(| : covered)
+        for (int i = 0; i < MS_CAPS_BLOCK; i++) {
+            const float along = c->axis[0][i] * centre[0] + c->axis[1][i] * centre[1] + c->axis[2][i] * centre[2];
+            /* The cap's angle less the group's: its cosine by the addition theorem. */
+            covered |= (along > c->least[i] * cosine + c->root[i] * sine) & (c->least[i] < c->length[i] * cosine);
+        }
+        if (covered) {
             return 1;
         }
     }

@@ -62,6 +62,7 @@ typedef struct solver {
     float *walled; /* the target's distances, cut down to those to planes; NULL without planes */
     ms_coarse_view coarse;
     ms_signed_distance field;
+    ms_lattice lattice;
     ms_surface_fit fit;
     double steps, planned; /* of the fit, done and in all: for who watches */
     size_t count, wanted;  /* spheres that are fitted; asked for, mirror images among them */
@@ -74,6 +75,7 @@ static void free_solver(solver *s)
 {
     ms_coarse_view_free(&s->coarse);
     ms_signed_distance_free(&s->field);
+    ms_lattice_free(&s->lattice);
     free(s->walled);
     free(s->ball);
     free(s->best);
@@ -321,10 +323,13 @@ static ms_status begin_solver(solver *s, const ms_run *run, const ms_variational
         status = ms_signed_distance_alloc(&s->field, run->target,
                                           s->coarse.step < FIELD_STEP ? s->coarse.step : FIELD_STEP, err);
     }
+    if (status == MS_OK) {
+        status = ms_lattice_alloc(&s->lattice, settings->points, err);
+    }
     s->fit = (ms_surface_fit){.field = &s->field,
                               .bounds = settings->bounds,
                               .mirror = settings->mirror,
-                              .points = settings->points,
+                              .lattice = &s->lattice,
                               .seed = run->seed};
     s->fit.bounds.least = fmax(find_least_radius(run), LEAST_RADIUS);
     return status;
