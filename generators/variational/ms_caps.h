@@ -36,14 +36,21 @@ typedef struct ms_caps {
 /** Sorts the ends of `count` balls. */
 void ms_caps_sort(ms_caps_window *s);
 
+/** A neighbour, and in which class of sizes its cap is. */
+typedef struct ms_caps_near {
+    uint32_t ball;
+    int class;
+} ms_caps_near;
+
 /**
- * What other spheres cover of one's surface.
+ * What other spheres cover of one's surface: the largest caps first, about, so that what is covered is soon known to be.
  *
+ * @param[out] near  room for count
  * @param[out] block room for count / MS_CAPS_BLOCK + 1
  * @param      turn  its columns are the axes of the frame in which normals are given
  * @return how many blocks
  */
-size_t ms_caps_find(ms_caps *block, const ms_caps_window *s, uint32_t self, const double turn[3][3]);
+size_t ms_caps_find(ms_caps *block, ms_caps_near *near, const ms_caps_window *s, uint32_t self, const double turn[3][3]);
 
 /** Is the place with this normal covered? The block that covers it is tried first next time. */
 static inline int ms_caps_cover(size_t *first, const ms_caps *block, size_t blocks, const float normal[3])
@@ -64,24 +71,13 @@ static inline int ms_caps_cover(size_t *first, const ms_caps *block, size_t bloc
     return 0;
 }
 
-/** Does one of the caps cover all normals within an angle, up to a right one, of a centre? If in doubt, no. */
-static inline int ms_caps_cover_group(const ms_caps *block, size_t blocks, const float centre[3], float cosine,
-                                      float sine)
-{
-    for (size_t b = 0; b < blocks; b++) {
-        const ms_caps *c = &block[b];
-        int covered = 0;
-#pragma omp simd reduction(| : covered)
-        for (int i = 0; i < MS_CAPS_BLOCK; i++) {
-            const float along = c->axis[0][i] * centre[0] + c->axis[1][i] * centre[1] + c->axis[2][i] * centre[2];
-            /* The cap's angle less the group's: its cosine by the addition theorem. */
-            covered |= (along > c->least[i] * cosine + c->root[i] * sine) & (c->least[i] < c->length[i] * cosine);
-        }
-        if (covered) {
-            return 1;
-        }
-    }
-    return 0;
-}
+/**
+ * Which caps matter for the normals within an angle of a centre.
+ *
+ * @param[out] out    those that reach there, packed; room for `blocks`
+ * @param      cosine of the angle, and its sine
+ * @return how many blocks; -1: one cap covers them all (if in doubt, it does not)
+ */
+int ms_caps_narrow(ms_caps *out, const ms_caps *block, size_t blocks, const float centre[3], float cosine, float sine);
 
 #endif

@@ -8,6 +8,9 @@
 void ms_exposed_free(ms_exposed *e)
 {
     free(e->block);
+    free(e->near);
+    free(e->coarse);
+    free(e->fine);
     free(e->normal);
     *e = (ms_exposed){0};
 }
@@ -15,36 +18,50 @@ void ms_exposed_free(ms_exposed *e)
 int ms_exposed_alloc(ms_exposed *out, const ms_lattice *lattice, size_t count)
 {
     const size_t most = (size_t)lattice->level[MS_LATTICE_LEVELS - 1].points;
-    *out = (ms_exposed){.block = malloc((count / MS_CAPS_BLOCK + 1) * sizeof *out->block),
+    const size_t blocks = count / MS_CAPS_BLOCK + 1;
+    *out = (ms_exposed){.block = malloc(blocks * sizeof *out->block),
+                        .near = malloc((count + 1) * sizeof *out->near),
+                        .coarse = malloc(blocks * sizeof *out->coarse),
+                        .fine = malloc(blocks * sizeof *out->fine),
                         .normal = malloc(most * sizeof *out->normal)};
-    if (!out->block || !out->normal) {
+    if (!out->block || !out->near || !out->coarse || !out->fine || !out->normal) {
         ms_exposed_free(out);
     }
     return out->block != NULL;
 }
 
-/* Normals of the lattice at one level that are not covered, turned. */
+/* Adds those normals of a fine group that are not covered, turned. */
+static void list_group(ms_exposed *e, const ms_lattice *lattice, const ms_lattice_level *level,
+                       const ms_lattice_group *group, size_t blocks)
+{
+    size_t first = 0;
+    for (int p = group->first; p < group->first + group->count; p++) {
+        const float *d = level->direction[p];
+        if (ms_caps_cover(&first, e->fine, blocks, d)) {
+            continue;
+        }
+        const double at[3] = {(double)d[0], (double)d[1], (double)d[2]};
+        for (int c = 0; c < 3; c++) {
+            e->normal[e->count][c] = ms_dot(lattice->turn[c], at);
+        }
+        e->count++;
+    }
+}
+
 static void list_level(ms_exposed *e, const ms_lattice *lattice, int which)
 {
     const ms_lattice_level *level = &lattice->level[which];
-    size_t first = 0;
     e->count = 0;
     e->points = level->points;
-    for (int g = 0; g < level->groups; g++) {
-        const ms_lattice_group *group = &level->group[g];
-        if (which > 0 && ms_caps_cover_group(e->block, e->blocks, group->centre, group->cosine, group->sine)) {
-            continue;
-        }
-        for (int p = group->first; p < group->first + group->count; p++) {
-            const float *d = level->direction[p];
-            if (ms_caps_cover(&first, e->block, e->blocks, d)) {
-                continue;
+    for (int c = 0; c < level->coarses; c++) {
+        const ms_lattice_group *coarse = &level->coarse[c];
+        const int near = ms_caps_narrow(e->coarse, e->block, e->blocks, coarse->centre, coarse->cosine, coarse->sine);
+        for (int f = coarse->first; near >= 0 && f < coarse->first + coarse->count; f++) {
+            const ms_lattice_group *fine = &level->fine[f];
+            const int nearer = ms_caps_narrow(e->fine, e->coarse, (size_t)near, fine->centre, fine->cosine, fine->sine);
+            if (nearer >= 0) {
+                list_group(e, lattice, level, fine, (size_t)nearer);
             }
-            const double at[3] = {(double)d[0], (double)d[1], (double)d[2]};
-            for (int c = 0; c < 3; c++) {
-                e->normal[e->count][c] = ms_dot(lattice->turn[c], at);
-            }
-            e->count++;
         }
     }
 }
@@ -52,7 +69,7 @@ static void list_level(ms_exposed *e, const ms_lattice *lattice, int which)
 int ms_exposed_find(ms_exposed *out, const ms_lattice *lattice, const ms_caps_window *s, uint32_t self, int level,
                     int enough)
 {
-    out->blocks = ms_caps_find(out->block, s, self, lattice->turn);
+    out->blocks = ms_caps_find(out->block, out->near, s, self, lattice->turn);
     for (;; level++) {
         list_level(out, lattice, level);
         if (out->count >= enough || level == MS_LATTICE_LEVELS - 1) {

@@ -9,6 +9,8 @@
 typedef struct ms_exposed {
     ms_caps *block; /* what others cover of it, in the lattice's frame */
     size_t blocks;
+    ms_caps_near *near;
+    ms_caps *coarse, *fine; /* those that reach to a group */
     double (*normal)[3]; /* at the places, in the spheres' frame */
     int count;
     int points; /* each place stands for 1 / points of the sphere */

@@ -8,8 +8,8 @@
 #include "base/ms_random.h"
 #include "base/ms_vector.h"
 
-/* Points of a group, about. Of the time alone. */
-enum { GROUP = 24 };
+/* Points of a fine group, and fine groups in a coarse one along either side, about. Of the time alone. */
+enum { GROUP = 16, SIDE = 4 };
 
 static const double PI = 3.14159265358979323846;
 
@@ -23,34 +23,61 @@ static void find_direction(double out[3], int p, int points)
     out[2] = z;
 }
 
-/* Bands of equal areas between parallels, cut into sectors that are as wide as high about. */
-static int count_bands(int points)
+/* Coarse groups: bands of equal areas between parallels, cut into sectors about as wide as high. Fine ones: these cut
+ * into so many bands and sectors each. */
+typedef struct cells {
+    int bands, side;
+} cells;
+
+static int count_sectors(int band, const cells *c)
 {
-    return (int)ceil(sqrt((double)points / GROUP));
+    const double z = 1 - (2 * band + 1.0) / c->bands;
+    return 1 + (int)(PI * c->bands * (1 - z * z));
 }
 
-static int count_sectors(int band, int bands)
+static cells choose_cells(int points)
 {
-    const double z = 1 - (2 * band + 1.0) / bands;
-    return 1 + (int)(PI * bands * (1 - z * z) * 0.5 * 2);
+    const double bands = sqrt(points / (GROUP * 2.0 * PI / 3)); /* the sum of all sectors is 2 pi / 3 bands^2, about */
+    cells c = {.bands = (int)ceil(bands / SIDE)};
+    c.side = bands > c.bands ? (int)(bands / c.bands + 0.5) : 1;
+    return c;
 }
 
-static int find_group(const double direction[3], int bands)
+static int count_coarse(const cells *c)
 {
-    int band = (int)((1 - direction[2]) / 2 * bands), group = 0;
-    for (int b = 0; b < band; b++) {
-        group += count_sectors(b, bands);
+    int sum = 0;
+    for (int band = 0; band < c->bands; band++) {
+        sum += count_sectors(band, c);
     }
-    const int sectors = count_sectors(band, bands);
-    const int sector = (int)((atan2(direction[1], direction[0]) / (2 * PI) + 0.5) * sectors);
-    return group + (sector < sectors ? sector : sectors - 1);
+    return sum;
 }
 
-/* The middle of a group and its size. */
-static void bound_group(ms_lattice_group *group, float (*direction)[3])
+static int clamp_index(double at, int count)
+{
+    const int i = (int)at;
+    return i < 0 ? 0 : i < count ? i : count - 1;
+}
+
+/* The fine group of a direction; those of a coarse one stand together. */
+static int find_fine(const double direction[3], const cells *c)
+{
+    const double down = (1 - direction[2]) / 2 * c->bands, around = atan2(direction[1], direction[0]) / (2 * PI) + 0.5;
+    const int band = clamp_index(down, c->bands), sectors = count_sectors(band, c);
+    const int sector = clamp_index(around * sectors, sectors);
+    const int row = clamp_index((down - band) * c->side, c->side);
+    const int column = clamp_index((around * sectors - sector) * c->side, c->side);
+    int coarse = sector;
+    for (int b = 0; b < band; b++) {
+        coarse += count_sectors(b, c);
+    }
+    return (coarse * c->side + row) * c->side + column;
+}
+
+/* The middle of some directions, and how far the farthest is from it. */
+static void bound_group(ms_lattice_group *group, float (*direction)[3], int count)
 {
     double sum[3] = {0}, least = 1;
-    for (int p = group->first; p < group->first + group->count; p++) {
+    for (int p = 0; p < count; p++) {
         for (int c = 0; c < 3; c++) {
             sum[c] += (double)direction[p][c];
         }
@@ -60,7 +87,7 @@ static void bound_group(ms_lattice_group *group, float (*direction)[3])
         sum[c] = length > 0 ? sum[c] / length : 0;
         group->centre[c] = (float)sum[c];
     }
-    for (int p = group->first; p < group->first + group->count; p++) {
+    for (int p = 0; p < count; p++) {
         const double at[3] = {(double)direction[p][0], (double)direction[p][1], (double)direction[p][2]};
         least = fmin(least, ms_dot(sum, at));
     }
@@ -69,41 +96,52 @@ static void bound_group(ms_lattice_group *group, float (*direction)[3])
     group->sine = (float)sqrt(1 - least * least);
 }
 
-static ms_status alloc_level(ms_lattice_level *level, int points, ms_error *err)
+/* Puts directions in the order of their groups. */
+static void fill_level(ms_lattice_level *level, const cells *c)
 {
-    const int bands = count_bands(points);
-    int groups = 0;
-    for (int b = 0; b < bands; b++) {
-        groups += count_sectors(b, bands);
-    }
-    *level = (ms_lattice_level){.points = points,
-                                .groups = groups,
-                                .direction = malloc((size_t)points * sizeof *level->direction),
-                                .group = calloc((size_t)groups, sizeof *level->group)};
-    if (!level->direction || !level->group) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for %d points on each sphere", points);
-    }
+    const int fines = c->side * c->side;
     double at[3];
-    for (int p = 0; p < points; p++) {
-        find_direction(at, p, points);
-        level->group[find_group(at, bands)].count++;
+    for (int p = 0; p < level->points; p++) {
+        find_direction(at, p, level->points);
+        level->fine[find_fine(at, c)].count++;
     }
-    for (int g = 1; g < groups; g++) {
-        level->group[g].first = level->group[g - 1].first + level->group[g - 1].count;
-        level->group[g - 1].count = 0;
+    for (int g = 0, first = 0; g < level->fines; g++) {
+        level->fine[g].first = first;
+        first += level->fine[g].count;
+        level->fine[g].count = 0;
     }
-    level->group[groups - 1].count = 0;
-    for (int p = 0; p < points; p++) {
-        find_direction(at, p, points);
-        ms_lattice_group *group = &level->group[find_group(at, bands)];
+    for (int p = 0; p < level->points; p++) {
+        find_direction(at, p, level->points);
+        ms_lattice_group *group = &level->fine[find_fine(at, c)];
         float *to = level->direction[group->first + group->count++];
-        for (int c = 0; c < 3; c++) {
-            to[c] = (float)at[c];
+        for (int k = 0; k < 3; k++) {
+            to[k] = (float)at[k];
         }
     }
-    for (int g = 0; g < groups; g++) {
-        bound_group(&level->group[g], level->direction);
+    for (int g = 0; g < level->fines; g++) {
+        bound_group(&level->fine[g], level->direction + level->fine[g].first, level->fine[g].count);
     }
+    for (int g = 0; g < level->coarses; g++) {
+        const ms_lattice_group *first = &level->fine[g * fines], *last = first + fines - 1;
+        level->coarse[g] = (ms_lattice_group){.first = g * fines, .count = fines};
+        bound_group(&level->coarse[g], level->direction + first->first, last->first + last->count - first->first);
+    }
+}
+
+static ms_status alloc_level(ms_lattice_level *level, int points, ms_error *err)
+{
+    const cells c = choose_cells(points);
+    const int coarses = count_coarse(&c), fines = coarses * c.side * c.side;
+    *level = (ms_lattice_level){.points = points,
+                                .fines = fines,
+                                .coarses = coarses,
+                                .direction = malloc((size_t)points * sizeof *level->direction),
+                                .fine = calloc((size_t)fines, sizeof *level->fine),
+                                .coarse = calloc((size_t)coarses, sizeof *level->coarse)};
+    if (!level->direction || !level->fine || !level->coarse) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %d points on each sphere", points);
+    }
+    fill_level(level, &c);
     return MS_OK;
 }
 
@@ -140,7 +178,8 @@ void ms_lattice_free(ms_lattice *lattice)
 {
     for (int l = 0; l < MS_LATTICE_LEVELS; l++) {
         free(lattice->level[l].direction);
-        free(lattice->level[l].group);
+        free(lattice->level[l].fine);
+        free(lattice->level[l].coarse);
     }
     ms_random_free(lattice->rng);
     *lattice = (ms_lattice){0};

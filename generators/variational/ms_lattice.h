@@ -6,18 +6,18 @@
 
 #include "base/ms_error.h"
 
-/** Directions near one another, as part of a sphere that is covered as a whole or looked at one by one. */
+/** Directions near one another: they are covered together, or looked at one by one. */
 typedef struct ms_lattice_group {
     float centre[3];
     float cosine, sine; /* of the angle from the centre to the farthest */
-    int first, count;
+    int first, count;   /* of the finer groups, or of the directions */
 } ms_lattice_group;
 
 /** A Fibonacci lattice: points of equal areas along a spiral, in the order of their groups. */
 typedef struct ms_lattice_level {
-    int points, groups;
+    int points, fines, coarses;
     float (*direction)[3];
-    ms_lattice_group *group;
+    ms_lattice_group *fine, *coarse; /* groups of directions, and groups of those */
 } ms_lattice_level;
 
 /** Each level has twice the points of the one before. */

@@ -15,6 +15,11 @@ void ms_signed_distance_free(ms_signed_distance *field)
     }
 }
 
+int ms_signed_distance_is_exact(const ms_signed_distance *field)
+{
+    return field->target->mesh && field->target->closed;
+}
+
 static size_t node_index(const ms_signed_distance *field, int i, int j, int k)
 {
     return (size_t)i + (size_t)field->n[0] * ((size_t)j + (size_t)field->n[1] * (size_t)k);
@@ -69,7 +74,7 @@ ms_status ms_signed_distance_alloc(ms_signed_distance *field, const ms_target *t
     for (size_t v = 0; v < nodes; v++) {
         field->phi[v] = NAN;
     }
-    const ms_status status = target->mesh && target->closed ? MS_OK : fill_from_voxels(field, err);
+    const ms_status status = ms_signed_distance_is_exact(field) ? MS_OK : fill_from_voxels(field, err);
     if (status != MS_OK) {
         ms_signed_distance_free(field);
     }

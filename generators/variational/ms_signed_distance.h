@@ -34,6 +34,9 @@ ms_status ms_signed_distance_alloc(ms_signed_distance *field, const ms_target *t
  */
 double ms_signed_distance_at(const ms_signed_distance *field, const double place[3]);
 
+/** Nonzero if it knows the surface better than voxels do: that of a closed mesh. */
+int ms_signed_distance_is_exact(const ms_signed_distance *field);
+
 void ms_signed_distance_free(ms_signed_distance *field);
 
 MS_C_END

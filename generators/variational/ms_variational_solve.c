@@ -10,6 +10,8 @@
 #include "ms_coverage_count.h"
 #include "ms_pattern_search.h"
 #include "ms_prune.h"
+#include "ms_surface_tally.h"
+#include <stdio.h>
 #include "ms_variational_start.h"
 
 /* What was measured at the numbers below: one of them changed at a time, mean D over five seeds of a femur with 70
@@ -128,32 +130,54 @@ static ms_status fit_spheres(solver *s, int steps, double from, double to, ms_er
     return ms_surface_fit_steps(&s->fit, s->ball, s->count, steps, damping, err);
 }
 
-static ms_status count_mismatch(int64_t *out, solver *s, ms_error *err)
+/* |S xor U| in voxels, by their count and by the exposed surface. */
+typedef struct mismatch {
+    double count, surface;
+} mismatch;
+
+static ms_status find_mismatch(mismatch *out, solver *s, ms_error *err)
 {
     ms_coverage_count o;
-    const ms_status status = ms_coverage_count_open(&o, &s->run->target->grid, s->all, expand_images(s), err);
-    *out = o.mismatch;
+    ms_status status = ms_coverage_count_open(&o, &s->run->target->grid, s->all, expand_images(s), err);
+    *out = (mismatch){.count = (double)o.mismatch};
     ms_coverage_count_close(&o);
+    if (status == MS_OK && ms_signed_distance_is_exact(&s->field)) {
+        status = ms_surface_tally(NULL, &out->surface, &s->fit, s->ball, s->count, err);
+    }
     return status;
+}
+
+/* Is it so small that the count of voxels is chance? */
+static int is_fine(const solver *s, const mismatch *m)
+{
+    const ms_target *target = s->run->target;
+    const double h = target->grid.h;
+    return ms_signed_distance_is_exact(&s->field) && m->count < SHARP * ms_mesh_area(target->mesh) / (h * h);
+}
+
+static int is_better(const solver *s, const mismatch *after, const mismatch *before)
+{
+    return is_fine(s, before) ? is_fine(s, after) && after->surface < before->surface : after->count < before->count;
 }
 
 /* A fit that is taken back where it makes the mismatch larger. Of spheres that may not stick out, the
  * mismatch says nothing before they are confined. */
 static ms_status improve_fit(solver *s, int steps, double from, double to, ms_error *err)
 {
-    int64_t before = 0, after = 0;
+    mismatch before = {0}, after = {0};
     if (ms_bounds_are_set(&s->fit.bounds)) {
         return fit_spheres(s, steps, from, to, err);
     }
     memcpy(s->best, s->ball, s->count * sizeof *s->ball);
-    ms_status status = count_mismatch(&before, s, err);
+    ms_status status = find_mismatch(&before, s, err);
     if (status == MS_OK) {
         status = fit_spheres(s, steps, from, to, err);
     }
     if (status == MS_OK) {
-        status = count_mismatch(&after, s, err);
+        status = find_mismatch(&after, s, err);
     }
-    if (status == MS_OK && after >= before) {
+    if (getenv("TRACE")) fprintf(stderr, "improve %zu: %g %g -> %g %g fine %d\n", s->count, before.count, before.surface, after.count, after.surface, is_fine(s, &before));
+    if (status == MS_OK && !is_better(s, &after, &before)) {
         memcpy(s->ball, s->best, s->count * sizeof *s->ball);
     }
     return status;
@@ -162,14 +186,13 @@ static ms_status improve_fit(solver *s, int steps, double from, double to, ms_er
 /* For spheres that fit so well that the look-up's error would show: nodes at every voxel. */
 static ms_status sharpen_field(solver *s, ms_error *err)
 {
-    const ms_target *target = s->run->target;
-    int64_t left = 0;
-    if (s->field.step == 1 || !target->mesh || !target->closed) {
+    mismatch left = {0};
+    if (s->field.step == 1 || !ms_signed_distance_is_exact(&s->field)) {
         return MS_OK;
     }
-    ms_status status = count_mismatch(&left, s, err);
-    const double h = target->grid.h, area = ms_mesh_area(target->mesh) / (h * h);
-    if (status == MS_OK && (double)left < SHARP * area) {
+    ms_status status = find_mismatch(&left, s, err);
+    if (status == MS_OK && is_fine(s, &left)) {
+        const ms_target *target = s->run->target;
         ms_signed_distance_free(&s->field);
         status = ms_signed_distance_alloc(&s->field, target, 1, err);
     }
@@ -203,7 +226,7 @@ static ms_status prune_surplus(solver *s, ms_error *err)
     ms_status status = MS_OK;
     while (status == MS_OK && count > s->wanted) {
         const size_t gone = count - s->wanted < most ? count - s->wanted : most;
-        status = ms_prune_cheapest(s->ball, &s->count, gone, &s->coarse, &s->settings->mirror, err);
+        status = ms_prune_cheapest(s->ball, &s->count, gone, &s->coarse, &s->fit, err);
         if (status == MS_OK) {
             status = fit_spheres(s, DROP_STEPS, 0.5, 0.3, err);
         }
@@ -338,11 +361,11 @@ static ms_status begin_solver(solver *s, const ms_run *run, const ms_variational
 /* Adds spheres, drops those above the number that is wanted; taken back where it makes the mismatch no smaller. */
 static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
 {
-    int64_t before = 0, after = 0;
+    mismatch before = {0}, after = {0};
     const size_t count = s->count;
     ms_ball *kept = malloc((count + 1) * sizeof *kept);
     ms_status status =
-        kept ? count_mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
+        kept ? find_mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     if (status == MS_OK) {
         memcpy(kept, s->ball, count * sizeof *kept);
         status = add_to_cover(s, more, err);
@@ -360,9 +383,10 @@ static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
         status = search_within_bounds(s, err);
     }
     if (status == MS_OK) {
-        status = count_mismatch(&after, s, err);
+        status = find_mismatch(&after, s, err);
     }
-    if (status == MS_OK && after >= before) {
+    if (getenv("TRACE")) fprintf(stderr, "round %zu: %g %g -> %g %g fine %d\n", s->count, before.count, before.surface, after.count, after.surface, is_fine(s, &before));
+    if (status == MS_OK && !is_better(s, &after, &before)) {
         memcpy(s->ball, kept, count * sizeof *kept);
         s->count = count;
     }
@@ -373,12 +397,11 @@ static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
 /* Puts idle spheres where the union leaves most, and drops those that are idle there, too. */
 static ms_status replace_idle(solver *s, ms_error *err)
 {
-    const ms_grid *grid = &s->run->target->grid;
-    ms_status status = ms_prune_idle(s->ball, &s->count, grid, &s->settings->mirror, err);
+    ms_status status = ms_prune_idle(s->ball, &s->count, &s->fit, err);
     for (int round = 0; round < REPAIRS && status == MS_OK && count_with_images(s) < s->wanted; round++) {
         status = add_and_prune(s, s->wanted - count_with_images(s), err);
         if (status == MS_OK) {
-            status = ms_prune_idle(s->ball, &s->count, grid, &s->settings->mirror, err);
+            status = ms_prune_idle(s->ball, &s->count, &s->fit, err);
         }
     }
     return status;
