@@ -10,6 +10,7 @@ MS_C_BEGIN
 typedef struct ms_signed_distance {
     const ms_target *target; /* borrowed */
     int step;                /* between nodes */
+    int cubic;               /* nonzero: looked up by cubic polynomials, else linearly */
     int n[3];                /* nodes: node i lies on voxel i * step */
     float *phi;              /* at the nodes; NAN: not asked for yet */
 } ms_signed_distance;

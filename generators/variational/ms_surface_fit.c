@@ -11,23 +11,26 @@
 /* D below: femur with 70 spheres and bunny with 30, 60 cells, mean of two seeds; 0.0210 and 0.0409 as they are. */
 
 /* Ridge added to the normal equations, as part of the sum of weights. 1e-5: 0.0213, 0.0409; 1e-2: 0.0209, 0.0407. */
-static const double RIDGE = 1e-3;
 
 /* No step is longer than this part of the radius. 0.1: 0.0209, 0.0409; 1: 0.0209, 0.0409: not sensitive. */
 static const double LONGEST_STEP = 0.25;
 
 /* Part of the last step that is made again: chains of spheres settle sooner. 0: 0.0208, 0.0408; 0.8: 0.0210, 0.0408: no
  * gain was seen on these two. */
-static const double MOMENTUM = 0.5;
 
 /* Weight of places that stick out farther than is allowed. Inscribed, as is 0.0518, 0.0830; 1: 0.0544, 0.0886; 30:
  * 0.0512, 0.0837. */
 static const double STIFF = 1000;
 
 /* Distances below this, in voxels, weigh the same. 0.05: 0.0208, 0.0408; 1: 0.0216, 0.0412. */
-static const double NEAR = 0.25;
 
-static double ENOUGH = 0.25, PLENTY = 0.6;
+#define E(n,d) (getenv(n)?atof(getenv(n)):d)
+#define ENOUGH E("ENOUGH",0.25)
+#define PLENTY E("PLENTY",0.6)
+#define NEAR E("NEAR",0.25)
+#define MOMENTUM E("MOM",0.5)
+#define RIDGE E("RIDGE",1e-3)
+
 /* The steps that the spheres want to make. */
 typedef struct move {
     double centre[3], radius;

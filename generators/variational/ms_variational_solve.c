@@ -19,12 +19,12 @@
 
 /* Spheres at the start: so many times those asked for, and some more. Without: 0.0217, 0.0487; 1.5: 0.0212, 0.0436;
  * 2: 0.0225, 0.0432: which is best depends on the shape. 2 more: 0.0462 to 0.0450 for the bunny. */
-static const double SURPLUS = 1.25;
+
 enum { MORE = 2 };
 
 /* Part of the surplus that is dropped at a time. All at once: 0.0219 in 0.50 s, 0.0490; half of it: no better, 0.77
  * s. */
-static const double DROP = 0.1;
+
 
 /* Part of the spheres that a round adds, one round after the other: what one cannot better, another may.
  * Effort 2 at 60 cells, one seed: 0.0209 and 0.0405 in turn, 0.0209 and 0.0401 to 0.0405 with one of them alone: no
@@ -42,12 +42,22 @@ enum { FIELD_STEP = 2 };
 /* Mean distance between the surfaces of spheres and shape, in voxels, below which the field's own error matters.
  * Ellipsoid, 40 spheres, 150 cells: 0.00054 with 0 as with 0.03, 0.00056 where it is always sharpened: no gain was
  * seen. */
-static const double SHARP = 0.03;
+
 
 /* Of the fits, and of the search within bounds. Half or twice as many: D within 0.5 %, below what the seed changes;
  * 10 rounds of the search with protrusion 0: D 0.0507 and not 0.0502, 40: the same as 20. The damping of the first
  * three fits changed by 0.2 or 0.3 at its start, or not falling at all in the first: within 0.6 %. */
-enum { START_STEPS = 40, DROP_STEPS = 20, LONG_STEPS = 100, LAST_STEPS = 60, SEARCH_ROUNDS = 20 };
+#define E(n,d) (getenv(n)?atof(getenv(n)):d)
+#define START_STEPS (int)E("START",40)
+#define DROP_STEPS (int)E("DROPS",20)
+#define LONG_STEPS (int)E("LONG",100)
+#define LAST_STEPS (int)E("LAST",60)
+#define SURPLUS E("SURPLUS",1.25)
+#define DROP E("DROP",0.1)
+#define SHARP E("SHARP",0.1)
+#define EXACT E("EXACT",0.01)
+enum {SEARCH_ROUNDS = 20};
+
 
 /* Of idle spheres. Ellipsoid with 100 spheres at 60 cells: none 0.00049 in 0.71 s, three 0.00048 in 0.95 s. */
 enum { REPAIRS = 3 };
@@ -187,14 +197,17 @@ static ms_status improve_fit(solver *s, int steps, double from, double to, ms_er
 static ms_status sharpen_field(solver *s, ms_error *err)
 {
     mismatch left = {0};
-    if (s->field.step == 1 || !ms_signed_distance_is_exact(&s->field)) {
+    if (s->field.cubic || !ms_signed_distance_is_exact(&s->field)) {
         return MS_OK;
     }
     ms_status status = find_mismatch(&left, s, err);
     if (status == MS_OK && is_fine(s, &left)) {
         const ms_target *target = s->run->target;
+        if (getenv("RE")) {
         ms_signed_distance_free(&s->field);
         status = ms_signed_distance_alloc(&s->field, target, 1, err);
+        }
+        s->field.cubic = 1;
     }
     return status;
 }
@@ -415,6 +428,9 @@ static ms_status run_stages(solver *s, ms_error *err)
     s->planned = count_steps(s, surplus);
     if (surplus > 0) {
         status = fit_spheres(s, START_STEPS, 0.8, 0.2, err);
+    }
+    if (status == MS_OK) {
+        status = sharpen_field(s, err);
     }
     if (status == MS_OK) {
         status = prune_surplus(s, err);
