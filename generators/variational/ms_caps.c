@@ -36,8 +36,7 @@ void ms_caps_sort(ms_caps_window *s)
     qsort(s->end, s->n_small, sizeof *s->end, compare_ends);
 }
 
-static void set_cap(ms_caps *block, size_t at, const ms_ball *ball, const ms_ball *other,
-                    const double turn[3][3])
+static void set_cap(ms_caps *block, size_t at, const ms_ball *ball, const ms_ball *other, const double turn[3][3])
 {
     const double r = ball->radius, square = ms_squared_distance(ball->centre, other->centre);
     const double least = (square + (r - other->radius) * (r + other->radius)) / (2 * r * r);

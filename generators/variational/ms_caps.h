@@ -50,7 +50,8 @@ typedef struct ms_caps_near {
  * @param      turn  its columns are the axes of the frame in which normals are given
  * @return how many blocks
  */
-size_t ms_caps_find(ms_caps *block, ms_caps_near *near, const ms_caps_window *s, uint32_t self, const double turn[3][3]);
+size_t ms_caps_find(ms_caps *block, ms_caps_near *near, const ms_caps_window *s, uint32_t self,
+                    const double turn[3][3]);
 
 /** Is the place with this normal covered? The block that covers it is tried first next time. */
 static inline int ms_caps_cover(size_t *first, const ms_caps *block, size_t blocks, const float normal[3])

@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/ms_vector.h"
-
 void ms_exposed_free(ms_exposed *e)
 {
     free(e->block);
@@ -40,14 +38,11 @@ static void list_group(ms_exposed *e, const ms_lattice *lattice, const ms_lattic
         if (ms_caps_cover(&first, e->fine, blocks, d)) {
             continue;
         }
-        const double at[3] = {(double)d[0], (double)d[1], (double)d[2]};
-        for (int c = 0; c < 3; c++) {
-            e->normal[e->count][c] = ms_dot(lattice->turn[c], at);
-        }
-        e->count++;
+        ms_lattice_normal(e->normal[e->count++], lattice, d);
     }
 }
 
+/* The normals of the lattice at one level that are not covered. */
 static void list_level(ms_exposed *e, const ms_lattice *lattice, int which)
 {
     const ms_lattice_level *level = &lattice->level[which];
@@ -90,7 +85,8 @@ double ms_exposed_depth(const ms_exposed *e, const ms_lattice *lattice, const do
         const ms_caps *c = &e->block[b];
         for (int i = 0; i < MS_CAPS_BLOCK; i++) {
             /* Where the ray leaves the other sphere: t^2 - 2 t u.axis + |axis|^2 - r^2 = 0. */
-            const double along = (double)c->axis[0][i] * u[0] + (double)c->axis[1][i] * u[1] + (double)c->axis[2][i] * u[2];
+            const double along =
+                (double)c->axis[0][i] * u[0] + (double)c->axis[1][i] * u[1] + (double)c->axis[2][i] * u[2];
             const double rest = along * along - (2 * (double)c->least[i] - 1);
             if (c->length[i] > 0 && rest > 0) {
                 last = fmax(last, along + sqrt(rest));

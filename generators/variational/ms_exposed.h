@@ -11,7 +11,7 @@ typedef struct ms_exposed {
     size_t blocks;
     ms_caps_near *near;
     ms_caps *coarse, *fine; /* those that reach to a group */
-    double (*normal)[3]; /* at the places, in the spheres' frame */
+    double (*normal)[3];    /* at the places, in the spheres' frame */
     int count;
     int points; /* each place stands for 1 / points of the sphere */
 } ms_exposed;

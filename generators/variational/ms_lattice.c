@@ -174,6 +174,14 @@ void ms_lattice_turn(ms_lattice *lattice, unsigned long seed)
     memcpy(lattice->turn, turn, sizeof turn);
 }
 
+void ms_lattice_normal(double normal[3], const ms_lattice *lattice, const float direction[3])
+{
+    const double at[3] = {(double)direction[0], (double)direction[1], (double)direction[2]};
+    for (int c = 0; c < 3; c++) {
+        normal[c] = ms_dot(lattice->turn[c], at);
+    }
+}
+
 void ms_lattice_free(ms_lattice *lattice)
 {
     for (int l = 0; l < MS_LATTICE_LEVELS; l++) {

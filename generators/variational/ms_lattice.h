@@ -39,6 +39,9 @@ ms_status ms_lattice_alloc(ms_lattice *lattice, int points, ms_error *err);
 /** Turns it by a random quaternion, uniform among rotations: the same for the same seed. */
 void ms_lattice_turn(ms_lattice *lattice, unsigned long seed);
 
+/** One of its directions in the spheres' frame. */
+void ms_lattice_normal(double normal[3], const ms_lattice *lattice, const float direction[3]);
+
 void ms_lattice_free(ms_lattice *lattice);
 
 #endif

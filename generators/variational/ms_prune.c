@@ -6,8 +6,10 @@
 #include "base/ms_vector.h"
 #include "ms_surface_tally.h"
 
-/* XXX */
+/* Voxels of the view up to which a count says less than the exposed surface. */
 static const double FEW = 100;
+
+/* A sphere is idle whose loss is less than this part of the mismatch that is a sphere's share. */
 static const double IDLE = 0.05;
 
 /* Counts all spheres and their images on the grid; `all` is how many there are. */
@@ -78,15 +80,16 @@ static ms_status count_losses(double *loss, const ms_ball *ball, size_t count, c
 static ms_status find_losses(double *loss, const ms_ball *ball, size_t count, const ms_coarse_view *view,
                              const ms_surface_fit *fit, ms_error *err)
 {
-    double *fine = malloc((count + 1) * sizeof *fine);
-    ms_status status = fine ? ms_surface_tally(fine, NULL, fit, ball, count, err)
-                            : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", count);
-    if (status == MS_OK) {
-        status = count_losses(loss, ball, count, view, &fit->mirror, err);
-    }
     const double cell = (double)view->step * view->step * view->step;
+    double *fine = malloc((count + 1) * sizeof *fine);
+    ms_status status = fine ? count_losses(loss, ball, count, view, &fit->mirror, err)
+                            : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", count);
+    const int exact = ms_signed_distance_is_exact(fit->field);
+    if (status == MS_OK && exact) {
+        status = ms_surface_tally(fine, NULL, fit, ball, count, err);
+    }
     for (size_t b = 0; b < count && status == MS_OK; b++) {
-        loss[b] = fabs(loss[b]) < FEW && ms_signed_distance_is_exact(fit->field) ? fine[b] : loss[b] * cell;
+        loss[b] = exact && fabs(loss[b]) < FEW ? fine[b] : loss[b] * cell;
     }
     free(fine);
     return status;
@@ -177,18 +180,20 @@ static size_t drop_idle(ms_ball *ball, size_t *count, ms_coverage_count *o, cons
     return gone;
 }
 
+/* By voxels; where the surface is known better than by them, also by what is exposed. */
 ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_surface_fit *fit, ms_error *err)
 {
     const ms_coarse_view whole = {.step = 1, .grid = fit->field->target->grid}; /* borrows the voxels */
-    const int exact = ms_signed_distance_is_exact(fit->field);
-    double *loss = malloc((*count + 1) * sizeof *loss), mismatch;
+    double *loss = calloc(*count + 1, sizeof *loss), mismatch = 0;
     size_t all, gone = 1;
     ms_coverage_count o = {0};
     ms_status status = loss ? count_all(&o, &all, ball, *count, &whole, &fit->mirror, err)
                             : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
     while (status == MS_OK && gone > 0) {
-        status = ms_surface_tally(loss, &mismatch, fit, ball, *count, err);
-        const double least = exact ? IDLE * mismatch / (double)*count : HUGE_VAL;
+        if (ms_signed_distance_is_exact(fit->field)) {
+            status = ms_surface_tally(loss, &mismatch, fit, ball, *count, err);
+        }
+        const double least = IDLE * mismatch / (double)*count;
         gone = status == MS_OK ? drop_idle(ball, count, &o, loss, least, &whole, &fit->mirror) : 0;
     }
     ms_coverage_count_close(&o);

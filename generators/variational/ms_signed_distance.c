@@ -81,13 +81,22 @@ ms_status ms_signed_distance_alloc(ms_signed_distance *field, const ms_target *t
     return status;
 }
 
+/* Farther from the surface than half a voxel's diagonal, all of the voxel about a node is on one side. */
 static float compute_node(const ms_signed_distance *field, size_t node)
 {
     const ms_grid *grid = &field->target->grid;
-    const size_t nx = (size_t)field->n[0], ny = (size_t)field->n[1], step = (size_t)field->step;
-    const double at[3] = {(double)(node % nx * step), (double)(node / nx % ny * step), (double)(node / nx / ny * step)};
+    const size_t nx = (size_t)field->n[0], ny = (size_t)field->n[1];
+    const int i = (int)(node % nx) * field->step, j = (int)(node / nx % ny) * field->step,
+              k = (int)(node / nx / ny) * field->step;
+    const double at[3] = {i, j, k};
     double place[3];
     ms_grid_place(place, grid, at);
+    if (i < grid->n[0] && j < grid->n[1] && k < grid->n[2]) {
+        const double away = ms_closest_distance(NULL, field->target->closest, place, HUGE_VAL) / grid->h;
+        if (away > 0.9) {
+            return (float)(grid->inside[ms_grid_index(grid, i, j, k)] ? -away : away);
+        }
+    }
     return (float)(ms_closest_signed_distance(field->target->closest, place) / grid->h);
 }
 

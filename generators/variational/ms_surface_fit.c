@@ -11,25 +11,25 @@
 /* D below: femur with 70 spheres and bunny with 30, 60 cells, mean of two seeds; 0.0210 and 0.0409 as they are. */
 
 /* Ridge added to the normal equations, as part of the sum of weights. 1e-5: 0.0213, 0.0409; 1e-2: 0.0209, 0.0407. */
+static const double RIDGE = 1e-3;
 
 /* No step is longer than this part of the radius. 0.1: 0.0209, 0.0409; 1: 0.0209, 0.0409: not sensitive. */
 static const double LONGEST_STEP = 0.25;
 
 /* Part of the last step that is made again: chains of spheres settle sooner. 0: 0.0208, 0.0408; 0.8: 0.0210, 0.0408: no
  * gain was seen on these two. */
+static const double MOMENTUM = 0.5;
 
 /* Weight of places that stick out farther than is allowed. Inscribed, as is 0.0518, 0.0830; 1: 0.0544, 0.0886; 30:
  * 0.0512, 0.0837. */
 static const double STIFF = 1000;
 
 /* Distances below this, in voxels, weigh the same. 0.05: 0.0208, 0.0408; 1: 0.0216, 0.0412. */
+static const double NEAR = 0.25;
 
-#define E(n,d) (getenv(n)?atof(getenv(n)):d)
-#define ENOUGH E("ENOUGH",0.25)
-#define PLENTY E("PLENTY",0.6)
-#define NEAR E("NEAR",0.25)
-#define MOMENTUM E("MOM",0.5)
-#define RIDGE E("RIDGE",1e-3)
+/* Part of the points of the first level that have to be exposed, or the next level with twice as many is taken; above
+ * the other, the one before. */
+static const double ENOUGH = 0.12, PLENTY = 0.3;
 
 /* The steps that the spheres want to make. */
 typedef struct move {
@@ -76,11 +76,20 @@ typedef struct equations {
     double a[4][4], b[4], weight;
 } equations;
 
-static void add_place(equations *e, const ms_surface_fit *fit, const ms_ball *ball, const double normal[3], double beyond)
+static void find_place(double place[3], const ms_ball *ball, const double normal[3])
+{
+    for (int c = 0; c < 3; c++) {
+        place[c] = ball->centre[c] + ball->radius * normal[c];
+    }
+}
+
+/* `beyond`: how far the place is beyond a plane; below 0: it is not. */
+static void add_place(equations *e, const ms_surface_fit *fit, const ms_ball *ball, const double normal[3],
+                      double beyond)
 {
     const double row[4] = {normal[0], normal[1], normal[2], 1};
-    const double place[3] = {ball->centre[0] + ball->radius * row[0], ball->centre[1] + ball->radius * row[1],
-                             ball->centre[2] + ball->radius * row[2]};
+    double place[3];
+    find_place(place, ball, normal);
     const double away = ms_signed_distance_at(fit->field, place), phi = away > beyond ? away : beyond;
     const double size = fabs(phi) > NEAR ? fabs(phi) : NEAR;
     const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) / size;
@@ -93,6 +102,21 @@ static void add_place(equations *e, const ms_surface_fit *fit, const ms_ball *ba
     e->weight += w;
 }
 
+/* Places beyond planes, whether they are covered or not: of the first level, as they are not to weigh but to stop. */
+static void add_places_beyond(equations *e, const ms_surface_fit *fit, const ms_ball *ball)
+{
+    const ms_lattice_level *level = &fit->lattice->level[0];
+    for (int p = 0; p < level->points; p++) {
+        double normal[3], place[3];
+        ms_lattice_normal(normal, fit->lattice, level->direction[p]);
+        find_place(place, ball, normal);
+        const double beyond = ms_bounds_beyond_planes(&fit->bounds, &fit->field->target->grid, ball->centre, place);
+        if (beyond > 0) {
+            add_place(e, fit, ball, normal, beyond);
+        }
+    }
+}
+
 static move find_move(const ms_surface_fit *fit, const workspace *work, ms_exposed *exposed, uint32_t self)
 {
     const ms_ball *ball = &work->window.ball[self];
@@ -102,16 +126,21 @@ static move find_move(const ms_surface_fit *fit, const workspace *work, ms_expos
     if (!(ball->radius > 0)) {
         return out;
     }
-    const int level = ms_exposed_find(exposed, fit->lattice, &work->window, self, work->level[self], (int)(ENOUGH * points));
+    const int level =
+        ms_exposed_find(exposed, fit->lattice, &work->window, self, work->level[self], (int)(ENOUGH * points));
     work->level[self] = (uint8_t)(exposed->count > PLENTY * points && level > 0 ? level - 1 : level);
     for (int p = 0; p < exposed->count; p++) {
         add_place(&e, fit, ball, exposed->normal[p], -HUGE_VAL);
+    }
+    if (fit->bounds.planes && fit->bounds.planes->n_planes > 0) {
+        add_places_beyond(&e, fit, ball);
     }
     if (e.weight > 0) {
         for (int i = 0; i < 4; i++) {
             e.a[i][i] += RIDGE * e.weight;
         }
         solve_move(&out, e.a, e.b);
+        out.weight /= exposed->points;
         keep_to_planes(&out, &fit->mirror, ball);
     }
     return out;

@@ -39,8 +39,8 @@ static worth tally_sphere(const ms_surface_fit *fit, const ms_caps_window *windo
     return (worth){.loss = part * r * sum.loss, .mismatch = part * sum.mismatch};
 }
 
-ms_status ms_surface_tally(double *loss, double *mismatch, const ms_surface_fit *fit, const ms_ball *ball,
-                           size_t count, ms_error *err)
+ms_status ms_surface_tally(double *loss, double *mismatch, const ms_surface_fit *fit, const ms_ball *ball, size_t count,
+                           ms_error *err)
 {
     const int *across = fit->mirror.across;
     const size_t images = (count << (across[0] + across[1] + across[2])) + 1;

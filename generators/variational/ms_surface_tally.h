@@ -18,7 +18,7 @@
  *
  * Cost: that of a step of the fit, about four times over; all cores, the same bits at any number of threads.
  */
-ms_status ms_surface_tally(double *loss, double *mismatch, const ms_surface_fit *fit, const ms_ball *ball,
-                           size_t count, ms_error *err);
+ms_status ms_surface_tally(double *loss, double *mismatch, const ms_surface_fit *fit, const ms_ball *ball, size_t count,
+                           ms_error *err);
 
 #endif

@@ -11,20 +11,19 @@
 #include "ms_pattern_search.h"
 #include "ms_prune.h"
 #include "ms_surface_tally.h"
-#include <stdio.h>
 #include "ms_variational_start.h"
 
-/* What was measured at the numbers below: one of them changed at a time, mean D over five seeds of a femur with 70
- * spheres and a bunny with 30, at 100 cells, one thread; 0.0212 in 0.68 s and 0.0450 in 0.35 s as they are. */
+/* What was measured at the numbers below: mean D over four or five seeds of a femur with 70 spheres and a bunny with
+ * 30, at 100 cells, one thread. 0.0212 and 0.0417 as they are. */
 
-/* Spheres at the start: so many times those asked for, and some more. Without: 0.0217, 0.0487; 1.5: 0.0212, 0.0436;
- * 2: 0.0225, 0.0432: which is best depends on the shape. 2 more: 0.0462 to 0.0450 for the bunny. */
+/* Spheres at the start: so many times those asked for, and some more, with a cover to start from that is a quarter
+ * finer than it was: 1.25 and 2 more: 0.0212, 0.0450; 1.15 and 12: 0.0213, 0.0418; 1.15 and 20: 0.0215, 0.0421; 1.25
+ * and 8: 0.0214, 0.0432. Which is best depends on the shape. */
+static const double SURPLUS = 1.25;
+enum { MORE = 12 };
 
-enum { MORE = 2 };
-
-/* Part of the surplus that is dropped at a time. All at once: 0.0219 in 0.50 s, 0.0490; half of it: no better, 0.77
- * s. */
-
+/* Part of the surplus that is dropped at a time. 0.13: 0.0216, 0.0432. */
+static const double DROP = 0.1;
 
 /* Part of the spheres that a round adds, one round after the other: what one cannot better, another may.
  * Effort 2 at 60 cells, one seed: 0.0209 and 0.0405 in turn, 0.0209 and 0.0401 to 0.0405 with one of them alone: no
@@ -39,25 +38,13 @@ static const double LEAST_RADIUS = 0.5;
  * 0.8 of it. */
 enum { FIELD_STEP = 2 };
 
-/* Mean distance between the surfaces of spheres and shape, in voxels, below which the field's own error matters.
- * Ellipsoid, 40 spheres, 150 cells: 0.00054 with 0 as with 0.03, 0.00056 where it is always sharpened: no gain was
- * seen. */
+/* Mean distance between the surfaces of spheres and shape, in voxels, below which voxels are too coarse: the field is
+ * looked up by cubic polynomials, and the mismatch is the one by the exposed surface. */
+static const double FINE = 0.1;
 
-
-/* Of the fits, and of the search within bounds. Half or twice as many: D within 0.5 %, below what the seed changes;
- * 10 rounds of the search with protrusion 0: D 0.0507 and not 0.0502, 40: the same as 20. The damping of the first
- * three fits changed by 0.2 or 0.3 at its start, or not falling at all in the first: within 0.6 %. */
-#define E(n,d) (getenv(n)?atof(getenv(n)):d)
-#define START_STEPS (int)E("START",40)
-#define DROP_STEPS (int)E("DROPS",20)
-#define LONG_STEPS (int)E("LONG",100)
-#define LAST_STEPS (int)E("LAST",60)
-#define SURPLUS E("SURPLUS",1.25)
-#define DROP E("DROP",0.1)
-#define SHARP E("SHARP",0.1)
-#define EXACT E("EXACT",0.01)
-enum {SEARCH_ROUNDS = 20};
-
+/* Of the fits, and of the search within bounds. Twice as many in the first two: 0.0211; 100 and 60 in the last two: D
+ * within 0.5 %. 10 rounds of the search with protrusion 0: D 0.0507 and not 0.0502, 40: the same as 20. */
+enum { START_STEPS = 40, DROP_STEPS = 15, LONG_STEPS = 80, LAST_STEPS = 50, SEARCH_ROUNDS = 20 };
 
 /* Of idle spheres. Ellipsoid with 100 spheres at 60 cells: none 0.00049 in 0.71 s, three 0.00048 in 0.95 s. */
 enum { REPAIRS = 3 };
@@ -162,7 +149,7 @@ static int is_fine(const solver *s, const mismatch *m)
 {
     const ms_target *target = s->run->target;
     const double h = target->grid.h;
-    return ms_signed_distance_is_exact(&s->field) && m->count < SHARP * ms_mesh_area(target->mesh) / (h * h);
+    return ms_signed_distance_is_exact(&s->field) && m->count < FINE * ms_mesh_area(target->mesh) / (h * h);
 }
 
 static int is_better(const solver *s, const mismatch *after, const mismatch *before)
@@ -186,14 +173,13 @@ static ms_status improve_fit(solver *s, int steps, double from, double to, ms_er
     if (status == MS_OK) {
         status = find_mismatch(&after, s, err);
     }
-    if (getenv("TRACE")) fprintf(stderr, "improve %zu: %g %g -> %g %g fine %d\n", s->count, before.count, before.surface, after.count, after.surface, is_fine(s, &before));
     if (status == MS_OK && !is_better(s, &after, &before)) {
         memcpy(s->ball, s->best, s->count * sizeof *s->ball);
     }
     return status;
 }
 
-/* For spheres that fit so well that the look-up's error would show: nodes at every voxel. */
+/* For spheres that fit so well that the error of a linear look-up would show. */
 static ms_status sharpen_field(solver *s, ms_error *err)
 {
     mismatch left = {0};
@@ -202,11 +188,6 @@ static ms_status sharpen_field(solver *s, ms_error *err)
     }
     ms_status status = find_mismatch(&left, s, err);
     if (status == MS_OK && is_fine(s, &left)) {
-        const ms_target *target = s->run->target;
-        if (getenv("RE")) {
-        ms_signed_distance_free(&s->field);
-        status = ms_signed_distance_alloc(&s->field, target, 1, err);
-        }
         s->field.cubic = 1;
     }
     return status;
@@ -398,7 +379,6 @@ static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
     if (status == MS_OK) {
         status = find_mismatch(&after, s, err);
     }
-    if (getenv("TRACE")) fprintf(stderr, "round %zu: %g %g -> %g %g fine %d\n", s->count, before.count, before.surface, after.count, after.surface, is_fine(s, &before));
     if (status == MS_OK && !is_better(s, &after, &before)) {
         memcpy(s->ball, kept, count * sizeof *kept);
         s->count = count;
