@@ -153,6 +153,7 @@ static void symmetry_is_kept(void **state)
                 for (int a = 0; a < 3; a++) {
                     assert_true(!ACROSS[o][a] || is_symmetric(&clump, a));
                 }
+
                 assert_true(dice_of(&target, &clump) < 1.5 * dice_of(&target, &unlike));
                 ms_clump_free(&clump);
                 ms_clump_free(&unlike);
