@@ -76,6 +76,13 @@ static ms_status count_losses(double *loss, const ms_ball *ball, size_t count, c
     return status;
 }
 
+/* Does the exposed surface tell losses better than voxels? Not of spheres whose own images cover them. */
+static int is_surface_sharper(const ms_surface_fit *fit)
+{
+    const int *across = fit->mirror.across;
+    return ms_signed_distance_is_exact(fit->field) && !(across[0] || across[1] || across[2]);
+}
+
 /* The same in voxels of the target; where few are counted, by the exposed surface. */
 static ms_status find_losses(double *loss, const ms_ball *ball, size_t count, const ms_coarse_view *view,
                              const ms_surface_fit *fit, ms_error *err)
@@ -84,7 +91,7 @@ static ms_status find_losses(double *loss, const ms_ball *ball, size_t count, co
     double *fine = malloc((count + 1) * sizeof *fine);
     ms_status status = fine ? count_losses(loss, ball, count, view, &fit->mirror, err)
                             : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", count);
-    const int exact = ms_signed_distance_is_exact(fit->field);
+    const int exact = is_surface_sharper(fit);
     if (status == MS_OK && exact) {
         status = ms_surface_tally(fine, NULL, fit, ball, count, err);
     }
@@ -190,7 +197,7 @@ ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_surface_fit *fit,
     ms_status status = loss ? count_all(&o, &all, ball, *count, &whole, &fit->mirror, err)
                             : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
     while (status == MS_OK && gone > 0) {
-        if (ms_signed_distance_is_exact(fit->field)) {
+        if (is_surface_sharper(fit)) {
             status = ms_surface_tally(loss, &mismatch, fit, ball, *count, err);
         }
         const double least = IDLE * mismatch / (double)*count;
