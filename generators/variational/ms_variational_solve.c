@@ -216,7 +216,10 @@ static size_t all_to_coarse(solver *s)
 static ms_status prune_surplus(solver *s, ms_error *err)
 {
     size_t count = count_with_images(s);
-    const size_t surplus = count > s->wanted ? count - s->wanted : 0, most = (size_t)ceil(DROP * (double)surplus);
+    const size_t surplus = count > s->wanted ? count - s->wanted : 0, part = (size_t)ceil(DROP * (double)surplus);
+    /* Whole sets of images, or all that can go lie on planes. */
+    const int *across = s->settings->mirror.across;
+    const size_t set = (size_t)1 << (across[0] + across[1] + across[2]), most = part > set ? part : set;
     ms_status status = MS_OK;
     while (status == MS_OK && count > s->wanted) {
         const size_t gone = count - s->wanted < most ? count - s->wanted : most;
