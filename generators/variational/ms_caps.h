@@ -43,7 +43,7 @@ typedef struct ms_caps_near {
 } ms_caps_near;
 
 /**
- * What other spheres cover of one's surface: the largest caps first, about, so that what is covered is soon known to be.
+ * What other spheres cover of one's surface: the largest caps first, about, so that what is covered is soon known.
  *
  * @param[out] near  room for count
  * @param[out] block room for count / MS_CAPS_BLOCK + 1

@@ -28,7 +28,8 @@ static const double STIFF = 1000;
 static const double NEAR = 0.25;
 
 /* Part of the points of the first level that have to be exposed, or the next level with twice as many is taken; above
- * the other, the one before. 0.25, 0.6: 0.0212 as here, in 1.2 times the time; 0.06, 0.15: 0.0212, 0.0451 for 0.0450. */
+ * the other, the one before. 0.25, 0.6: 0.0212 as here, in 1.2 times the time; 0.06, 0.15: 0.0212, the bunny 0.0451 for
+ * 0.0450. */
 static const double ENOUGH = 0.12, PLENTY = 0.3;
 
 /* The steps that the spheres want to make. */
@@ -72,9 +73,9 @@ static void keep_to_planes(move *m, const ms_mirror *planes, const ms_ball *ball
 }
 
 /* The normal equations of a sphere's step; the lower triangle. */
-typedef struct equations {
+typedef struct normal_equations {
     double a[4][4], b[4], weight;
-} equations;
+} normal_equations;
 
 static void find_place(double place[3], const ms_ball *ball, const double normal[3])
 {
@@ -84,7 +85,7 @@ static void find_place(double place[3], const ms_ball *ball, const double normal
 }
 
 /* `beyond`: how far the place is beyond a plane; below 0: it is not. */
-static void add_place(equations *e, const ms_surface_fit *fit, const ms_ball *ball, const double normal[3],
+static void add_place(normal_equations *e, const ms_surface_fit *fit, const ms_ball *ball, const double normal[3],
                       double beyond)
 {
     const double row[4] = {normal[0], normal[1], normal[2], 1};
@@ -103,7 +104,7 @@ static void add_place(equations *e, const ms_surface_fit *fit, const ms_ball *ba
 }
 
 /* Places beyond planes, whether they are covered or not: of the first level, as they are not to weigh but to stop. */
-static void add_places_beyond(equations *e, const ms_surface_fit *fit, const ms_ball *ball)
+static void add_places_beyond(normal_equations *e, const ms_surface_fit *fit, const ms_ball *ball)
 {
     const ms_lattice_level *level = &fit->lattice->level[0];
     for (int p = 0; p < level->points; p++) {
@@ -121,7 +122,7 @@ static move find_move(const ms_surface_fit *fit, const workspace *work, ms_expos
 {
     const ms_ball *ball = &work->window.ball[self];
     const int points = fit->lattice->level[0].points;
-    equations e = {.weight = 0};
+    normal_equations e = {.weight = 0};
     move out = {.weight = 0};
     if (!(ball->radius > 0)) {
         return out;

@@ -12,7 +12,7 @@
  *
  * @param[out] loss     by how much |S xor U| grows without each sphere (of images, without each of them), voxels;
  *                      what lies below the surface of others is not seen; may be NULL
- * @param[out] mismatch |S xor U|, voxels; gaps wider than the spheres' surfaces are far from S are not seen; may be NULL
+ * @param[out] mismatch |S xor U|, voxels, where no part of S is far from the spheres; may be NULL
  * @param      fit      its lattice is not turned
  * @return MS_OK; MS_ERR_NOMEM
  *
