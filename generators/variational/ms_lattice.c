@@ -52,7 +52,7 @@ static int count_coarse(const cells *c)
     return sum;
 }
 
-static int clamp_index(double at, int count)
+static int limit_index(double at, int count)
 {
     const int i = (int)at;
     return i < 0 ? 0 : i < count ? i : count - 1;
@@ -62,10 +62,10 @@ static int clamp_index(double at, int count)
 static int find_fine(const double direction[3], const cells *c)
 {
     const double down = (1 - direction[2]) / 2 * c->bands, around = atan2(direction[1], direction[0]) / (2 * PI) + 0.5;
-    const int band = clamp_index(down, c->bands), sectors = count_sectors(band, c);
-    const int sector = clamp_index(around * sectors, sectors);
-    const int row = clamp_index((down - band) * c->side, c->side);
-    const int column = clamp_index((around * sectors - sector) * c->side, c->side);
+    const int band = limit_index(down, c->bands), sectors = count_sectors(band, c);
+    const int sector = limit_index(around * sectors, sectors);
+    const int row = limit_index((down - band) * c->side, c->side);
+    const int column = limit_index((around * sectors - sector) * c->side, c->side);
     int coarse = sector;
     for (int b = 0; b < band; b++) {
         coarse += count_sectors(b, c);

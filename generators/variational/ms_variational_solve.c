@@ -152,7 +152,7 @@ static int is_fine(const solver *s, const mismatch *m)
     return ms_signed_distance_is_exact(&s->field) && m->count < FINE * ms_mesh_area(target->mesh) / (h * h);
 }
 
-static int is_better(const solver *s, const mismatch *after, const mismatch *before)
+static int is_improved(const solver *s, const mismatch *after, const mismatch *before)
 {
     return is_fine(s, before) ? is_fine(s, after) && after->surface < before->surface : after->count < before->count;
 }
@@ -173,7 +173,7 @@ static ms_status improve_fit(solver *s, int steps, double from, double to, ms_er
     if (status == MS_OK) {
         status = find_mismatch(&after, s, err);
     }
-    if (status == MS_OK && !is_better(s, &after, &before)) {
+    if (status == MS_OK && !is_improved(s, &after, &before)) {
         memcpy(s->ball, s->best, s->count * sizeof *s->ball);
     }
     return status;
@@ -382,7 +382,7 @@ static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
     if (status == MS_OK) {
         status = find_mismatch(&after, s, err);
     }
-    if (status == MS_OK && !is_better(s, &after, &before)) {
+    if (status == MS_OK && !is_improved(s, &after, &before)) {
         memcpy(s->ball, kept, count * sizeof *kept);
         s->count = count;
     }
