@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/ms_expectation.h"
 #include "cli/ms_progress.h"
 #include "cli/ms_report.h"
 #include "ms_curve.h"
@@ -38,12 +39,20 @@ const ms_scene_shape *ms_scene_smallest(const ms_scene *scene)
     return smallest;
 }
 
+static double tolerance_of(const ms_scene_shape *shape, const ms_goal *goal)
+{
+    return isnan(shape->row->tolerance) ? goal->value : shape->row->tolerance;
+}
+
 /* The least number of spheres that reaches a tolerance. */
 static ms_status choose_by_tolerance(ms_scene_shape *shape, const ms_goal *goal, ms_error *err)
 {
-    const double value = isnan(shape->row->tolerance) ? goal->value : shape->row->tolerance;
+    const double value = tolerance_of(shape, goal);
     double best = (double)NAN;
     for (size_t n = 1; n <= shape->most; n++) {
+        if (shape->clump[n - 1].n_spheres == 0) { /* not run */
+            continue;
+        }
         const double have = goal->measure->of_score(&shape->score[n - 1]);
         if (ms_measure_is_reached(goal->measure, have, value)) {
             shape->chosen = n;
@@ -102,10 +111,8 @@ static void choose_numbers(ms_scene_shape *shape)
     }
 }
 
-static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const ms_run *run,
-                            const ms_generator *generator, size_t max_voxels, ms_error *err)
+static ms_status make_room(ms_scene_shape *shape, size_t count, ms_error *err)
 {
-    const size_t count = clump->n_spheres;
     shape->clump = calloc(count, sizeof *shape->clump);
     shape->score = calloc(count, sizeof *shape->score);
     shape->dice = calloc(count, sizeof *shape->dice);
@@ -113,20 +120,152 @@ static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const 
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu templates", count);
     }
     shape->most = count;
-    const ms_status status = ms_curve_clumps(shape->score, shape->clump, clump, generator, run, max_voxels, err);
+    return MS_OK;
+}
+
+static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const ms_run *run,
+                            const ms_generator *generator, size_t max_voxels, ms_error *err)
+{
+    ms_status status = make_room(shape, clump->n_spheres, err);
+    if (status == MS_OK) {
+        status = ms_curve_clumps(shape->score, shape->clump, clump, generator, run, max_voxels, err);
+    }
     if (status == MS_OK) {
         choose_numbers(shape);
     }
     return status;
 }
 
+/* A search for the least number of spheres that reaches a tolerance, by runs of their own. */
+typedef struct scene_search {
+    ms_scene_shape *shape;
+    const ms_goal *goal;
+    const ms_generator *generator;
+    ms_run run;
+    size_t max_voxels;
+    double value; /* to be reached */
+} scene_search;
+
+/* The template of n spheres. @param[out] reached does it reach the tolerance? */
+static ms_status try_number(int *reached, scene_search *s, size_t n, ms_error *err)
+{
+    ms_scene_shape *shape = s->shape;
+    ms_metrics metrics;
+    ms_stop_reason reason;
+    s->run.stop.spheres = n;
+    ms_status status = ms_generator_run(&shape->clump[n - 1], &reason, s->generator, &s->run, err);
+    if (status == MS_OK) {
+        status = ms_metrics_compute(&metrics, NULL, s->run.target, &shape->clump[n - 1], s->max_voxels, err);
+    }
+    s->run.remark = NULL; /* once for a shape */
+    if (status == MS_OK) {
+        const double have = s->goal->measure->of_score(&metrics.score);
+        shape->score[n - 1] = metrics.score;
+        shape->dice[n - 1] = metrics.score.dice;
+        *reached = ms_measure_is_reached(s->goal->measure, have, s->value);
+    }
+    return status;
+}
+
+/* Numbers of which the lower one does not reach the tolerance (0: none is known) and the higher one does, in steps of a
+ * fifth from the one that is expected. */
+static ms_status bracket_number(size_t *lo, size_t *hi, scene_search *s, size_t first, ms_error *err)
+{
+    size_t n = first;
+    int reached = 0;
+    *lo = *hi = 0;
+    ms_status status = try_number(&reached, s, n, err);
+    const int begins_above = reached;
+    while (status == MS_OK && reached == begins_above) {
+        *(reached ? hi : lo) = n;
+        if (reached ? n == 1 : n == s->shape->most) {
+            break;
+        }
+        const size_t step = 1 + n / 5;
+        n = !reached ? n + step : n > step ? n - step : 1;
+        n = n < s->shape->most ? n : s->shape->most;
+        status = try_number(&reached, s, n, err);
+    }
+    *(reached ? hi : lo) = n;
+    *lo = reached && n == 1 ? 0 : *lo;
+    return status;
+}
+
+/* Where each number is a run of its own, few are run: those from the expected one on that enclose the tolerance, and
+ * halves of what lies between. */
+static ms_status search_number(ms_scene_shape *shape, scene_search *s, size_t expected, ms_error *err)
+{
+    size_t lo, hi;
+    const size_t first = expected < 1 ? 1 : expected < shape->most ? expected : shape->most;
+    ms_status status = bracket_number(&lo, &hi, s, first, err);
+    while (status == MS_OK && hi > 0 && hi - lo > 1) { /* without one that reaches it, choose_alone says so */
+        int reached;
+        const size_t middle = lo + (hi - lo) / 2;
+        status = try_number(&reached, s, middle, err);
+        *(status == MS_OK && reached ? &hi : &lo) = middle;
+    }
+    shape->chosen = hi;
+    return status;
+}
+
+/* The number of spheres that the tolerance is expected to take; where nothing is expected, a quarter of the most. */
+static size_t expect_number(const ms_input *input, const ms_goal *goal, double value, size_t most)
+{
+    ms_expect expect;
+    ms_error ignored;
+    double n = (double)most / 4;
+    if (goal->measure == &ms_measures[MS_MEASURE_DICE] && value > 0 &&
+        ms_expectation_find(&expect, input, &ignored) == MS_OK) {
+        n = ceil(ms_expect_spheres(&expect, MS_EXPECT_FREE, value));
+    }
+    return n < (double)most ? (size_t)n : most;
+}
+
+static ms_status search_template(ms_scene_shape *shape, const ms_input *input, const ms_run *run,
+                                 const ms_scene_run *how, const ms_goal *goal, ms_error *err)
+{
+    scene_search s = {.shape = shape,
+                      .goal = goal,
+                      .generator = how->recipe->generator,
+                      .run = *run,
+                      .max_voxels = ms_input_max_voxels(how->input),
+                      .value = tolerance_of(shape, goal)};
+    const ms_status status = make_room(shape, how->max_spheres, err);
+    for (size_t n = 0; status == MS_OK && n < shape->most; n++) {
+        shape->dice[n] = (double)NAN;
+    }
+    return status == MS_OK ? search_number(shape, &s, expect_number(input, goal, s.value, shape->most), err) : status;
+}
+
+int ms_scene_is_searched(const ms_goal *goal, const ms_recipe *recipe)
+{
+    return goal->kind == MS_GOAL_TOLERANCE && !ms_generator_is_nested(recipe->generator, &recipe->settings);
+}
+
+/* Those of 1 to the most spheres. */
+static ms_status make_all_templates(ms_scene_shape *shape, ms_run *run, const ms_scene_run *how, int beside,
+                                    ms_error *err)
+{
+    const ms_generator *generator = how->recipe->generator;
+    ms_stop_reason reason;
+    ms_clump clump;
+    ms_status status = ms_generator_run(&clump, &reason, generator, run, err);
+    run->remark = NULL; /* once for a shape */
+    if (!beside) {
+        ms_progress_show(run);
+    }
+    if (status == MS_OK) {
+        status = make_curve(shape, &clump, run, generator, ms_input_max_voxels(how->input), err);
+        ms_clump_free(&clump);
+    }
+    return status;
+}
+
 static ms_status make_templates(ms_scene_shape *shape, const char *title, const ms_input *input,
-                                const ms_scene_run *how, int beside, ms_error *err)
+                                const ms_scene_run *how, const ms_goal *goal, int beside, ms_error *err)
 {
     const ms_recipe *recipe = how->recipe;
     ms_progress_line line = {.name = title, .goal = how->recipe->generator->nested ? how->max_spheres : 0};
-    ms_stop_reason reason;
-    ms_clump clump;
     ms_error cause;
     ms_run run = {.target = &input->target, .settings = &recipe->settings, .seed = (uint64_t)recipe->seed};
     run.stop.spheres = how->max_spheres;
@@ -138,14 +277,11 @@ static ms_status make_templates(ms_scene_shape *shape, const char *title, const 
     }
     ms_progress_say_remarks(&run, &line);
     shape->input = ms_report_input_json(input);
-    ms_status status = ms_generator_run(&clump, &reason, recipe->generator, &run, &cause);
-    run.remark = NULL; /* once for a shape */
-    if (!beside) {
-        ms_progress_show(&run);
-    }
-    if (status == MS_OK) {
-        status = make_curve(shape, &clump, &run, recipe->generator, ms_input_max_voxels(how->input), &cause);
-        ms_clump_free(&clump);
+    ms_status status;
+    if (ms_scene_is_searched(goal, recipe)) {
+        status = search_template(shape, input, &run, how, goal, &cause);
+    } else {
+        status = make_all_templates(shape, &run, how, beside, &cause);
     }
     if (!beside) {
         ms_progress_close();
@@ -184,10 +320,10 @@ static ms_status make_shape(const scene_work *w, size_t at, ms_queue_place *plac
     ms_queue_need_memory(place, ms_input_bytes(&input, &flags), flags.max_memory);
     status = ms_input_target(&input, &flags, err);
     if (status == MS_OK) {
-        status = make_templates(shape, title, &input, w->run, ms_queue_beside(place), err);
+        status = make_templates(shape, title, &input, w->run, w->goal, ms_queue_beside(place), err);
     }
     ms_input_free(&input);
-    return status == MS_OK ? choose_alone(shape, w->goal, err) : status;
+    return status == MS_OK && shape->chosen == 0 ? choose_alone(shape, w->goal, err) : status;
 }
 
 static void work_shape(void *context, size_t at, ms_queue_place *place)
@@ -209,6 +345,7 @@ ms_status ms_scene_make(ms_scene *scene, const ms_manifest *manifest, const ms_s
                         ms_error *err)
 {
     *scene = (ms_scene){.count = manifest->count, .shape = calloc(manifest->count, sizeof *scene->shape)};
+    scene->is_searched = ms_scene_is_searched(goal, run->recipe);
     scene_work work = {scene, manifest, run, goal, calloc(manifest->count, sizeof *work.outcome)};
     const ms_queue queue = {.count = manifest->count,
                             .threads = run->input->threads ? run->input->threads : omp_get_max_threads(),
@@ -234,6 +371,16 @@ static void spread_evenly(ms_scene *scene, const ms_share *share, size_t *n)
         n[s] = scene->even_each < share[s].most ? scene->even_each : share[s].most;
     }
     scene->even = ms_allocate_sum(share, n, scene->count);
+}
+
+/* Of a search, which knows one template smaller than the one chosen of each shape. */
+static double least_gain_of(const ms_scene *scene)
+{
+    double least = (double)NAN;
+    for (size_t s = 0; s < scene->count; s++) {
+        least = fmin(least, ms_scene_gain(&scene->shape[s]));
+    }
+    return isnan(least) ? 0 : least;
 }
 
 static ms_status choose_together(ms_scene *scene, const ms_share *share, size_t *n, const ms_goal *goal, ms_error *err)
@@ -271,8 +418,12 @@ ms_status ms_scene_choose(ms_scene *scene, const ms_goal *goal, ms_error *err)
         for (size_t s = 0; s < scene->count; s++) {
             scene->sum.spheres += share[s].particles * ms_scene_clump(&scene->shape[s])->n_spheres;
         }
-        scene->least_gain = ms_allocate_gain(share, n, scene->count);
-        spread_evenly(scene, share, n);
+        if (scene->is_searched) {
+            scene->least_gain = least_gain_of(scene);
+        } else {
+            scene->least_gain = ms_allocate_gain(share, n, scene->count);
+            spread_evenly(scene, share, n);
+        }
     }
     free(n);
     free(share);

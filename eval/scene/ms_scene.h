@@ -32,9 +32,9 @@ typedef struct ms_goal {
 typedef struct ms_scene_shape {
     const ms_manifest_row *row; /* borrowed */
     size_t most;                /* spheres of the largest template */
-    ms_clump *clump;            /* templates of 1 .. most spheres */
+    ms_clump *clump;            /* templates of 1 .. most spheres; empty where a search has not run them */
     ms_score *score;
-    double *dice;  /* D alone */
+    double *dice;  /* D alone; NAN likewise */
     json_t *input; /* as ms_report_input_json */
     size_t chosen; /* number of spheres, after ms_scene_choose */
 } ms_scene_shape;
@@ -45,6 +45,7 @@ typedef struct ms_scene {
     ms_scene_shape *shape;
     ms_allocation sum;  /* of the templates chosen; slack of MS_GOAL_MEAN and MS_GOAL_BUDGET */
     double least_gain;  /* ms_allocate_gain */
+    int is_searched;    /* ms_scene_is_searched: most numbers of spheres were not run, and nothing is spread evenly */
     size_t even_each;   /* the same number of spheres for each shape, of no more in all */
     ms_allocation even; /* what that comes to */
 } ms_scene;
@@ -68,6 +69,10 @@ typedef struct ms_scene_run {
  */
 ms_status ms_scene_make(ms_scene *scene, const ms_manifest *manifest, const ms_scene_run *run, const ms_goal *goal,
                         ms_error *err);
+
+/** Nonzero where just those numbers of spheres are run that tell which is the least to reach a tolerance: with a method
+ * whose numbers are runs of their own. Then one sphere less was run, too, and did not reach it. */
+int ms_scene_is_searched(const ms_goal *goal, const ms_recipe *recipe);
 
 /** Chooses a template of each shape. @return MS_OK; MS_ERR_LIMIT; MS_ERR_NOMEM; as ms_allocate_budget and _error */
 ms_status ms_scene_choose(ms_scene *scene, const ms_goal *goal, ms_error *err);

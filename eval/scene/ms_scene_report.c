@@ -66,7 +66,7 @@ void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal)
     fprintf(stream, "  %-26s %llu for %llu particles\n", "spheres in the scene", (unsigned long long)sum->spheres,
             (unsigned long long)sum->particles);
     fprintf(stream, "  %-26s %.5f\n", "mean D", sum->error);
-    if (scene->count > 1) {
+    if (scene->count > 1 && !scene->is_searched) {
         fprintf(stream, "  %-26s %.5f with %zu for each shape, %llu in all\n", "mean D, spread evenly",
                 scene->even.error, scene->even_each, (unsigned long long)scene->even.spheres);
     }
@@ -106,7 +106,7 @@ static json_t *shape_json(const ms_scene_shape *shape)
 {
     json_t *curve = json_array();
     for (size_t n = 0; n < shape->most; n++) {
-        ms_json_object_append(&curve, json_real(shape->dice[n]));
+        ms_json_object_append(&curve, ms_report_number(shape->dice[n]));
     }
     return json_pack("{s:I,s:o,s:o,s:f,s:o,s:O,s:o}", "particles", (json_int_t)shape->row->particles, "tolerance",
                      ms_report_number(shape->row->tolerance), "gain", ms_report_number(ms_scene_gain(shape)),
@@ -130,8 +130,9 @@ void ms_scene_add_json(json_t **json, const ms_scene *scene, const ms_goal *goal
     ms_json_object_set(json, "least_gain", json_real(scene->least_gain));
     ms_json_object_set(json, "slack", together ? json_real(sum->slack) : json_null());
     ms_json_object_set(json, "even",
-                       json_pack("{s:I,s:I,s:f}", "each", (json_int_t)scene->even_each, "spheres",
-                                 (json_int_t)even->spheres, "mean_dice", even->error));
+                       scene->is_searched ? json_null()
+                                          : json_pack("{s:I,s:I,s:f}", "each", (json_int_t)scene->even_each, "spheres",
+                                                      (json_int_t)even->spheres, "mean_dice", even->error));
     ms_json_object_set(json, "smallest",
                        json_pack("{s:f,s:o}", "radius", ms_clump_smallest_radius(ms_scene_clump(smallest)), "shape",
                                  ms_report_text(smallest->row->path)));
