@@ -3,7 +3,7 @@
  * multi-spheres, COMPLAS XIV (2017). Section, equation and algorithm numbers are of that paper;
  * docs/methods/fcm.md says what it leaves open and how it was decided.
  */
-#include "ms_fcm.h"
+#include "ms_generator_list.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,8 +14,8 @@
 #include "ms_cluster.h"
 #include "ms_random_spheres.h"
 #include "shared/ms_bisect_count.h"
-#include "shared/ms_cover.h"
 #include "shared/ms_judge.h"
+#include "shared/ms_order.h"
 
 enum {
     NODES_COVERED,
@@ -317,35 +317,6 @@ static ms_status sweep_fuzzifier(trials *t, const fcm *f, ms_error *err)
     return status;
 }
 
-static ms_status add_sphere(ms_clump *clump, const ms_ball *ball, const ms_run *run, ms_error *err)
-{
-    ms_sphere sphere = ms_grid_sphere(&run->target->grid, ball);
-    sphere.radius = fmax(sphere.radius, run->stop.radius);
-    return ms_clump_add(clump, &sphere, err);
-}
-
-/* The spheres by the voxels of the shape that each adds, those that add none as they come. */
-static ms_status order_spheres(ms_clump *clump, const attempt *a, const ms_run *run, ms_error *err)
-{
-    ms_cover *cover = NULL;
-    uint8_t *taken = calloc(a->count + 1, sizeof *taken);
-    size_t which;
-    ms_status status = taken ? ms_cover_build(&cover, &run->target->grid, a->ball, a->count, 0, err)
-                             : ms_fail(err, MS_ERR_NOMEM, "no memory to order %zu spheres", a->count);
-    while (status == MS_OK && ms_cover_next(&which, cover) > 0) {
-        taken[which] = 1;
-        status = add_sphere(clump, &a->ball[which], run, err);
-    }
-    for (size_t b = 0; status == MS_OK && b < a->count; b++) {
-        if (!taken[b]) {
-            status = add_sphere(clump, &a->ball[b], run, err);
-        }
-    }
-    ms_cover_free(cover);
-    free(taken);
-    return status;
-}
-
 /* Where more clusters start from. */
 static void remember_centres(fcm *f, trials *t)
 {
@@ -368,7 +339,7 @@ static ms_status make_clump_of(void *context, ms_clump *clump, ms_stop_reason *r
         status = sweep_fuzzifier(&t, f, err);
     }
     if (status == MS_OK) {
-        status = order_spheres(clump, &t.best, f->run, err);
+        status = ms_order_by_gain(clump, t.best.ball, t.best.count, f->run, err);
     }
     *reason = t.best.reason;
     if (*reason == MS_STOP_NOT) {

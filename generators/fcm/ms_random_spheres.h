@@ -3,7 +3,7 @@
 #define MS_RANDOM_SPHERES_H
 
 #include "ms_generator.h"
-#include "ms_nodes.h"
+#include "shared/ms_nodes.h"
 
 MS_C_BEGIN
 

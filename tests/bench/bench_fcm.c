@@ -9,7 +9,7 @@
 #include "fcm/ms_cluster.h"
 #include "fcm/ms_random_spheres.h"
 #include "ms_generator.h"
-#include "mss/ms_mss.h"
+#include "ms_generator_list.h"
 
 enum { MOST = 100 };
 

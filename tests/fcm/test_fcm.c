@@ -3,9 +3,9 @@
 
 #include <omp.h>
 
-#include "fcm/ms_fcm.h"
 #include "fcm/ms_random_spheres.h"
 #include "measure/ms_metrics.h"
+#include "ms_generator_list.h"
 #include "shared/ms_bisect_count.h"
 #include "support/body_samples.h"
 #include "voxel/ms_raster.h"
