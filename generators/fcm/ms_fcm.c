@@ -29,10 +29,15 @@ enum {
     START,
     RESTARTS,
     RADIUS,
-    OFF_VOLUME
+    OFF_VOLUME,
+    NODES,
+    COVERS,
+    SEARCH
 };
 enum { CLUSTERING_FUZZY, CLUSTERING_KMEANS };
 enum { RADIUS_NODE, RADIUS_MEAN };
+enum { NODES_THINNED, NODES_ALL };
+enum { SEARCH_HALVES, SEARCH_UP };
 
 static const ms_option OPTIONS[] = {
     [NODES_COVERED] = {"nodes-covered", MS_OPTION_REAL, 0.9, 0, 1, NULL, NULL,
@@ -61,6 +66,15 @@ static const ms_option OPTIONS[] = {
     [OFF_VOLUME] = {"off-volume", MS_OPTION_REAL, 0, 0, 2, NULL, NULL,
                     "ends at this volume of the union / of the shape (eq. 2); 0: 0.9, as the paper, where no number "
                     "and no measure is asked for, else not at all"},
+    [NODES] = {"nodes", MS_OPTION_CHOICE, NODES_THINNED, 0, 0, "thinned|all", NULL,
+               "that nodes-covered counts; thinned: where there are more than `filling`, one in each cube of the size "
+               "of a filling sphere's share, d_eq / filling^(1/3)"},
+    [COVERS] = {"covers", MS_OPTION_CHOICE, 0, 0, 0, "touched|within", NULL,
+                "nodes that a filling sphere covers: the one that it touches, or all within it (section 3, figure 1)"},
+    [SEARCH] =
+        {"search", MS_OPTION_CHOICE, SEARCH_HALVES, 0, 0, "halves|up", NULL,
+         "for the number of clusters that reaches a measure: doubled, then by halves; or one more each time, from "
+         "one up (section 4)"},
     {0},
 };
 
@@ -144,9 +158,31 @@ static ms_status make_points(fcm *f, const ms_ball *ball, size_t count, ms_error
     return status;
 }
 
+/* Nodes nearer to each other than the spheres of the filling need not be told apart. 0: all count. */
+static double thinning_edge(const fcm *f)
+{
+    const double filling = fcm_option(f, FILLING);
+    const ms_target *target = f->run->target;
+    const int is_thinned = fcm_option(f, NODES) == NODES_THINNED && filling > 0 && (double)f->nodes.count > filling;
+    return is_thinned ? 2 * ms_target_equivalent_radius(target) / target->grid.h / cbrt(filling) : 0;
+}
+
+static void remark_thinning(const fcm *f, size_t counted)
+{
+    if (counted < f->nodes.count) {
+        ms_generator_remark(f->run,
+                            "%zu nodes are thinned to %zu, one in each cube of edge %.2g, the size of a filling "
+                            "sphere's share: --nodes-covered counts these; --nodes all counts each, and takes longer",
+                            f->nodes.count, counted, f->rule.thinned * f->run->target->grid.h);
+    }
+}
+
 static ms_status fill_shape(fcm *f, ms_error *err)
 {
+    ms_status status = ms_nodes_of_target(&f->nodes, f->run->target, err);
     f->rule = (ms_random_spheres_rule){.nodes_covered = fcm_option(f, NODES_COVERED),
+                                       .thinned = thinning_edge(f),
+                                       .within = fcm_option(f, COVERS) != 0,
                                        .least = (size_t)fcm_option(f, FILLING),
                                        .norm = (ms_norm)fcm_option(f, NORM),
                                        .offset = fcm_option(f, OFFSET),
@@ -155,12 +191,12 @@ static ms_status fill_shape(fcm *f, ms_error *err)
                                        .progress = f->run->progress,
                                        .progress_context = f->run->progress_context};
     ms_ball *ball = NULL;
-    size_t count = 0;
-    ms_status status = ms_nodes_of_target(&f->nodes, f->run->target, err);
+    size_t count = 0, counted;
     if (status == MS_OK) {
-        status = ms_random_spheres(&ball, &count, f->run->target, &f->nodes, &f->rule, err);
+        status = ms_random_spheres(&ball, &count, &counted, f->run->target, &f->nodes, &f->rule, err);
     }
     if (status == MS_OK) {
+        remark_thinning(f, counted);
         drop_small_balls(ball, &count, f);
         status = make_points(f, ball, count, err);
     }
@@ -352,6 +388,20 @@ static ms_status make_clump_of(void *context, ms_clump *clump, ms_stop_reason *r
     return status;
 }
 
+/* One cluster more each time, until they are enough or more would not help. */
+static ms_status search_upward(ms_clump *clump, ms_stop_reason *reason, size_t most, fcm *f, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t n = 1; n <= most && *reason == MS_STOP_NOT && status == MS_OK; n++) {
+        ms_clump_free(clump);
+        status = make_clump_of(f, clump, reason, n, err);
+    }
+    if (*reason == MS_STOP_NOT) {
+        *reason = MS_STOP_SPHERES;
+    }
+    return status;
+}
+
 /* A number is solved for; for a measure it is sought. */
 static ms_status make_clump(ms_clump *clump, ms_stop_reason *reason, fcm *f, ms_error *err)
 {
@@ -361,7 +411,8 @@ static ms_status make_clump(ms_clump *clump, ms_stop_reason *reason, fcm *f, ms_
     }
     if (ms_stop_has_measure(stop) || f->off_volume > 0) {
         const size_t most = stop->spheres > 0 ? stop->spheres : MS_CLUMP_MAX_SPHERES;
-        return ms_bisect_count(clump, reason, most, make_clump_of, f, err);
+        return fcm_option(f, SEARCH) == SEARCH_UP ? search_upward(clump, reason, most, f, err)
+                                                  : ms_bisect_count(clump, reason, most, make_clump_of, f, err);
     }
     const ms_status status = make_clump_of(f, clump, reason, stop->spheres, err);
     if (*reason == MS_STOP_NOT) {

@@ -63,10 +63,10 @@ static void check_filling(const ms_target *target, const ms_random_spheres_rule 
 {
     ms_nodes nodes;
     ms_ball *ball;
-    size_t count, touched = 0, before = 0;
+    size_t count, counted, touched = 0, before = 0;
     ms_error err;
     assert_int_equal(ms_nodes_of_target(&nodes, target, &err), MS_OK);
-    if (ms_random_spheres(&ball, &count, target, &nodes, rule, &err) != MS_OK) {
+    if (ms_random_spheres(&ball, &count, &counted, target, &nodes, rule, &err) != MS_OK) {
         fail_msg("%s", err.text);
     }
     uint8_t *covered = calloc(nodes.count, 1);
