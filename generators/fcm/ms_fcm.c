@@ -9,9 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ms_vector.h"
 #include "measure/ms_metrics.h"
+#include "mesh/ms_hull.h"
 #include "ms_cluster.h"
+#include "ms_long_edges.h"
 #include "ms_random_spheres.h"
 #include "shared/ms_bisect_count.h"
 #include "shared/ms_judge.h"
@@ -30,12 +31,14 @@ enum {
     RESTARTS,
     RADIUS,
     OFF_VOLUME,
+    VOLUME,
     NODES,
     COVERS,
     SEARCH
 };
 enum { CLUSTERING_FUZZY, CLUSTERING_KMEANS };
 enum { RADIUS_NODE, RADIUS_MEAN };
+enum { VOLUME_SHAPE, VOLUME_HULL };
 enum { NODES_THINNED, NODES_ALL };
 enum { SEARCH_HALVES, SEARCH_UP };
 
@@ -66,6 +69,8 @@ static const ms_option OPTIONS[] = {
     [OFF_VOLUME] = {"off-volume", MS_OPTION_REAL, 0, 0, 2, NULL, NULL,
                     "ends at this volume of the union / of the shape (eq. 2); 0: 0.9, as the paper, where no number "
                     "and no measure is asked for, else not at all"},
+    [VOLUME] = {"volume", MS_OPTION_CHOICE, VOLUME_SHAPE, 0, 0, "shape|hull", NULL,
+                "of the shape in eq. 2: its own, or that of its convex hull (section 4)"},
     [NODES] = {"nodes", MS_OPTION_CHOICE, NODES_THINNED, 0, 0, "thinned|all", NULL,
                "that nodes-covered counts; thinned: where there are more than `filling`, one in each cube of the size "
                "of a filling sphere's share, d_eq / filling^(1/3)"},
@@ -94,10 +99,6 @@ static const double DEFAULT_OFF_VOLUME = 0.9;
 /* Spheres whose centres and radii differ by less, in voxels, are one. */
 static const double SAME = 0.01;
 
-/* Edges that are longer than so many times the size of a sphere's share, d_eq / n^(1/3), let the spheres reach out: D
- * of cubes of 8 to 3458 nodes by 2 to 1000 spheres is then above that of finer meshes (docs/methods/fcm.md). */
-static const double EDGE_OF_SHARE = 1.5;
-
 typedef struct fcm {
     const ms_run *run;
     ms_random_spheres_rule rule;
@@ -105,7 +106,7 @@ typedef struct fcm {
     ms_cluster *cluster;
     size_t filled;     /* spheres to cluster */
     int dropped;       /* some were smaller than the least radius */
-    double off_volume; /* to be reached; 0: not asked for */
+    double off_volume; /* to be reached, relative to the shape's own volume; 0: not asked for */
     double (*few)[4];  /* centres of the last number of clusters that was not enough, at the first m */
     size_t n_few;
 } fcm;
@@ -402,12 +403,55 @@ static ms_status search_upward(ms_clump *clump, ms_stop_reason *reason, size_t m
     return status;
 }
 
+/* The volume of the nodes' convex hull in voxels. Those of a volume are voxels, and have eight corners. */
+static ms_status find_hull_volume(double *volume, const fcm *f, ms_error *err)
+{
+    const size_t corners = f->run->target->mesh ? 1 : 8, count = corners * f->nodes.count;
+    double(*point)[3] = malloc((count + 1) * sizeof *point);
+    ms_mesh hull = {0};
+    ms_body body = {0};
+    ms_status status = point ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for the hull of %zu points", count);
+    for (size_t p = 0; p < count && status == MS_OK; p++) {
+        for (int a = 0; a < 3; a++) {
+            const double half = corners == 1 ? 0 : (p >> a & 1) != 0 ? 0.5 : -0.5;
+            point[p][a] = f->nodes.at[p / corners][a] + half;
+        }
+    }
+    if (status == MS_OK) {
+        status = ms_hull_build(&hull, (const double(*)[3])point, count, err);
+    }
+    if (status == MS_OK) {
+        status = ms_inertia_mesh(&body, &hull, err);
+    }
+    *volume = body.volume;
+    ms_mesh_free(&hull);
+    free(point);
+    return status;
+}
+
+/* The volume that is asked for of the hull, as one of the shape. */
+static ms_status ask_of_hull(fcm *f, ms_error *err)
+{
+    double volume;
+    const ms_status status = find_hull_volume(&volume, f, err);
+    if (status == MS_OK) {
+        f->off_volume *= volume / (double)f->run->target->voxels;
+    }
+    return status;
+}
+
 /* A number is solved for; for a measure it is sought. */
 static ms_status make_clump(ms_clump *clump, ms_stop_reason *reason, fcm *f, ms_error *err)
 {
     const ms_stop *stop = &f->run->stop;
     if (f->off_volume == 0 && stop->spheres == 0 && !ms_stop_has_measure(stop)) {
         f->off_volume = DEFAULT_OFF_VOLUME;
+    }
+    if (f->off_volume > 0 && fcm_option(f, VOLUME) == VOLUME_HULL) {
+        const ms_status asked = ask_of_hull(f, err);
+        if (asked != MS_OK) {
+            return asked;
+        }
     }
     if (ms_stop_has_measure(stop) || f->off_volume > 0) {
         const size_t most = stop->spheres > 0 ? stop->spheres : MS_CLUMP_MAX_SPHERES;
@@ -419,42 +463,6 @@ static ms_status make_clump(ms_clump *clump, ms_stop_reason *reason, fcm *f, ms_
         *reason = MS_STOP_EXHAUSTED; /* some clusters coincide */
     }
     return status;
-}
-
-/* Mean over the surface of the longest edge of a triangle. */
-static double mean_edge(const ms_mesh *mesh)
-{
-    double sum = 0, area = 0;
-    for (size_t t = 0; t < mesh->n_triangles; t++) {
-        double side[3][3], normal[3], longest = 0;
-        for (int s = 0; s < 3; s++) {
-            const double *from = mesh->vertex[mesh->triangle[t][s]], *to = mesh->vertex[mesh->triangle[t][(s + 1) % 3]];
-            for (int a = 0; a < 3; a++) {
-                side[s][a] = to[a] - from[a];
-            }
-            longest = fmax(longest, ms_dot(side[s], side[s]));
-        }
-        ms_cross(normal, side[0], side[1]);
-        const double twice = sqrt(ms_dot(normal, normal));
-        sum += twice * sqrt(longest);
-        area += twice;
-    }
-    return area > 0 ? sum / area : 0;
-}
-
-/* Spheres reach to nodes, and through a face as far as its edges are long. */
-static void remark_long_edges(const ms_run *run, size_t n)
-{
-    const ms_mesh *mesh = run->target->mesh;
-    const double deq = 2 * ms_target_equivalent_radius(run->target);
-    const double most = deq * fmin(1, EDGE_OF_SHARE / cbrt((double)n)), edge = mesh ? mean_edge(mesh) : 0;
-    if (edge > most) {
-        ms_generator_remark(run,
-                            "the edges of the mesh are long, %.2g times the diameter d_eq of the ball of equal volume: "
-                            "spheres reach to its nodes and stand out of the faces between; refine the mesh to edges "
-                            "below %.2g d_eq for %zu spheres, or use another method",
-                            edge / deq, most / deq, n);
-    }
 }
 
 static ms_status generate_by_fcm(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
@@ -470,7 +478,7 @@ static ms_status generate_by_fcm(ms_clump *clump, ms_stop_reason *reason, const 
         status = make_clump(clump, reason, &f, err);
     }
     if (status == MS_OK) {
-        remark_long_edges(run, clump->n_spheres);
+        ms_long_edges_remark(run, clump->n_spheres);
     }
     free(f.few);
     ms_cluster_free(f.cluster);
