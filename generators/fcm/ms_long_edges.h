@@ -6,7 +6,7 @@
 
 MS_C_BEGIN
 
-/** Tells the run's listener where edges are long for n spheres: they reach through a face as far as its edges are long. */
+/** Tells the run's listener where edges are long for n spheres, which reach through a face as far as they are long. */
 void ms_long_edges_remark(const ms_run *run, size_t n);
 
 MS_C_END
