@@ -1,16 +1,11 @@
-/* The table of methods, and what looks them up: the one file of the interface that knows them. */
+/* The table of methods, and what looks them up. */
+#include "ms_generator_list.h"
+
 #include <stdio.h>
 #include <string.h>
 
-#include "fcm/ms_fcm.h"
-#include "ms_generator.h"
-#include "mss/ms_mss.h"
-#include "setcover/ms_setcover.h"
-#include "variational/ms_variational.h"
-
-const ms_generator *const ms_generators[] = {
-    &ms_generator_mss, &ms_generator_setcover, &ms_generator_fcm, &ms_generator_variational, NULL,
-};
+#define TABLE_ROW(name) &ms_generator_##name,
+const ms_generator *const ms_generators[] = {MS_GENERATOR_LIST(TABLE_ROW) NULL};
 
 const ms_generator *ms_generator_find(const char *name, ms_error *err)
 {

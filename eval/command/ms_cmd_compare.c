@@ -12,7 +12,7 @@
 
 static const ms_flag FLAGS[] = {
     {"generator", 'g', "NAME[:OPTION=VALUE,...]",
-     "a method with its options; may be repeated (all methods, by default options)"},
+     "a method with its options; may be repeated (all but the baselines, by default options)"},
     {"clump", 0, "NAME=FILE", "spheres x,y,z,r of another tool; may be repeated; takes one shape"},
     {"spheres", 'n', "N,N,...", "numbers of spheres (5,10,20,50,100)"},
     {"cells", 0, "N,N,...", "resolutions: cells along the shortest side of the shape's box (100)"},

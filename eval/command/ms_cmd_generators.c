@@ -40,8 +40,9 @@ static int run_generators(const ms_command *command, int argc, char **argv)
     json_t *list = json ? json_array() : NULL;
     for (const ms_generator *const *g = ms_generators; *g; g++) {
         if (json) {
-            ms_json_object_append(&list, json_pack("{s:s,s:s,s:s,s:b}", "name", (*g)->name, "summary", (*g)->summary,
-                                                   "source", (*g)->source, "nested", (*g)->nested));
+            ms_json_object_append(&list, json_pack("{s:s,s:s,s:s,s:b,s:b}", "name", (*g)->name, "summary",
+                                                   (*g)->summary, "source", (*g)->source, "nested", (*g)->nested,
+                                                   "baseline", (*g)->baseline));
         } else {
             printf("%-12s %s%s\n%-12s %s\n", (*g)->name, (*g)->summary,
                    strcmp((*g)->name, MS_GENERATOR_DEFAULT) == 0 ? " (the default)" : "", "", (*g)->source);

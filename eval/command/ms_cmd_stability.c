@@ -17,7 +17,7 @@
 enum { DEFAULT_SPHERES = 20, DEFAULT_RUNS = 5, MOST_RUNS = 1000 };
 
 static const ms_flag FLAGS[] = {
-    {"generator", 'g', "NAME[:OPTION=VALUE,...]", "a method, with options; may be repeated (all methods)"},
+    {"generator", 'g', "NAME[:OPTION=VALUE,...]", "a method, with options; may be repeated (all but the baselines)"},
     {"spheres", 'n', "N", "spheres asked for in every run (20)"},
     {"until-dice", 0, "V", "also seek the number of spheres with which the method meets D = V, up to 10 N"},
     {"perturb", 0, "KIND",

@@ -104,7 +104,7 @@ class Columns(Case):
                                      "dropped_duplicate " + body).split())
 
     def test_json_of_generators(self):
-        self.assertEqual(keys(self.mskit("generators", "--json").json), "name summary source nested".split())
+        self.assertEqual(keys(self.mskit("generators", "--json").json), "name summary source nested baseline".split())
 
     def test_json_of_stability(self):
         run = self.mskit("stability", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10, "--runs", 1, "--perturb",

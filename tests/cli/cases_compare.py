@@ -142,10 +142,17 @@ class Rows(Compare):
         self.assertEqual([(r["label"], r["cells"], r["voxel_size"], r["protrusion_max"]) for r in rows],
                          [("4", "", "1", "")])
 
-    def test_all_methods_by_default(self):
-        rows = self.compare("box.obj", "-n", "6", "--cells", "12")
-        names = [g["name"] for g in self.mskit("generators", "--json").json]
-        self.assertEqual([r["generator"] for r in rows], names)
+    def test_all_methods_by_default_and_baselines_by_name(self):
+        listed = self.mskit("generators", "--json").json
+        for names, flags in (([g["name"] for g in listed if not g["baseline"]], []),
+                             ([g["name"] for g in listed if g["baseline"]],
+                              [word for g in listed if g["baseline"] for word in ("-g", g["name"])])):
+            name = f"{len(flags)}.csv"
+            self.mskit("compare", "box.obj", *flags, "-n", "6", "--cells", "12", "-o", name)
+            rows = self.rows(name)
+            self.assertGreater(len(names), 2)
+            self.assertEqual([r["generator"] for r in rows], names)
+            self.assertTrue(all(r["dice"] for r in rows), rows)
 
     def test_failures_are_rows(self):
         self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))

@@ -58,7 +58,7 @@ class Help(Case):
         table = self.mskit("generators").out
         self.assertIn("mss", [g["name"] for g in listed])
         for generator in listed:
-            self.assertEqual(set(generator), {"name", "summary", "source", "nested"})
+            self.assertEqual(set(generator), {"name", "summary", "source", "nested", "baseline"})
             self.assertIn(generator["name"], table)
             about = self.mskit("help", generator["name"]).out
             self.assertIn(generator["source"], about)
