@@ -35,10 +35,10 @@ typedef struct patch {
 } patch;
 
 /* What a thread works with. */
-typedef struct workspace {
+typedef struct union_workspace {
     cap *caps;
     range *hidden;
-} workspace;
+} union_workspace;
 
 /* Largest first; of equal ones that of the earlier sphere. */
 static int compare_caps(const void *a, const void *b)
@@ -171,7 +171,7 @@ static void take_arc(patch *sum, const circle *c, double a, double b)
 }
 
 /* @return 0 if nothing of the whole sphere is exposed */
-static int take_circle(patch *sum, const workspace *w, size_t which, size_t count, const double pole[3])
+static int take_circle(patch *sum, const union_workspace *w, size_t which, size_t count, const double pole[3])
 {
     const circle c = make_circle(&w->caps[which], pole);
     size_t ranges = 0;
@@ -194,7 +194,7 @@ static int take_circle(patch *sum, const workspace *w, size_t which, size_t coun
     return 1;
 }
 
-static patch measure_sphere(const workspace *w, const ms_clump *clump, size_t s)
+static patch measure_sphere(const union_workspace *w, const ms_clump *clump, size_t s)
 {
     patch sum = {0};
     size_t count;
@@ -219,8 +219,8 @@ static ms_status measure_all(patch *patches, const ms_clump *clump, ms_error *er
     int out_of_memory = 0;
 #pragma omp parallel reduction(| : out_of_memory)
     {
-        const workspace w = {malloc((clump->n_spheres + 1) * sizeof(cap)),
-                             malloc((2 * clump->n_spheres + 1) * sizeof(range))};
+        const union_workspace w = {malloc((clump->n_spheres + 1) * sizeof(cap)),
+                                   malloc((2 * clump->n_spheres + 1) * sizeof(range))};
         out_of_memory = !w.caps || !w.hidden;
 #pragma omp for schedule(dynamic, 1)
         for (size_t s = 0; s < clump->n_spheres; s++) {

@@ -7,8 +7,8 @@
 #include "clump/ms_union.h"
 #include "mesh/ms_feret.h"
 #include "mesh/ms_hull.h"
-#include "voxel/ms_crofton.h"
 #include "voxel/ms_grid_hull.h"
+#include "voxel/ms_voxel_area.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -117,11 +117,15 @@ ms_status ms_descriptors_of_mesh(ms_descriptors *out, const ms_mesh *mesh, const
 }
 
 /* The area of voxels, where they are enough. */
-static void take_crofton(ms_descriptors *d, const ms_grid *grid)
+static ms_status take_voxel_area(ms_descriptors *d, const ms_grid *grid, ms_error *err)
 {
+    double area;
+    ms_status status = MS_OK;
     if (d->equivalent_diameter >= MS_DESCRIPTORS_LEAST_DIAMETER * grid->h) {
-        take_area(d, ms_crofton_area(grid));
+        status = ms_voxel_area(&area, grid, err);
+        take_area(d, area);
     }
+    return status;
 }
 
 static ms_status take_grid_hulls(ms_descriptors *d, const ms_grid *grid, ms_error *err)
@@ -146,8 +150,10 @@ ms_status ms_descriptors_of_grid(ms_descriptors *out, const ms_grid *grid, const
 {
     ms_descriptors d = know_nothing();
     take_volume(&d, body->volume);
-    take_crofton(&d, grid);
-    ms_status status = take_principal(&d, body, err);
+    ms_status status = take_voxel_area(&d, grid, err);
+    if (status == MS_OK) {
+        status = take_principal(&d, body, err);
+    }
     if (status == MS_OK && ms_hull_is_built()) {
         status = take_grid_hulls(&d, grid, err);
     }
@@ -161,11 +167,12 @@ ms_status ms_descriptors_of_target(ms_descriptors *out, const ms_target *target,
         return ms_descriptors_of_grid(out, &target->grid, &target->body, err);
     }
     const ms_solid solid = {.body = target->body, .overlapping = target->overlapping || !target->closed};
-    const ms_status status = ms_descriptors_of_mesh(out, target->mesh, &solid, err);
+    ms_descriptors d;
+    ms_status status = ms_descriptors_of_mesh(&d, target->mesh, &solid, err);
     if (status == MS_OK && solid.overlapping) {
-        take_crofton(out, &target->grid);
+        status = take_voxel_area(&d, &target->grid, err);
     }
-    return status;
+    return know(out, &d, status);
 }
 
 ms_status ms_descriptors_of_clump(ms_descriptors *out, const ms_clump *clump, const ms_body *body, ms_error *err)

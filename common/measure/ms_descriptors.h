@@ -20,8 +20,8 @@ MS_C_BEGIN
 #define MS_DESCRIPTOR_LIST(Y, X) \
     Y(X, EQUIVALENT_DIAMETER, equivalent_diameter, 4, "length", "equivalent diameter", "Wadell 1932", \
       "diameter of the ball of the same volume V, (6 V / pi)^(1/3)") \
-    Y(X, AREA, area, 4, "length^2", "surface area", "Ohser & Muecklich 2000", \
-      "A; of voxels by Crofton's formula, of the union of the spheres exact") \
+    Y(X, AREA, area, 4, "length^2", "surface area", "Coeurjolly 2003", \
+      "A; of voxels by their faces and normals, of the union of the spheres exact") \
     Y(X, SPHERICITY, sphericity, 4, NULL, "sphericity", "Wadell 1932", \
       "area of the ball of the same volume / A, pi^(1/3) (6 V)^(2/3) / A") \
     Y(X, ELONGATION, elongation, 4, NULL, "elongation, principal", "Zingg 1935", \
@@ -63,7 +63,7 @@ MS_API int ms_descriptors_has_hull(void);
 MS_API ms_status ms_descriptors_of_mesh(ms_descriptors *out, const ms_mesh *mesh, const ms_solid *solid, ms_error *err);
 
 /**
- * Those of voxels. The area is that of ms_crofton_area, NAN below MS_DESCRIPTORS_LEAST_DIAMETER. Feret dimensions are
+ * Those of voxels. The area is that of ms_voxel_area, NAN below MS_DESCRIPTORS_LEAST_DIAMETER. Feret dimensions are
  * of the hull of the centres of voxel faces; convexity compares numbers of voxels and is NAN where the centres lie in a
  * plane. Both say of a digitised convex body what is true of the body, but for the size of a voxel.
  *

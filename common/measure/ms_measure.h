@@ -74,7 +74,7 @@ MS_C_BEGIN
       "in JSON `inertia_error.weighted_mean`", "inertia_union", "inertia_error") \
     X(DESCRIPTOR, VOXEL_LIMIT, voxel_limit, LESS, 5, 0, NULL, NULL, \
       "voxel limit of D", "mskit", \
-      "A h / (4 V) of the shape, h the size of a voxel: what two digital images of one body may differ by", NULL, NULL) \
+      "A h / (4 V) of the shape, h the size of a voxel: a D below it is below what voxels can tell", NULL, NULL) \
     MS_DESCRIPTOR_LIST(MS_MEASURE_OF_DESCRIPTOR, X)
 /* clang-format on */
 

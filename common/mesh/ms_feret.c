@@ -7,8 +7,9 @@
 #include "base/ms_vector.h"
 #include "ms_mesh_edges.h"
 
-/* The longest piece into which the arc of an edge on the sphere of directions is cut, in radians. */
-static const double LONGEST_PIECE = 0.1;
+/* The sphere of directions is in cells of a cube, this many along each side; arcs are cut into pieces of their size. */
+enum { CELLS = 40, ALL_CELLS = CELLS * CELLS * CELLS };
+static const double CELL = 2.0 / CELLS;
 
 /* A piece of the arc of directions that look at an edge: those between the normals of its two faces. */
 typedef struct arc {
@@ -24,7 +25,7 @@ typedef struct calipers {
     double (*normal)[3];    /* of each triangle, of length 1 */
     arc *arcs;
     size_t n_arcs, capacity;
-    double longest; /* half the longest arc */
+    uint32_t *cell; /* of each cell the first of its arcs, which are in the order of the cells; one more */
     uint32_t high, low;
     double width, direction[3]; /* the least so far */
 } calipers;
@@ -161,7 +162,6 @@ static ms_status add_arc(calipers *c, const arc *one, ms_error *err)
         c->capacity = capacity;
     }
     c->arcs[c->n_arcs++] = *one;
-    c->longest = fmax(c->longest, one->half);
     return MS_OK;
 }
 
@@ -172,7 +172,7 @@ static ms_status cut_arc(calipers *c, const double a[3], const double b[3], uint
     ms_status status = MS_OK;
     ms_cross(across_both, a, b);
     const double angle = atan2(sqrt(ms_dot(across_both, across_both)), ms_dot(a, b));
-    const int pieces = (int)ceil(angle / LONGEST_PIECE);
+    const int pieces = (int)ceil(angle / CELL);
     for (int p = 0; p < pieces && status == MS_OK && angle > 1e-12; p++) {
         arc one = {.half = angle / pieces / 2, .from = from, .to = to};
         const double part = (p + 0.5) / pieces, wa = sin((1 - part) * angle), wb = sin(part * angle);
@@ -184,13 +184,39 @@ static ms_status cut_arc(calipers *c, const double a[3], const double b[3], uint
     return status;
 }
 
-static int compare_arcs(const void *a, const void *b)
+/* Place of a direction among the cells along an axis. */
+static int place(double at)
 {
-    const arc *p = a, *q = b;
-    if (p->middle[2] != q->middle[2]) {
-        return p->middle[2] < q->middle[2] ? -1 : 1;
+    const int cell = (int)((at + 1) / CELL);
+    return cell < 0 ? 0 : cell < CELLS ? cell : CELLS - 1;
+}
+
+static size_t cell_of(const arc *one)
+{
+    return ((size_t)place(one->middle[2]) * CELLS + (size_t)place(one->middle[1])) * CELLS +
+           (size_t)place(one->middle[0]);
+}
+
+static ms_status sort_arcs(calipers *c, ms_error *err)
+{
+    arc *sorted = malloc((c->n_arcs + 1) * sizeof *sorted);
+    c->cell = calloc(ALL_CELLS + 2, sizeof *c->cell);
+    if (!sorted || !c->cell) {
+        free(sorted);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the edges of the convex hull");
     }
-    return p->from != q->from ? (p->from < q->from ? -1 : 1) : (p->to > q->to) - (p->to < q->to);
+    for (size_t a = 0; a < c->n_arcs; a++) {
+        c->cell[cell_of(&c->arcs[a]) + 2]++;
+    }
+    for (size_t k = 2; k < ALL_CELLS + 2; k++) {
+        c->cell[k] += c->cell[k - 1];
+    }
+    for (size_t a = 0; a < c->n_arcs; a++) { /* cell k ends where k + 1 begins, when all are in */
+        sorted[c->cell[cell_of(&c->arcs[a]) + 1]++] = c->arcs[a];
+    }
+    free(c->arcs);
+    c->arcs = sorted;
+    return MS_OK;
 }
 
 static ms_status make_arcs(calipers *c, ms_error *err)
@@ -203,10 +229,7 @@ static ms_status make_arcs(calipers *c, ms_error *err)
                              ms_side_to(c->hull, side), err);
         }
     }
-    if (c->n_arcs) {
-        qsort(c->arcs, c->n_arcs, sizeof *c->arcs, compare_arcs);
-    }
-    return status;
+    return status == MS_OK ? sort_arcs(c, err) : status;
 }
 
 /* Two edges with parallel planes through them that hold the body: where an arc crosses the mirror image of another. */
@@ -238,17 +261,26 @@ static void try_edges(calipers *c, const arc *p, const arc *q)
     }
 }
 
-/* Arcs are in the order of their heights; those that may cross the mirror image of p are within a band. */
+/* Those that may cross the mirror image of an arc are in the cells around its middle's. */
+static void try_row(calipers *c, const arc *p, int x, int y, int z)
+{
+    const size_t row = ((size_t)z * CELLS + (size_t)y) * CELLS;
+    const size_t from = row + (size_t)(x > 0 ? x - 1 : 0), to = row + (size_t)(x < CELLS - 1 ? x + 1 : x);
+    for (uint32_t q = c->cell[from]; q < c->cell[to + 1]; q++) {
+        if (&c->arcs[q] > p) {
+            try_edges(c, p, &c->arcs[q]);
+        }
+    }
+}
+
 static void try_all_edges(calipers *c)
 {
-    for (size_t p = 0, first = c->n_arcs; p < c->n_arcs; p++) {
-        const double height = -c->arcs[p].middle[2], reach = c->arcs[p].half + c->longest;
-        while (first > 0 && c->arcs[first - 1].middle[2] >= height - 2 * c->longest) {
-            first--;
-        }
-        for (size_t q = first; q < c->n_arcs && c->arcs[q].middle[2] <= height + reach; q++) {
-            if (q > p) {
-                try_edges(c, &c->arcs[p], &c->arcs[q]);
+    for (size_t a = 0; a < c->n_arcs; a++) {
+        const arc *p = &c->arcs[a];
+        const int x = place(-p->middle[0]), y = place(-p->middle[1]), z = place(-p->middle[2]);
+        for (int k = z > 0 ? z - 1 : 0; k <= z + 1 && k < CELLS; k++) {
+            for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < CELLS; j++) {
+                try_row(c, p, x, j, k);
             }
         }
     }
@@ -273,6 +305,24 @@ static double turn(const corner *a, const corner *b, const corner *c)
     return (b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x);
 }
 
+/* Corners that lie together but for rounding, as those of two parallel faces do, tell no direction. */
+static size_t drop_doubles(corner *out, size_t n)
+{
+    size_t kept = 0, left = 0, right = 0;
+    for (size_t p = 1; p < n; p++) {
+        left = out[p].x < out[left].x ? p : left;
+        right = out[p].x > out[right].x ? p : right;
+    }
+    const double together = 1e-7 * hypot(out[right].x - out[left].x, out[right].y - out[left].y);
+    for (size_t p = 0; p < n; p++) {
+        const corner *before = &out[kept > 0 ? kept - 1 : n - 1];
+        if (hypot(out[p].x - before->x, out[p].y - before->y) > together) {
+            out[kept++] = out[p];
+        }
+    }
+    return kept;
+}
+
 /* Hull of points in the plane, counter-clockwise. Source: Andrew, Inf. Process. Lett. 9 (1979) 216.
  * @param[out] out room for count + 1 */
 static size_t outline(corner *out, corner *point, size_t count)
@@ -292,7 +342,7 @@ static size_t outline(corner *out, corner *point, size_t count)
         }
         out[n++] = point[p];
     }
-    return n - 1;
+    return drop_doubles(out, n - 1);
 }
 
 /* Least width of a convex outline, and its extent at right angles to that. */
@@ -385,5 +435,6 @@ ms_status ms_feret_measure(double feret[3], const ms_mesh *hull, ms_error *err)
     free(c.next);
     free(c.normal);
     free(c.arcs);
+    free(c.cell);
     return status;
 }

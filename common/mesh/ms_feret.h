@@ -17,7 +17,7 @@ MS_C_BEGIN
  * Source: ISO 9276-6:2008 (least Feret diameter, and that at right angles to it). S is over a face and a corner or over
  * two edges, Houle & Toussaint, IEEE Trans. Pattern Anal. 10 (1988) 761; I is over a side of the projection, Freeman &
  * Shapira, Commun. ACM 18 (1975) 409.
- * Cost: O(triangles^1.5) for the faces, a tenth of all pairs of edges.
+ * Cost: O(triangles^1.5) for the faces at most, a hundredth of all pairs of edges at most.
  */
 ms_status ms_feret_measure(double feret[3], const ms_mesh *hull, ms_error *err);
 
