@@ -61,7 +61,7 @@ static void try_direction(calipers *c, const double direction[3])
 }
 
 /* @return 0 for a triangle without area */
-static int find_normal(double normal[3], const ms_mesh *mesh, size_t triangle)
+static int find_facet_normal(double normal[3], const ms_mesh *mesh, size_t triangle)
 {
     double u[3], v[3];
     const uint32_t *t = mesh->triangle[triangle];
@@ -83,7 +83,7 @@ static int find_normal(double normal[3], const ms_mesh *mesh, size_t triangle)
 }
 
 /* Across which of its sides the neighbour of a triangle without area lies whose face it is part of: the longest. */
-static uint32_t longest_side(const ms_mesh *mesh, size_t triangle)
+static uint32_t find_outer_side(const ms_mesh *mesh, size_t triangle)
 {
     uint32_t longest = (uint32_t)(3 * triangle);
     double most = -1;
@@ -113,7 +113,7 @@ static ms_status find_normals(calipers *c, ms_error *err)
     const ms_mesh *hull = c->hull;
     size_t flat = 0, before = 0;
     for (size_t t = 0; t < hull->n_triangles; t++) {
-        flat += !find_normal(c->normal[t], hull, t);
+        flat += !find_facet_normal(c->normal[t], hull, t);
     }
     if (flat == hull->n_triangles) {
         return ms_fail(err, MS_ERR_SHAPE, "a hull without area has no Feret dimensions");
@@ -121,7 +121,7 @@ static ms_status find_normals(calipers *c, ms_error *err)
     while (flat && flat != before) {
         before = flat;
         for (size_t t = 0; t < hull->n_triangles; t++) {
-            const double *other = c->normal[across(&c->edges, longest_side(hull, t)) / 3];
+            const double *other = c->normal[across(&c->edges, find_outer_side(hull, t)) / 3];
             if (ms_dot(c->normal[t], c->normal[t]) == 0 && ms_dot(other, other) > 0) {
                 memcpy(c->normal[t], other, sizeof c->normal[t]);
                 flat--;
@@ -300,7 +300,7 @@ static int compare_corners(const void *a, const void *b)
     return (p->y > q->y) - (p->y < q->y);
 }
 
-static double turn(const corner *a, const corner *b, const corner *c)
+static double corner_turn(const corner *a, const corner *b, const corner *c)
 {
     return (b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x);
 }
@@ -330,14 +330,14 @@ static size_t outline(corner *out, corner *point, size_t count)
     size_t n = 0;
     qsort(point, count, sizeof *point, compare_corners);
     for (size_t p = 0; p < count; p++) {
-        while (n >= 2 && turn(&out[n - 2], &out[n - 1], &point[p]) <= 0) {
+        while (n >= 2 && corner_turn(&out[n - 2], &out[n - 1], &point[p]) <= 0) {
             n--;
         }
         out[n++] = point[p];
     }
     const size_t lower = n + 1;
     for (size_t p = count - 1; p-- > 0;) {
-        while (n >= lower && turn(&out[n - 2], &out[n - 1], &point[p]) <= 0) {
+        while (n >= lower && corner_turn(&out[n - 2], &out[n - 1], &point[p]) <= 0) {
             n--;
         }
         out[n++] = point[p];
@@ -353,12 +353,13 @@ static void measure_outline(double *width, double *length, const corner *out, si
     for (size_t i = 0, far = 1; i < n; i++) {
         const corner *a = &out[i], *b = &out[(i + 1) % n];
         const double side = hypot(b->x - a->x, b->y - a->y);
-        for (size_t steps = 0; steps < n && turn(a, b, &out[(far + 1) % n]) > turn(a, b, &out[far]); steps++) {
+        for (size_t steps = 0; steps < n && corner_turn(a, b, &out[(far + 1) % n]) > corner_turn(a, b, &out[far]);
+             steps++) {
             far = (far + 1) % n;
         }
-        if (side > 0 && turn(a, b, &out[far]) / side < *width) {
+        if (side > 0 && corner_turn(a, b, &out[far]) / side < *width) {
             double least = HUGE_VAL, most = -HUGE_VAL;
-            *width = turn(a, b, &out[far]) / side;
+            *width = corner_turn(a, b, &out[far]) / side;
             for (size_t m = 0; m < n; m++) {
                 const double at = (out[m].x * (b->x - a->x) + out[m].y * (b->y - a->y)) / side;
                 least = fmin(least, at);

@@ -97,7 +97,7 @@ typedef struct row_span {
 } row_span;
 
 /* Twice the area of the triangle in the plane of y and z. */
-static double turn(const double a[3], const double b[3], double y, double z)
+static double area_about(const double a[3], const double b[3], double y, double z)
 {
     return (b[1] - a[1]) * (z - a[2]) - (b[2] - a[2]) * (y - a[1]);
 }
@@ -105,7 +105,7 @@ static double turn(const double a[3], const double b[3], double y, double z)
 /* Ends the rows that pass through a triangle: where its plane is, which lies at the hull or outside everywhere. */
 static void take_triangle(row_span *span, const double at[3][3], const int n[3])
 {
-    const double area = turn(at[0], at[1], at[2][1], at[2][2]);
+    const double area = area_about(at[0], at[1], at[2][1], at[2][2]);
     double lo[3], hi[3];
     if (fabs(area) < ON_FACE) {
         return; /* along x */
@@ -116,7 +116,8 @@ static void take_triangle(row_span *span, const double at[3][3], const int n[3])
     }
     for (int k = (int)fmax(0, lo[2]); k <= hi[2] && k < n[2]; k++) {
         for (int j = (int)fmax(0, lo[1]); j <= hi[1] && j < n[1]; j++) {
-            const double u = turn(at[1], at[2], j, k) / area, v = turn(at[2], at[0], j, k) / area, w = 1 - u - v;
+            const double u = area_about(at[1], at[2], j, k) / area, v = area_about(at[2], at[0], j, k) / area,
+                         w = 1 - u - v;
             if (u >= -ON_FACE && v >= -ON_FACE && w >= -ON_FACE) {
                 row_span *s = &span[(size_t)j + (size_t)n[1] * (size_t)k];
                 const double x = u * at[0][0] + v * at[1][0] + w * at[2][0];

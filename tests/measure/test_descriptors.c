@@ -55,7 +55,7 @@ static void expect_mesh(const char *kind, const char *parameters, const form *f,
     ms_mesh_free(&mesh);
 }
 
-/* Surface of the ellipsoid 3:2:1 with axis 1 to 6 digits, from the incomplete elliptic integrals; the others exact. */
+/* The surface of the ellipsoid 3:2:1 is from the incomplete elliptic integrals, to 6 digits; all else is exact. */
 static void meshes(void **state)
 {
     (void)state;
@@ -65,8 +65,8 @@ static void meshes(void **state)
     const form ellipsoid_form = {6 * ball, 48.882155, 2 / 3.0, 0.5, {6, 4, 2}, 6 * ball};
     const form box_form = {8, 28, 0.5, 0.5, {4, 2, 1}, 8};
     const form plate_form = {25 * 0.1, 52, 1, 0.1 / 5, {5, 5, 0.1}, 2.5};
-    /* A ring fills its hole: the hull is a disc with a round rim. Its moments: R^2 + 3/4 r^2, half of it + r^2 / 8 ... */
-    const double ring = 2 * pi * pi * 3, z = 1 / 4.0, x = (9 + 3 / 4.0) / 2; /* of r^2 and of x^2 over the volume */
+    /* The hull of a ring is a disc with a round rim; means of z^2 and x^2: r^2 / 4, (R^2 + 3/4 r^2) / 2. */
+    const double ring = 2 * pi * pi * 3, z = 1 / 4.0, x = (9 + 3 / 4.0) / 2;
     const form ring_form = {ring, 4 * pi * pi * 3, 1, sqrt(z / x), {8, 8, 2}, pi * (2 * 9 + pi * 3 + 4 / 3.0)};
     /* Band and two caps of height k on a base of radius r: the caps' own radius is (r^2 + k^2) / 2k. */
     const double r = 5.675, h = 4, k = 1.23, cap = pi * k / 6 * (3 * r * r + k * k), cap_area = pi * (r * r + k * k);
@@ -97,9 +97,7 @@ static void expect_voxels(const char *kind, const char *parameters, double cells
     make_shape(&mesh, kind, parameters);
     turn_body(&mesh, askew);
     make_target(&target, &mesh, cells, MS_VOXEL_CENTRE);
-    target.mesh = NULL;
-    memset(&target.body, 0, sizeof target.body);
-    ms_grid grid = target.grid;
+    const ms_grid grid = target.grid;
     ms_volume volume = {.n = {grid.n[0], grid.n[1], grid.n[2]}, .spacing = grid.h};
     volume.label = calloc(ms_grid_voxels(&grid), sizeof *volume.label);
     for (size_t v = 0; v < ms_grid_voxels(&grid); v++) {
@@ -149,7 +147,7 @@ static void few_voxels(void **state)
         assert_int_equal(isfinite(ms_descriptors_voxel_limit(&d, 0.5)), enough);
         expect_close(d.elongation, 1, 1e-12);
         assert_int_equal(isfinite(d.convexity), side > 1 && ms_hull_is_built());
-        if (ms_hull_is_built()) { /* by the centres of faces, of which a box lacks the corners: sqrt(3) of an octahedron */
+        if (ms_hull_is_built()) { /* by the centres of faces: a box lacks its corners */
             assert_true(d.feret[2] <= edge && d.feret[2] > 0.5 * edge);
         }
         ms_grid_free(&grid);
@@ -216,7 +214,7 @@ static void clumps(void **state)
             }
         }
         const double hull = pi * d + ball_volume(1);
-        const form f = {2 * ball_volume(1) - 2 * pi * cap * cap * (3 - cap) / 3 * (d < 2) - (d == 0 ? 0 : 0),
+        const form f = {2 * ball_volume(1) - 2 * pi * cap * cap * (3 - cap) / 3,
                         8 * pi - 4 * pi * cap,
                         sqrt(xx / zz),
                         1,

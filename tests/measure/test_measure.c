@@ -102,7 +102,18 @@ static void add_escaped(char *row, const char *text)
     *at = 0;
 }
 
-/* The guide's table is this one. */
+/* A row of the table of descriptors. */
+static void expect_row(const char *guide, const char *label, const char *names, const char *help, const char *unit,
+                       const char *source)
+{
+    char row[1024];
+    snprintf(row, sizeof row, "| %s | %s | %s | %s | %s |\n", label, names, help, unit ? unit : "-", source);
+    if (!strstr(guide, row)) {
+        fail_msg("docs/guide.md lacks this row of the table of descriptors:\n%s", row);
+    }
+}
+
+/* The guide's tables are these. */
 static void the_guide_has_the_table(void **state)
 {
     (void)state;
@@ -120,6 +131,9 @@ static void the_guide_has_the_table(void **state)
     fclose(guide);
     for (const ms_measure *m = ms_measures; m->name; m++) {
         char row[1024] = "| ";
+        if (m->kind == MS_MEASURE_KIND_DESCRIPTOR && m != &ms_measures[MS_MEASURE_VOXEL_LIMIT]) {
+            continue; /* shape and clump are a row there */
+        }
         add_escaped(row, m->label);
         strcat(strcat(strcat(row, " | `"), m->name), "` | ");
         add_escaped(row, m->help);
@@ -130,6 +144,10 @@ static void the_guide_has_the_table(void **state)
             fail_msg("docs/guide.md lacks this row of the table of measures:\n%s", row);
         }
     }
+#define FIND(X, CODE, name, digits, unit, label, source, help) \
+    expect_row(text, label, "`shape_" #name "`, `clump_" #name "`", help, unit, source);
+    MS_DESCRIPTOR_LIST(FIND, )
+#undef FIND
 }
 
 int main(void)
