@@ -9,7 +9,8 @@ SCORES = ("spheres eta dice coverage overshoot off_volume protrusion_max protrus
 FORM = "equivalent_diameter area sphericity elongation flatness feret_elongation feret_flatness corey convexity".split()
 DESCRIPTORS = ["voxel_limit"] + [which + name for name in FORM for which in ("shape_", "clump_")]
 SCORES = SCORES.replace(" volume", " " + " ".join(DESCRIPTORS) + " volume")
-TARGET = "path fnv1a rule grid voxel_size grid_origin voxels triangles closed"
+MENDED = "joined dropped_degenerate dropped_duplicate filled_holes dropped_bodies dropped_volume turned"
+TARGET = "path fnv1a rule grid voxel_size grid_origin voxels triangles closed " + MENDED
 MASSES = ("epsilon products_epsilon centre_epsilon optimal least most error_mass error_centre error_moments "
           "error_products seconds")
 PARTICLE = "scale density mass centre inertia principal_moments principal_axes"
@@ -103,8 +104,8 @@ class Columns(Case):
         run = self.mskit("info", "grain.stl", "--json").json
         body = "volume centroid inertia principal_moments principal_axes"
         self.assertEqual(keys(run), ("path box_lo box_hi " + " ".join(FORM) + " feret triangles vertices closed "
-                                     "open_edges nonmanifold_edges shells bodies cavities overlapping turned dropped_degenerate "
-                                     "dropped_duplicate " + body).split())
+                                     "open_edges nonmanifold_edges shells bodies cavities overlapping holes largest_hole " +
+                                     MENDED + " " + body).split())
 
     def test_json_of_generators(self):
         self.assertEqual(keys(self.mskit("generators", "--json").json), "name summary source nested baseline".split())
