@@ -8,7 +8,6 @@
 
 #include "base/ms_file.h"
 #include "base/ms_text.h"
-#include "measure/ms_descriptors.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "ms_progress.h"
 
@@ -484,15 +483,6 @@ ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error
 size_t ms_input_max_voxels(const ms_input_flags *flags)
 {
     return (size_t)(flags->max_memory / MS_TARGET_BYTES_PER_VOXEL);
-}
-
-ms_status ms_input_describe(ms_input *input, ms_error *err)
-{
-    ms_error cause;
-    const double start = omp_get_wtime();
-    const ms_status status = ms_descriptors_add(&input->target, &cause);
-    input->describe_seconds = omp_get_wtime() - start;
-    return name_file(err, status, input, &cause);
 }
 
 void ms_input_free(ms_input *input)

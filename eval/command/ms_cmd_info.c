@@ -116,13 +116,19 @@ static void print_voxels(const ms_target *target)
     putchar('\n');
 }
 
-/* The descriptors that are known, but for the area, which has been told. */
+/* Of length or area as exact as the other figures, of ratios with less. */
+static void print_descriptor(const char *label, const char *unit, double value)
+{
+    if (isfinite(value)) {
+        printf("  %-22s %.*g\n", label, unit ? 9 : 6, value);
+    }
+}
+
+/* The descriptors that are known; the area has been told. */
 static void print_form(const ms_descriptors *form)
 {
-#define PRINT(X, CODE, name, digits, unit, label, ...)               \
-    if (isfinite(form->name) && &form->name != &form->area) {        \
-        printf("  %-22s %.*g\n", label, (unit) ? 9 : 6, form->name); \
-    }
+#define PRINT(X, CODE, name, digits, unit, label, ...) \
+    print_descriptor(label, unit, &form->name == &form->area ? (double)NAN : form->name);
     MS_DESCRIPTOR_LIST(PRINT, )
 #undef PRINT
     if (isfinite(form->feret[0])) {

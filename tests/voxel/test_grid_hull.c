@@ -8,7 +8,7 @@
 static size_t count_in_hull(const ms_grid *grid)
 {
     ms_mesh centres, faces;
-    size_t count;
+    size_t count = 0;
     ms_error err = {{0}};
     if (ms_grid_hull_build(&centres, &faces, grid, &err) != MS_OK ||
         ms_grid_hull_count(&count, &centres, grid, &err) != MS_OK) {
