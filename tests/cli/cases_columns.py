@@ -118,7 +118,7 @@ class Columns(Case):
         self.assertEqual(keys(about), "name summary source nested".split() +
                          under("options", "name type default min max unit choices help"))
         self.assertEqual([o["name"] for o in about["options"]],
-                         "spacing boost radius-offset order confine plane".split())
+                         "variant spacing boost polish radius-offset order confine plane".split())
         self.assertEqual(keys(self.mskit("help", "score", "--json").json), "name summary usage example".split() +
                          under("flags", "name letter argument help"))
 
