@@ -42,7 +42,7 @@ static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump
     ms_run one = *run;
     ms_clump last = {0};
     const ms_clump *larger = clump;
-    ms_metrics metrics;
+    ms_score score;
     ms_stop_reason reason;
     one.settings = &settings;
     one.stop = (ms_stop){0};
@@ -51,11 +51,11 @@ static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump
     ms_status status = ms_option_settings_init(&defaults, generator->options, err);
     settings = run->settings ? *run->settings : defaults;
     if (status == MS_OK) {
-        status = ms_metrics_compute(&metrics, NULL, run->target, clump, max_voxels, err);
+        status = ms_metrics_score_clump(&score, NULL, run->target, clump, max_voxels, err);
     }
     for (size_t n = clump->n_spheres; n >= 1 && status == MS_OK; n--) {
         ms_clump next;
-        curve[n - 1] = metrics.score;
+        curve[n - 1] = score;
         if (each) {
             status = copy_spheres(&each[n - 1], larger, larger->n_spheres, err);
         }
@@ -72,7 +72,7 @@ static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump
         last = next;
         larger = &last;
         if (status == MS_OK) {
-            status = ms_metrics_compute(&metrics, NULL, run->target, larger, max_voxels, err);
+            status = ms_metrics_score_clump(&score, NULL, run->target, larger, max_voxels, err);
         }
     }
     ms_clump_free(&last);
@@ -83,8 +83,8 @@ static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump
 static ms_status take_prefixes(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_run *run,
                                size_t max_voxels, ms_error *err)
 {
-    ms_metrics metrics;
-    ms_status status = ms_metrics_compute(&metrics, curve, run->target, clump, max_voxels, err);
+    ms_score score;
+    ms_status status = ms_metrics_score_clump(&score, curve, run->target, clump, max_voxels, err);
     for (size_t n = 1; each && n <= clump->n_spheres && status == MS_OK; n++) {
         status = copy_spheres(&each[n - 1], clump, n, err);
     }

@@ -18,6 +18,7 @@ typedef struct stop_goal {
 #define GOAL_SURFACE(CODE, name)
 #define GOAL_SPHERES(CODE, name)
 #define GOAL_COUNT(CODE, name)
+#define GOAL_DESCRIPTOR(CODE, name)
 #define GOAL(kind, CODE, name, ...) GOAL_##kind(CODE, name)
 static const stop_goal GOALS[] = {MS_MEASURE_LIST(GOAL)};
 enum { N_GOALS = sizeof GOALS / sizeof *GOALS };

@@ -15,12 +15,14 @@ MS_C_BEGIN
 #define MS_STOP_REASON_SURFACE(CODE, name)
 #define MS_STOP_REASON_SPHERES(CODE, name)
 #define MS_STOP_REASON_COUNT(CODE, name)
+#define MS_STOP_REASON_DESCRIPTOR(CODE, name)
 #define MS_STOP_REASON(kind, CODE, name, ...) MS_STOP_REASON_##kind(CODE, name)
 #define MS_STOP_FIELD_GOAL(name) double name;
 #define MS_STOP_FIELD_UNION(name)
 #define MS_STOP_FIELD_SURFACE(name)
 #define MS_STOP_FIELD_SPHERES(name)
 #define MS_STOP_FIELD_COUNT(name)
+#define MS_STOP_FIELD_DESCRIPTOR(name)
 #define MS_STOP_FIELD(kind, CODE, name, ...) MS_STOP_FIELD_##kind(name)
 
 /** Why a run ended: MS_STOP_ETA, ... for a measure that was reached; those behind MS_STOP_RADIUS only a run can say. */

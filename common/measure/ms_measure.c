@@ -23,6 +23,7 @@
 #define GETTERS_SURFACE METRICS_GETTER
 #define GETTERS_SPHERES METRICS_GETTER
 #define GETTERS_COUNT METRICS_GETTER
+#define GETTERS_DESCRIPTOR METRICS_GETTER
 #define GETTERS(kind, CODE, name, ...) GETTERS_##kind(name)
 MS_MEASURE_LIST(GETTERS)
 
@@ -31,6 +32,7 @@ MS_MEASURE_LIST(GETTERS)
 #define OF_SCORE_SURFACE(name) NULL
 #define OF_SCORE_SPHERES(name) NULL
 #define OF_SCORE_COUNT(name) NULL
+#define OF_SCORE_DESCRIPTOR(name) NULL
 
 #define ROW(kind_, CODE, name_, better_, digits_, curve_, unit_, axis_, label_, source_, help_, compare_, stability_) \
     [MS_MEASURE_##CODE] = {.name = #name_,                                                                            \

@@ -3,6 +3,7 @@
 #define MS_MEASURE_H
 
 #include "base/ms_error.h"
+#include "ms_descriptors.h"
 
 MS_C_BEGIN
 
@@ -18,7 +19,8 @@ MS_C_BEGIN
  *         UNION: of S and U as well, but nothing to ask for
  *         SURFACE: distances to a mesh, NAN without one
  *         SPHERES: of the spheres themselves; COUNT: the same, a whole number
- * better  LESS, MORE, or ONE: 1 is best
+ *         DESCRIPTOR: of the form of the shape or of the union, NAN where it is not known
+ * better  LESS, MORE, or ONE: 1 is best; SHAPE: what the shape has; NONE: it is what it is
  * digits  behind the point, in words
  * curve   1: a column of the curves of --curve
  * unit    NULL without; "length" is the mesh's
@@ -27,6 +29,11 @@ MS_C_BEGIN
  * in ...  the column's name there, where it was published under another one; else NULL
  */
 /* clang-format off */
+#define MS_MEASURE_OF_DESCRIPTOR(X, CODE, name, digits, unit, label, source, help) \
+    X(DESCRIPTOR, SHAPE_##CODE, shape_##name, NONE, digits, 0, unit, NULL, label " of the shape", source, help, NULL, \
+      NULL) \
+    X(DESCRIPTOR, CLUMP_##CODE, clump_##name, SHAPE, digits, 0, unit, NULL, label " of the clump", source, help, NULL, \
+      NULL)
 #define MS_MEASURE_LIST(X) \
     X(GOAL, ETA, eta, LESS, 5, 1, NULL, NULL, \
       "eta, |S xor U| / |S|", "MSS eq. 7", \
@@ -64,7 +71,11 @@ MS_C_BEGIN
     X(GOAL, INERTIA, inertia, LESS, 5, 0, NULL, "error of the moments", \
       "their weighted mean (Yuan)", "Yuan 4, eps_w", \
       "sum of |I_k(union) - I_k(shape)| / sum of I_k(shape), I_k the principal moments; "  \
-      "in JSON `inertia_error.weighted_mean`", "inertia_union", "inertia_error")
+      "in JSON `inertia_error.weighted_mean`", "inertia_union", "inertia_error") \
+    X(DESCRIPTOR, VOXEL_LIMIT, voxel_limit, LESS, 5, 0, NULL, NULL, \
+      "voxel limit of D", "mskit", \
+      "A h / (4 V) of the shape, h the size of a voxel: a D below it is below what voxels can tell", NULL, NULL) \
+    MS_DESCRIPTOR_LIST(MS_MEASURE_OF_DESCRIPTOR, X)
 /* clang-format on */
 
 #define MS_MEASURE_ENUM(kind, CODE, ...) MS_MEASURE_##CODE,
@@ -77,6 +88,7 @@ typedef enum ms_measure_code { MS_MEASURE_LIST(MS_MEASURE_ENUM) MS_MEASURES } ms
 #define MS_MEASURE_GOAL_NAME_SURFACE(name)
 #define MS_MEASURE_GOAL_NAME_SPHERES(name)
 #define MS_MEASURE_GOAL_NAME_COUNT(name)
+#define MS_MEASURE_GOAL_NAME_DESCRIPTOR(name)
 #define MS_MEASURE_GOAL_NAME(kind, CODE, name, ...) MS_MEASURE_GOAL_NAME_##kind(name)
 #define MS_MEASURE_GOAL_NAMES MS_MEASURE_LIST(MS_MEASURE_GOAL_NAME)
 #define MS_MEASURE_CURVE_NAME_0(name)
@@ -89,10 +101,17 @@ typedef enum ms_measure_kind {
     MS_MEASURE_KIND_UNION,
     MS_MEASURE_KIND_SURFACE,
     MS_MEASURE_KIND_SPHERES,
-    MS_MEASURE_KIND_COUNT
+    MS_MEASURE_KIND_COUNT,
+    MS_MEASURE_KIND_DESCRIPTOR
 } ms_measure_kind;
 
-typedef enum ms_measure_better { MS_BETTER_LESS, MS_BETTER_MORE, MS_BETTER_ONE } ms_measure_better;
+typedef enum ms_measure_better {
+    MS_BETTER_LESS,
+    MS_BETTER_MORE,
+    MS_BETTER_ONE,
+    MS_BETTER_SHAPE,
+    MS_BETTER_NONE
+} ms_measure_better;
 
 struct ms_score;
 struct ms_metrics;

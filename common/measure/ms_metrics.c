@@ -124,6 +124,10 @@ static ms_status count_on_fitting_grid(ms_metrics *metrics, ms_score *curve, con
                                        const ms_clump *clump, size_t max_voxels, ms_error *err)
 {
     double lo[3], hi[3];
+    memset(metrics, 0, sizeof *metrics);
+    if (clump->n_spheres == 0) {
+        return ms_fail(err, MS_ERR_ARG, "a clump without spheres cannot be measured");
+    }
     ms_clump_box(lo, hi, clump);
     if (within_grid(&target->grid, lo, hi)) {
         return count_union(metrics, curve, &target->grid, target, clump, err);
@@ -154,21 +158,53 @@ static ms_status measure_surface(ms_metrics *metrics, const ms_target *target, c
     return status;
 }
 
+ms_status ms_metrics_score_clump(ms_score *score, ms_score *curve, const ms_target *target, const ms_clump *clump,
+                                 size_t max_voxels, ms_error *err)
+{
+    ms_metrics metrics;
+    const ms_status status = count_on_fitting_grid(&metrics, curve, target, clump, max_voxels, err);
+    *score = metrics.score;
+    return status;
+}
+
+/* After the body of the union. */
+static ms_status describe(ms_metrics *metrics, const ms_target *target, const ms_clump *clump, ms_error *err)
+{
+    ms_descriptors of_shape, of_clump;
+    ms_status status = MS_OK;
+    if (target->descriptors) {
+        of_shape = *target->descriptors;
+    } else {
+        status = ms_descriptors_of_target(&of_shape, target, err);
+    }
+    if (status == MS_OK) {
+        status = ms_descriptors_of_clump(&of_clump, clump, &metrics->body, err);
+    }
+    if (status == MS_OK) {
+        metrics->voxel_limit = ms_descriptors_voxel_limit(&of_shape, target->grid.h);
+#define TAKE(X, CODE, name, ...)           \
+    metrics->shape_##name = of_shape.name; \
+    metrics->clump_##name = of_clump.name;
+        MS_DESCRIPTOR_LIST(TAKE, )
+#undef TAKE
+    }
+    return status;
+}
+
 ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
                              size_t max_voxels, ms_error *err)
 {
-    memset(metrics, 0, sizeof *metrics);
-    if (clump->n_spheres == 0) {
-        return ms_fail(err, MS_ERR_ARG, "a clump without spheres cannot be measured");
-    }
-    metrics->spheres = clump->n_spheres;
-    metrics->smallest_radius_ratio = ms_clump_smallest_radius(clump) / ms_target_equivalent_radius(target);
     ms_status status = count_on_fitting_grid(metrics, curve, target, clump, max_voxels, err);
     if (status == MS_OK) {
+        metrics->spheres = clump->n_spheres;
+        metrics->smallest_radius_ratio = ms_clump_smallest_radius(clump) / ms_target_equivalent_radius(target);
         status = ms_clump_pieces(&metrics->pieces, clump, err);
     }
     if (status == MS_OK) {
         status = measure_surface(metrics, target, clump, err);
+    }
+    if (status == MS_OK) {
+        status = describe(metrics, target, clump, err);
     }
     if (status == MS_OK && metrics->body.volume > 0) {
         status = ms_metrics_compare_inertia(&metrics->inertia, &metrics->body, &target->body, err);

@@ -14,12 +14,14 @@ MS_C_BEGIN
 #define MS_SCORE_FIELD_SURFACE(name)
 #define MS_SCORE_FIELD_SPHERES(name)
 #define MS_SCORE_FIELD_COUNT(name)
+#define MS_SCORE_FIELD_DESCRIPTOR(name)
 #define MS_SCORE_FIELD(kind, CODE, name, ...) MS_SCORE_FIELD_##kind(name)
 #define MS_METRICS_FIELD_GOAL(name)
 #define MS_METRICS_FIELD_UNION(name)
 #define MS_METRICS_FIELD_SURFACE(name) double name;
 #define MS_METRICS_FIELD_SPHERES(name) double name;
 #define MS_METRICS_FIELD_COUNT(name) size_t name;
+#define MS_METRICS_FIELD_DESCRIPTOR(name) double name;
 #define MS_METRICS_FIELD(kind, CODE, name, ...) MS_METRICS_FIELD_##kind(name)
 
 /** Measures of S (target) and U (union) on the grid: eta, dice, ... Inertia is NAN unless ms_metrics_compute set it. */
@@ -52,7 +54,7 @@ MS_API ms_status ms_metrics_compare_inertia(ms_inertia_error *error, const ms_bo
 typedef struct ms_metrics {
     size_t spheres;
     ms_score score;
-    MS_MEASURE_LIST(MS_METRICS_FIELD) /* protrusion_max, ..., pieces */
+    MS_MEASURE_LIST(MS_METRICS_FIELD) /* protrusion_max, ..., clump_convexity */
     ms_body body;                     /* the union, on the grid */
     ms_inertia_error inertia;         /* of the union against the target */
 } ms_metrics;
@@ -61,17 +63,22 @@ typedef struct ms_metrics {
  * Measures a clump against a target, by the target's voxel rule. Where spheres reach beyond
  * the target's grid the union is counted on a larger one. Lengths are in the mesh's unit;
  * protrusion and gap are NAN for a volume, protrusion for an open mesh too, the inertia error
- * for spheres so small that they cover no voxel.
+ * for spheres so small that they cover no voxel, descriptors as ms_descriptors.h has it.
  *
  * @param[out] curve      scores of the prefixes 1..n_spheres; NULL if not wanted
  * @param      clump      at least one sphere
  * @param      max_voxels the largest grid that may be made
  * @return MS_OK; MS_ERR_ARG for an empty clump; MS_ERR_LIMIT; MS_ERR_NOMEM
  *
- * Cost: one raster of the union, and a search per sample of the surfaces (ms_surface.h).
+ * Cost: one raster of the union, a search per sample of the surfaces (ms_surface.h), the descriptors of the clump, and
+ * those of the target, unless ms_descriptors_add has been there before.
  */
 MS_API ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target,
                                     const ms_clump *clump, size_t max_voxels, ms_error *err);
+
+/** The same of the measures of S and U alone. @param[out] score zeros on failure */
+MS_API ms_status ms_metrics_score_clump(ms_score *score, ms_score *curve, const ms_target *target,
+                                        const ms_clump *clump, size_t max_voxels, ms_error *err);
 
 MS_C_END
 

@@ -87,6 +87,7 @@ ms_status ms_target_voxels_from_solid(ms_target *target, const ms_mesh *mesh, co
     memset(target, 0, sizeof *target);
     target->mesh = mesh;
     target->closed = solid != NULL;
+    target->overlapping = solid && solid->overlapping;
     target->rule = rule;
     target->body = solid ? solid->body : target->body;
     ms_status status = solid ? ms_voxelize(&target->grid, mesh, h, rule, err)
@@ -207,6 +208,7 @@ void ms_target_free(ms_target *target)
         ms_closest_free(target->closest);
         ms_grid_free(&target->grid);
         free(target->distance);
+        free(target->descriptors);
         memset(target, 0, sizeof *target);
     }
 }

@@ -14,6 +14,7 @@ MS_C_BEGIN
 typedef struct ms_target {
     const ms_mesh *mesh;        /* borrowed; NULL for a volume */
     int closed;                 /* the mesh bounds a body; 1 for a volume */
+    int overlapping;            /* the mesh passes through itself: part of it lies inside the body (ms_solid.h) */
     struct ms_closest *closest; /* nearest point on the mesh (ms_closest.h); NULL for a volume */
     ms_voxel_rule rule;         /* for the shape and for any union of spheres on its grid */
     ms_grid grid;               /* S, MSS eq. 5 */
@@ -23,6 +24,7 @@ typedef struct ms_target {
     size_t disagree;            /* voxels on which the axes did not agree (open mesh) */
     size_t pieces;              /* of a volume, ms_grid_pieces; 0 for a mesh */
     size_t largest_piece;       /* its voxels */
+    struct ms_descriptors *descriptors; /* where ms_descriptors_add has put them; else NULL */
 } ms_target;
 
 /* S: 1, E: 4; a generator, if it does not say: E~ 4, first-cover index 2, flags 1. */

@@ -61,7 +61,7 @@ typedef struct ms_input {
     ms_volume volume; /* empty for a mesh */
     ms_target target; /* after ms_input_target */
     uint32_t label;   /* that was asked for; 0: none */
-    double read_seconds, voxelize_seconds, distance_seconds;
+    double read_seconds, voxelize_seconds, distance_seconds, describe_seconds;
 } ms_input;
 
 /**
@@ -82,6 +82,9 @@ double ms_input_bytes(const ms_input *input, const ms_input_flags *flags);
  * unless allowed.
  */
 ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err);
+
+/** The descriptors of the target, once for all clumps that are measured against it. After ms_input_target. */
+ms_status ms_input_describe(ms_input *input, ms_error *err);
 
 /**
  * Says on stderr that the voxels do not hold the shape, with the figures and a number of cells to try, if they are

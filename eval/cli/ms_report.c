@@ -37,6 +37,32 @@ static void print_inertia(FILE *stream, const ms_measure *measure, const ms_metr
             m->inertia.angle);
 }
 
+static void print_form(FILE *stream, const char *label, const char *unit, int digits, double shape, double clump)
+{
+    const double value[2] = {shape, clump};
+    fprintf(stream, "  %-34s", label);
+    for (int v = 0; v < 2; v++) {
+        if (!isfinite(value[v])) {
+            fprintf(stream, " %-12s", "-");
+        } else if (unit) {
+            fprintf(stream, " %-12.5g", value[v]);
+        } else {
+            fprintf(stream, " %-12.*f", digits, value[v]);
+        }
+    }
+    fputc('\n', stream);
+}
+
+/* Descriptors of the shape and, beside them, of the clump. */
+static void print_descriptors(FILE *stream, const ms_metrics *m)
+{
+    fprintf(stream, "  %-34s %-12s %-12s\n", "form", "shape", "clump");
+#define PRINT(X, CODE, name, digits, unit, label, ...) \
+    print_form(stream, label, unit, digits, m->shape_##name, m->clump_##name);
+    MS_DESCRIPTOR_LIST(PRINT, )
+#undef PRINT
+}
+
 void ms_report_metrics(FILE *stream, const ms_metrics *m, const ms_target *target)
 {
     fprintf(stream, "  %-34s %zu\n", "spheres", m->spheres);
@@ -48,10 +74,13 @@ void ms_report_metrics(FILE *stream, const ms_metrics *m, const ms_target *targe
             print_pieces(stream, measure, m);
         } else if (code == MS_MEASURE_INERTIA) {
             print_inertia(stream, measure, m);
+        } else if (measure->kind == MS_MEASURE_KIND_DESCRIPTOR && code != MS_MEASURE_VOXEL_LIMIT) {
+            continue;
         } else if (code != MS_MEASURE_PROTRUSION_RMS && code != MS_MEASURE_GAP_RMS) {
             fprintf(stream, "  %-34s %.*f\n", measure->label, measure->digits, measure->of_metrics(m));
         }
     }
+    print_descriptors(stream, m);
 }
 
 void ms_report_curve(FILE *stream, const ms_score *curve, size_t count)

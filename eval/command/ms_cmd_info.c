@@ -9,6 +9,7 @@
 #include "cli/ms_json_object.h"
 #include "cli/ms_label_list.h"
 #include "cli/ms_report.h"
+#include "measure/ms_descriptors.h"
 #include "ms_commands.h"
 
 static const ms_flag FLAGS[] = {
@@ -41,26 +42,23 @@ static ms_status take_info_flag(void *context, const char *name, const char *val
 typedef struct info_facts {
     const ms_input *input;
     double lo[3], hi[3];
-    double area; /* NAN for a volume */
+    double area; /* of the surface; of a mesh whose surface is in part inside, of all of it */
+    ms_descriptors form;
     int has_body;
     ms_body body;
     ms_principal principal;
     ms_expect expect; /* empty if it was not asked for */
 } info_facts;
 
-static double equivalent_diameter(const info_facts *f)
+static ms_status describe(info_facts *f, const ms_input *input, ms_error *err)
 {
-    return f->has_body ? cbrt(6 * f->body.volume / acos(-1.0)) : (double)NAN;
-}
-
-/* Wadell: area of the ball of equal volume over the area of the body. That of a union is not known. */
-static double sphericity(const info_facts *f)
-{
-    if (f->input->solid.overlapping) {
-        return (double)NAN;
+    if (input->volume.label) {
+        const ms_status status = ms_descriptors_of_grid(&f->form, &input->target.grid, &f->body, err);
+        f->area = f->form.area;
+        return status;
     }
-    const double d = equivalent_diameter(f);
-    return acos(-1.0) * d * d / f->area;
+    f->area = ms_mesh_area(&input->mesh);
+    return ms_descriptors_of_mesh(&f->form, &input->mesh, f->has_body ? &input->solid : NULL, err);
 }
 
 static ms_status gather(info_facts *f, ms_input *input, const ms_input_flags *flags, ms_error *err)
@@ -68,7 +66,6 @@ static ms_status gather(info_facts *f, ms_input *input, const ms_input_flags *fl
     ms_status status = MS_OK;
     memset(f, 0, sizeof *f);
     f->input = input;
-    f->area = (double)NAN;
     status = ms_input_check_flags(input, flags, err);
     if (status != MS_OK) {
         return status;
@@ -83,9 +80,11 @@ static ms_status gather(info_facts *f, ms_input *input, const ms_input_flags *fl
         }
     } else {
         ms_mesh_box(f->lo, f->hi, &input->mesh);
-        f->area = ms_mesh_area(&input->mesh);
         f->has_body = input->report.closed;
         f->body = input->solid.body;
+    }
+    if (status == MS_OK) {
+        status = describe(f, input, err);
     }
     return status == MS_OK && f->has_body ? ms_inertia_principal(&f->principal, &f->body, err) : status;
 }
@@ -122,6 +121,28 @@ static void print_voxels(const ms_target *target)
     putchar('\n');
 }
 
+/* Of length or area as exact as the other figures, of ratios with less. */
+static void print_descriptor(const char *label, const char *unit, double value)
+{
+    if (isfinite(value)) {
+        printf("  %-22s %.*g\n", label, unit ? 9 : 6, value);
+    }
+}
+
+/* The descriptors that are known; the area has been told. */
+static void print_form(const ms_descriptors *form)
+{
+#define PRINT(X, CODE, name, digits, unit, label, ...) \
+    print_descriptor(label, unit, &form->name == &form->area ? (double)NAN : form->name);
+    MS_DESCRIPTOR_LIST(PRINT, )
+#undef PRINT
+    if (isfinite(form->feret[0])) {
+        print_vector("Feret dimensions", form->feret);
+    } else if (!ms_descriptors_has_hull()) {
+        puts("  (built without qhull: no Feret dimensions, no convexity)");
+    }
+}
+
 static void print_facts(const info_facts *f)
 {
     static const char *const ROWS[] = {"inertia tensor", "", ""}, *const AXES[] = {"principal axes", "", ""};
@@ -139,6 +160,7 @@ static void print_facts(const info_facts *f)
     }
     if (!f->has_body) {
         puts("  (an open mesh has no volume)");
+        print_form(&f->form);
         return;
     }
     printf("  %-22s %.9g\n", "volume", f->body.volume);
@@ -150,22 +172,31 @@ static void print_facts(const info_facts *f)
     for (int a = 0; a < 3; a++) {
         print_vector(AXES[a], f->principal.axis[a]);
     }
-    printf("  %-22s %.9g\n", "equivalent diameter", equivalent_diameter(f));
-    if (isfinite(sphericity(f))) {
-        printf("  %-22s %.6f\n", "sphericity (Wadell)", sphericity(f));
-    }
+    print_form(&f->form);
     if (f->expect.curve[MS_EXPECT_FREE].count > 0) {
         ms_expectation_print(stdout, &f->expect);
     }
 }
 
+static json_t *form_json(const ms_descriptors *form)
+{
+    json_t *json = json_object();
+#define PUT(X, CODE, name, ...) ms_json_object_set(&json, #name, ms_report_number(form->name));
+    MS_DESCRIPTOR_LIST(PUT, )
+#undef PUT
+    ms_json_object_set(&json, "feret",
+                       json_pack("[o,o,o]", ms_report_number(form->feret[0]), ms_report_number(form->feret[1]),
+                                 ms_report_number(form->feret[2])));
+    return json;
+}
+
 static json_t *facts_json(const info_facts *f)
 {
     const ms_mesh_report *r = &f->input->report;
-    json_t *json = json_pack("{s:o,s:[f,f,f],s:[f,f,f],s:o,s:o,s:o}", "path", ms_report_text(f->input->path), "box_lo",
-                             f->lo[0], f->lo[1], f->lo[2], "box_hi", f->hi[0], f->hi[1], f->hi[2], "area",
-                             ms_report_number(f->area), "equivalent_diameter", ms_report_number(equivalent_diameter(f)),
-                             "sphericity", ms_report_number(sphericity(f)));
+    json_t *json = json_pack("{s:o,s:[f,f,f],s:[f,f,f]}", "path", ms_report_text(f->input->path), "box_lo", f->lo[0],
+                             f->lo[1], f->lo[2], "box_hi", f->hi[0], f->hi[1], f->hi[2]);
+    ms_json_object_merge(&json, form_json(&f->form));
+    ms_json_object_set(&json, "area", ms_report_number(f->area));
     json_t *mesh = json_pack(
         "{s:I,s:I,s:b,s:I,s:I,s:I,s:I,s:I,s:b}", "triangles", (json_int_t)f->input->mesh.n_triangles, "vertices",
         (json_int_t)f->input->mesh.n_vertices, "closed", r->closed, "open_edges", (json_int_t)r->open_edges,

@@ -31,6 +31,7 @@
     X(READ, "seconds_read") \
     X(VOXELIZE, "seconds_voxelize") \
     X(DISTANCE, "seconds_distance") \
+    X(DESCRIBE, "seconds_describe") \
     X(GENERATE, "seconds_generate") \
     X(SCORE, "seconds_score") \
     X(CORRECT, "seconds_correct") \

@@ -38,6 +38,7 @@ static void put_input(ms_compare_row *row, const ms_input *input)
     row->number[MS_COLUMN_READ] = input->read_seconds;
     row->number[MS_COLUMN_VOXELIZE] = input->voxelize_seconds;
     row->number[MS_COLUMN_DISTANCE] = input->distance_seconds;
+    row->number[MS_COLUMN_DESCRIBE] = input->describe_seconds;
 }
 
 static void say_row(FILE *words, const ms_compare_row *row)

@@ -22,6 +22,9 @@ static ms_status make_input(ms_shared_input *shared, ms_queue_place *place)
         ms_queue_need_memory(place, shared->bytes, shared->flags.max_memory);
         status = ms_input_target(&shared->input, &shared->flags, &shared->cause);
     }
+    if (status == MS_OK) {
+        status = ms_input_describe(&shared->input, &shared->cause);
+    }
     return status;
 }
 

@@ -7,6 +7,9 @@ from support import Case
 SCORES = ("spheres eta dice coverage overshoot off_volume protrusion_max protrusion_rms gap_max gap_rms "
           "smallest_radius_ratio pieces volume inertia_error.moments inertia_error.weighted_mean "
           "inertia_error.axes_degrees inertia_error.centroid")
+FORM = "equivalent_diameter area sphericity elongation flatness feret_elongation feret_flatness corey convexity".split()
+DESCRIPTORS = ["voxel_limit"] + [which + name for name in FORM for which in ("shape_", "clump_")]
+SCORES = SCORES.replace(" volume", " " + " ".join(DESCRIPTORS) + " volume")
 MENDED = "joined dropped_degenerate dropped_duplicate filled_holes dropped_bodies dropped_volume turned"
 TARGET = "path fnv1a rule grid voxel_size grid_origin voxels triangles closed " + MENDED
 MASSES = ("epsilon products_epsilon centre_epsilon optimal least most error_mass error_centre error_moments "
@@ -62,9 +65,9 @@ class Columns(Case):
         self.assertEqual(self.header("compare.csv"),
                          "shape,checksum,label,generator,options,seed,cells,n_asked,n,stopped_by,eta,dice,coverage,"
                          "overshoot,off_volume,protrusion_max,protrusion_rms,gap_max,gap_rms,smallest_radius_ratio,"
-                         "pieces,inertia_union,expected,inertia_corrected,epsilon,products_epsilon,centre_epsilon,"
-                         "voxel_size,"
-                         "seconds_read,seconds_voxelize,seconds_distance,seconds_generate,seconds_score,"
+                         "pieces,inertia_union," + ",".join(DESCRIPTORS) + ",expected,inertia_corrected,epsilon,"
+                         "products_epsilon,centre_epsilon,voxel_size,"
+                         "seconds_read,seconds_voxelize,seconds_distance,seconds_describe,seconds_generate,seconds_score,"
                          "seconds_correct,repeats,peak_memory_kb,threads,beside,version,cause")
 
     def test_csv_of_stability(self):
@@ -72,7 +75,7 @@ class Columns(Case):
         self.assertEqual(self.header("stability.csv"),
                          "shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,status,"
                          "n,stopped_by,eta,dice,coverage,overshoot,off_volume,inertia_error,smallest_radius_ratio,"
-                         "pieces,n_until,seconds,beside,spheres_fnv1a,cause")
+                         "pieces," + ",".join(DESCRIPTORS) + ",n_until,seconds,beside,spheres_fnv1a,cause")
 
     def test_json_of_generate(self):
         run = self.generate("grain.stl", "-g", "mss", "-n", 5, "--cells", 15, "-o", "c.json")
@@ -103,7 +106,7 @@ class Columns(Case):
     def test_json_of_info(self):
         run = self.mskit("info", "grain.stl", "--json").json
         body = "volume centroid inertia principal_moments principal_axes"
-        self.assertEqual(keys(run), ("path box_lo box_hi area equivalent_diameter sphericity triangles vertices closed "
+        self.assertEqual(keys(run), ("path box_lo box_hi " + " ".join(FORM) + " feret triangles vertices closed "
                                      "open_edges nonmanifold_edges shells bodies cavities overlapping holes largest_hole " +
                                      MENDED + " " + body).split())
 
@@ -115,7 +118,7 @@ class Columns(Case):
         self.assertEqual(keys(about), "name summary source nested".split() +
                          under("options", "name type default min max unit choices help"))
         self.assertEqual([o["name"] for o in about["options"]],
-                         "spacing boost radius-offset order confine plane".split())
+                         "variant spacing boost polish radius-offset order confine plane".split())
         self.assertEqual(keys(self.mskit("help", "score", "--json").json), "name summary usage example".split() +
                          under("flags", "name letter argument help"))
 

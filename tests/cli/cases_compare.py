@@ -17,7 +17,7 @@ import zlib
 
 from support import MSKIT, TIMEOUT, Case, box_obj, fnv1a, npy
 
-TIMES = ("seconds_read", "seconds_voxelize", "seconds_distance", "seconds_generate", "seconds_score",
+TIMES = ("seconds_read", "seconds_voxelize", "seconds_distance", "seconds_describe", "seconds_generate", "seconds_score",
          "seconds_correct", "peak_memory_kb", "beside")
 RUN = ("-g", "mss", "-g", "setcover", "-g", "variational", "-n", "3,6", "--cells", "12",
        "-j", "1")

@@ -50,7 +50,10 @@ class Volume(Case):
             side = [hi - lo for lo, hi in BOXES[2]]
             others = [side[a] ** 2 for a in range(3) if a != axis]
             self.assert_close(info["inertia"][axis][axis], VOXELS[2] * sum(others) / 12, 1e-12, "moment of a cuboid")
-        self.assertIsNone(info["area"])
+        a, b, c = (hi - lo for lo, hi in BOXES[2])
+        self.assert_close(info["area"], 2 * (a * b + b * c + a * c), 0.1, "area, edges rounded off")
+        self.assert_close(info["elongation"], b / a, 1e-12, "elongation of a cuboid")
+        self.assert_close(info["flatness"], c / b, 1e-12, "flatness of a cuboid")
 
     def test_info_lists_the_labels(self):
         """Of several labels each has a line: voxels, box, pieces, and whether the border cuts it."""

@@ -19,7 +19,7 @@ static void rows_are_complete(void **state)
         assert_int_equal(ms_measure_is_of_score(m),
                          m->kind == MS_MEASURE_KIND_GOAL || m->kind == MS_MEASURE_KIND_UNION);
         assert_true(!m->curve || ms_measure_is_of_score(m)); /* a curve is made of scores */
-        assert_true(m->kind != MS_MEASURE_KIND_GOAL || m->better != MS_BETTER_ONE);
+        assert_true(m->kind != MS_MEASURE_KIND_GOAL || m->better <= MS_BETTER_MORE);
         for (const ms_measure *other = ms_measures; other < m; other++) {
             assert_string_not_equal(other->name, m->name);
         }
@@ -37,7 +37,26 @@ static void each_row_gives_its_own_field(void **state)
         .gap_max = 8,
         .gap_rms = 9,
         .smallest_radius_ratio = 10,
-        .pieces = 11};
+        .pieces = 11,
+        .voxel_limit = 13,
+        .shape_equivalent_diameter = 14,
+        .clump_equivalent_diameter = 15,
+        .shape_area = 16,
+        .clump_area = 17,
+        .shape_sphericity = 18,
+        .clump_sphericity = 19,
+        .shape_elongation = 20,
+        .clump_elongation = 21,
+        .shape_flatness = 22,
+        .clump_flatness = 23,
+        .shape_feret_elongation = 24,
+        .clump_feret_elongation = 25,
+        .shape_feret_flatness = 26,
+        .clump_feret_flatness = 27,
+        .shape_corey = 28,
+        .clump_corey = 29,
+        .shape_convexity = 30,
+        .clump_convexity = 31};
     for (int m = 0; m < MS_MEASURES; m++) {
         assert_true(ms_measures[m].of_metrics(&metrics) == m + 1);
         assert_true(!ms_measures[m].of_score || ms_measures[m].of_score(&metrics.score) == m + 1);
@@ -83,11 +102,26 @@ static void add_escaped(char *row, const char *text)
     *at = 0;
 }
 
-/* The guide's table is this one. */
+/* A row of the table of descriptors. */
+static void expect_row(const char *guide, const char *label, const char *names, const char *help, const char *unit,
+                       const char *source)
+{
+    char row[1024];
+    snprintf(row, sizeof row, "| %s | %s | %s | %s | %s |\n", label, names, help, unit ? unit : "-", source);
+    if (!strstr(guide, row)) {
+        fail_msg("docs/guide.md lacks this row of the table of descriptors:\n%s", row);
+    }
+}
+
+/* The guide's tables are these. */
 static void the_guide_has_the_table(void **state)
 {
     (void)state;
-    static const char *const BEST[] = {[MS_BETTER_LESS] = "less", [MS_BETTER_MORE] = "more", [MS_BETTER_ONE] = "1"};
+    static const char *const BEST[] = {[MS_BETTER_LESS] = "less",
+                                       [MS_BETTER_MORE] = "more",
+                                       [MS_BETTER_ONE] = "1",
+                                       [MS_BETTER_SHAPE] = "the shape's",
+                                       [MS_BETTER_NONE] = "-"};
     static char text[65536];
     char path[512];
     snprintf(path, sizeof path, "%s/guide.md", getenv("MSKIT_DOCS"));
@@ -97,6 +131,9 @@ static void the_guide_has_the_table(void **state)
     fclose(guide);
     for (const ms_measure *m = ms_measures; m->name; m++) {
         char row[1024] = "| ";
+        if (m->kind == MS_MEASURE_KIND_DESCRIPTOR && m != &ms_measures[MS_MEASURE_VOXEL_LIMIT]) {
+            continue; /* shape and clump are a row there */
+        }
         add_escaped(row, m->label);
         strcat(strcat(strcat(row, " | `"), m->name), "` | ");
         add_escaped(row, m->help);
@@ -107,6 +144,10 @@ static void the_guide_has_the_table(void **state)
             fail_msg("docs/guide.md lacks this row of the table of measures:\n%s", row);
         }
     }
+#define FIND(X, CODE, name, digits, unit, label, source, help) \
+    expect_row(text, label, "`shape_" #name "`, `clump_" #name "`", help, unit, source);
+    MS_DESCRIPTOR_LIST(FIND, )
+#undef FIND
 }
 
 int main(void)
