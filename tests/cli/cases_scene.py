@@ -102,6 +102,22 @@ class Choice(Scene):
                     before = self.before(shape, measure)
                     self.assertFalse(before >= value if rises else before <= value, f"{measure} {before} before")
 
+    def test_tolerance_is_searched_where_each_number_is_a_run(self):
+        """Few numbers are run; the one that is chosen reaches the tolerance, one sphere less was run and does not."""
+        for value in (0.3, 0.12, 0.05):
+            scene = self.scene(*GRID, "-g", "variational", "--max-spheres", "60", "--tolerance", f"dice={value}", "-o", "out")
+            self.assertIsNone(scene["even"])
+            for shape in scene["shapes"]:
+                run = [n for n, dice in enumerate(shape["curve"], 1) if dice is not None]
+                chosen = shape["curve"].index(shape["scores"]["dice"]) + 1
+                self.assertLessEqual(len(run), 12)
+                self.assertLessEqual(shape["scores"]["dice"], value)
+                if chosen > 1:
+                    self.assertIn(chosen - 1, run)
+                    self.assertGreater(shape["curve"][chosen - 2], value)
+        self.assert_refused("scene", "scene.csv", *GRID, "-g", "variational", "--max-spheres", "3", "--tolerance",
+                            "dice=0.001", code=1, says=("3 spheres", "dice 0.001"))
+
     def before(self, shape, measure):
         """The measure of the template without its last sphere, by mskit score; MSS is nested."""
         path = shape["input"]["path"]
