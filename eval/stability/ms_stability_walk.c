@@ -41,7 +41,7 @@ static ms_status read_shape(ms_input *input, const char *name, ms_input_flags *f
         return ms_hard_shapes_read(input, built_in, flags, err);
     }
     const ms_status status = ms_input_read(input, name, flags, err);
-    if (status == MS_OK && input->volume.label) {
+    if (status == MS_OK && input->is_volume) {
         ms_input_free(input);
         return ms_fail(err, MS_ERR_ARG, "%s is a volume; perturbations are of meshes", name);
     }
