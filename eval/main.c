@@ -8,24 +8,13 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/ms_version.h"
 #include "cli/ms_input.h"
 #include "command/ms_commands.h"
 
 static const ms_command *const COMMANDS[] = {
-    &ms_command_generate,
-    &ms_command_score,
-    &ms_command_correct,
-    &ms_command_convert,
-    &ms_command_info,
-    &ms_command_shape,
-    &ms_command_compare,
-    &ms_command_stability,
-    &ms_command_scene,
-    &ms_command_grains,
-    &ms_command_generators,
-    &ms_command_help,
-    NULL,
+    &ms_command_generate,   &ms_command_score,   &ms_command_correct,   &ms_command_convert,    &ms_command_info,
+    &ms_command_shape,      &ms_command_compare, &ms_command_stability, &ms_command_scene,      &ms_command_grains,
+    &ms_command_generators, &ms_command_help,    &ms_command_version,   &ms_command_completion, NULL,
 };
 
 static void print_usage(FILE *stream)
@@ -34,37 +23,28 @@ static void print_usage(FILE *stream)
     for (const ms_command *const *c = COMMANDS; *c; c++) {
         fprintf(stream, "  %-12s %s\n", (*c)->name, (*c)->summary);
     }
-    fputs("\n'mskit COMMAND --help' tells more, 'mskit --version' the version.\n"
+    fputs("\n'mskit COMMAND --help' tells more.\n"
           "example: mskit generate grain.stl --spheres 50 -o grain.csv\n",
           stream);
 }
 
-static const ms_command *find_command(const char *name)
-{
-    for (const ms_command *const *c = COMMANDS; *c; c++) {
-        if (strcmp(name, (*c)->name) == 0) {
-            return *c;
-        }
-    }
-    return NULL;
-}
-
 static int run_command(int argc, char **argv)
 {
-    const ms_command *command = find_command(argv[1]);
+    ms_error err;
+    ms_choice choice = {.typed = argv[1]};
+    const ms_command *command = ms_flags_find_command(&choice, COMMANDS);
     if (!command) {
-        fprintf(stderr, "mskit: there is no command '%s'; choose from", argv[1]);
-        for (const ms_command *const *c = COMMANDS; *c; c++) {
-            fprintf(stderr, "%s %s", c == COMMANDS ? "" : ",", (*c)->name);
+        if (argv[1][0] == '-') {
+            choice = (ms_choice){.typed = argv[1]};
+            ms_choice_offer(&choice, "--help");
+            ms_choice_offer(&choice, "--version");
         }
-        fputs("; mskit --help tells more\n", stderr);
+        ms_choice_fail(&choice, &err, "there is no %s '%s'", argv[1][0] == '-' ? "flag" : "command", argv[1]);
+        fprintf(stderr, "mskit: %s; flags follow a command (mskit generate --help)\n", err.text);
         return EXIT_USAGE;
     }
-    if (command == &ms_command_help && argc == 3 && find_command(argv[2])) {
-        char help[] = "--help", *words[] = {argv[2], help, NULL};
-        return find_command(argv[2])->run(find_command(argv[2]), 2, words);
-    }
-    return command->run(command, argc - 1, argv + 1);
+    return command->run ? command->run(command, argc - 1, argv + 1)
+                        : command->run_of_all(command, COMMANDS, argc - 1, argv + 1);
 }
 
 /* A file must not be opened under the number of a stream that the caller has closed: what is
@@ -124,10 +104,12 @@ int main(int argc, char **argv)
         print_usage(stderr);
         return EXIT_USAGE;
     }
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
+        static char version[] = "version";
+        argv[1] = version;
+    }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || (argc == 2 && strcmp(argv[1], "help") == 0)) {
         print_usage(stdout);
-    } else if (strcmp(argv[1], "--version") == 0) {
-        puts("mskit " MS_VERSION);
     } else {
         code = check_threads() ? run_command(argc, argv) : EXIT_USAGE;
     }

@@ -61,7 +61,7 @@ typedef struct ms_generator {
     const char *summary;      /* one line for `mskit generators` */
     const char *source;       /* the paper: authors, year, DOI or arXiv number */
     int nested;               /* nonzero: the first k spheres of a run are the clump of k spheres */
-    int baseline;             /* nonzero: something plain to compare with, which promises no quality */
+    int baseline;             /* nonzero: something plain to compare with, by name; promises no quality */
     const ms_option *options; /* ends with a NULL name */
     /**
      * REQUIRED. Target in, ordered spheres out, in the unit and frame of the shape. A nested method that chooses one

@@ -1,27 +1,19 @@
-/* The table of methods, and what looks them up: the one file of the interface that knows them. */
-#include <stdio.h>
-#include <string.h>
+/* The table of methods, and what looks them up. */
+#include "ms_generator_list.h"
 
-#include "fcm/ms_fcm.h"
-#include "ms_generator.h"
-#include "mss/ms_mss.h"
-#include "setcover/ms_setcover.h"
-#include "variational/ms_variational.h"
+#include "base/ms_choice.h"
 
-const ms_generator *const ms_generators[] = {
-    &ms_generator_mss, &ms_generator_setcover, &ms_generator_fcm, &ms_generator_variational, NULL,
-};
+#define TABLE_ROW(name) &ms_generator_##name,
+const ms_generator *const ms_generators[] = {MS_GENERATOR_LIST(TABLE_ROW) NULL};
 
 const ms_generator *ms_generator_find(const char *name, ms_error *err)
 {
-    char names[256] = "";
+    ms_choice choice = {.typed = name};
     for (const ms_generator *const *g = ms_generators; *g; g++) {
-        if (strcmp((*g)->name, name) == 0) {
+        if (ms_choice_offer(&choice, (*g)->name)) {
             return *g;
         }
-        const size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", (*g)->name);
     }
-    ms_fail(err, MS_ERR_ARG, "there is no generator '%s'; choose from %s", name, names);
+    ms_choice_fail(&choice, err, "there is no generator '%s'", name);
     return NULL;
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_choice.h"
 #include "base/ms_text.h"
 #include "clump/formats/ms_read.h"
 
@@ -56,12 +57,11 @@ const ms_option *ms_option_find(const ms_option *options, const char *name)
 
 static ms_status fail_unknown(ms_error *err, const ms_option *options, const char *name)
 {
-    char names[256] = "";
+    ms_choice choice = {.typed = name};
     for (const ms_option *o = options; o->name; o++) {
-        const size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", o->name);
+        ms_choice_offer(&choice, o->name);
     }
-    return ms_fail(err, MS_ERR_ARG, "this generator has no option '%s'; it has: %s", name, names[0] ? names : "none");
+    return ms_choice_fail(&choice, err, "this generator has no option '%s'", name);
 }
 
 static int parse_number(double *value, const char *text)
@@ -85,20 +85,19 @@ static ms_status set_number(double *value, const ms_option *option, const char *
 
 static ms_status set_flag(double *value, const ms_option *option, const char *text, ms_error *err)
 {
-    static const char *const YES[] = {"", "1", "on", "yes", "true"}, *const NO[] = {"0", "off", "no", "false"};
-    for (size_t w = 0; w < sizeof YES / sizeof *YES; w++) {
-        if (strcmp(text, YES[w]) == 0) {
-            *value = 1;
+    static const char *const WORDS[] = {"on", "off", "1", "0", "yes", "no", "true", "false"};
+    ms_choice choice = {.typed = text};
+    for (size_t w = 0; w < sizeof WORDS / sizeof *WORDS; w++) {
+        if (ms_choice_offer(&choice, WORDS[w])) {
+            *value = w % 2 == 0;
             return MS_OK;
         }
     }
-    for (size_t w = 0; w < sizeof NO / sizeof *NO; w++) {
-        if (strcmp(text, NO[w]) == 0) {
-            *value = 0;
-            return MS_OK;
-        }
+    if (text[0]) {
+        return ms_choice_fail(&choice, err, "%s=%s is not 'on' or 'off'", option->name, text);
     }
-    return ms_fail(err, MS_ERR_ARG, "%s=%s is not 'on' or 'off'", option->name, text);
+    *value = 1; /* the name alone */
+    return MS_OK;
 }
 
 /* The word of that rank in "first|second|..."; length 0 behind the last. */
@@ -117,12 +116,13 @@ static ms_word find_choice(const char *choices, int rank)
 
 static ms_status set_choice(double *value, const ms_option *option, const char *text, ms_error *err)
 {
+    ms_choice choice = {.typed = text};
     for (int rank = 0;; rank++) {
         const ms_word word = find_choice(option->choices, rank);
         if (word.length == 0) {
-            return ms_fail(err, MS_ERR_ARG, "%s=%s is not one of %s", option->name, text, option->choices);
+            return ms_choice_fail(&choice, err, "there is no %s '%s'", option->name, text);
         }
-        if (strlen(text) == word.length && memcmp(text, word.start, word.length) == 0) {
+        if (ms_choice_offer_part(&choice, word.start, word.length)) {
             *value = rank;
             return MS_OK;
         }

@@ -1,9 +1,9 @@
 #include "ms_stop.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "base/ms_choice.h"
 #include "voxel/ms_tally.h"
 
 /* A measure that can be asked for. */
@@ -86,25 +86,23 @@ static ms_status check_goal(const ms_measure *measure, double value, ms_error *e
 
 ms_status ms_stop_set(ms_stop *stop, const char *measure, double value, ms_error *err)
 {
-    char names[256] = "";
-    if (strcmp(measure, "radius") == 0) {
-        const ms_status status = check_radius(value, err);
-        stop->radius = status == MS_OK ? value : stop->radius;
-        return status;
-    }
+    ms_choice choice = {.typed = measure};
     for (size_t g = 0; g < N_GOALS; g++) {
         const ms_measure *goal = &ms_measures[GOALS[g].measure];
-        if (strcmp(measure, goal->name) == 0) {
+        if (ms_choice_offer(&choice, goal->name)) {
             const ms_status status = check_goal(goal, value, err);
             if (status == MS_OK) {
                 memcpy((char *)stop + GOALS[g].offset, &value, sizeof value);
             }
             return status;
         }
-        const size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s, ", goal->name);
     }
-    return ms_fail(err, MS_ERR_ARG, "no measure is called '%s'; choose from %sradius", measure, names);
+    if (ms_choice_offer(&choice, "radius")) {
+        const ms_status status = check_radius(value, err);
+        stop->radius = status == MS_OK ? value : stop->radius;
+        return status;
+    }
+    return ms_choice_fail(&choice, err, "no measure is called '%s'", measure);
 }
 
 ms_stop_reason ms_stop_reached(const ms_stop *stop, const ms_target *target, const ms_tally *sum, size_t n)

@@ -5,11 +5,24 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "ms_choice.h"
+
+ms_status ms_file_fail_open(ms_error *err, const char *path, int why)
+{
+    if (ms_file_is_standard(path)) {
+        return ms_fail(err, MS_ERR_IO, "standard input is not read here; name a file");
+    }
+    const ms_hint hint = why == ENOENT ? ms_choice_file_hint(path) : (ms_hint){""};
+    return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s%s", path, strerror(why),
+                   hint.text[0] ? hint.text : "; check the path");
+}
 
 static ms_status read_all(ms_bytes *bytes, int fd, size_t size, const char *path, ms_error *err)
 {
@@ -43,13 +56,13 @@ static ms_status open_regular(int *fd, size_t *size, const char *path, ms_error 
     /* Not to wait here for the writer of a pipe: it is refused below. */
     *fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (*fd < 0 || fstat(*fd, &info) != 0) {
-        return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s; check the path", path, strerror(errno));
+        return ms_file_fail_open(err, path, errno);
     }
     if (S_ISDIR(info.st_mode)) {
         return ms_fail(err, MS_ERR_IO, "%s: is a folder; name a file in it", path);
     }
     if (!S_ISREG(info.st_mode)) {
-        return ms_fail(err, MS_ERR_IO, "%s: is a device or a pipe; name a regular file", path);
+        return ms_fail(err, MS_ERR_IO, "%s: is a device or a pipe; name a regular file, or - for standard input", path);
     }
     if ((uintmax_t)info.st_size > SIZE_MAX - 1) {
         return ms_fail(err, MS_ERR_NOMEM, "%s: is larger than the memory of this machine", path);
@@ -116,6 +129,72 @@ void ms_file_unneeded(const ms_bytes *bytes, size_t from, size_t size)
         /* Advice: no harm where it is not taken. */
         (void)madvise(bytes->data + first, end - first, MADV_DONTNEED);
     }
+}
+
+int ms_file_is_standard(const char *path)
+{
+    return strcmp(path, "-") == 0;
+}
+
+const char *ms_file_name(const char *path)
+{
+    return ms_file_is_standard(path) ? "standard input" : path;
+}
+
+/* Room for a byte more than the 0 byte takes, so that the end is seen without growing once more. */
+static ms_status grow(ms_bytes *bytes, size_t *room, size_t most, ms_error *err)
+{
+    enum { FIRST = 1 << 16 };
+    const size_t wanted = !*room ? FIRST : *room < most / 2 ? 2 * *room : most;
+    uint8_t *grown = realloc(bytes->data, wanted + 2);
+    if (!grown) {
+        return ms_fail(err, MS_ERR_NOMEM, "standard input: no memory for more than %zu bytes", bytes->size);
+    }
+    bytes->data = grown;
+    *room = wanted;
+    return MS_OK;
+}
+
+/* One read; whoever made the pipe may have said that it is not to be waited for. */
+static ssize_t read_some(void *to, size_t count)
+{
+    struct pollfd wait = {.fd = STDIN_FILENO, .events = POLLIN};
+    ssize_t got = read(STDIN_FILENO, to, count);
+    while (got < 0 && (errno == EINTR || errno == EAGAIN)) {
+        poll(&wait, 1, -1);
+        got = read(STDIN_FILENO, to, count);
+    }
+    return got;
+}
+
+ms_status ms_file_read_standard(ms_bytes *bytes, size_t most, ms_error *err)
+{
+    ms_status status = MS_OK;
+    size_t room = 0;
+    ssize_t got = 1;
+    *bytes = (ms_bytes){0};
+    most = most < SIZE_MAX / 2 ? most : SIZE_MAX / 2;
+    while (status == MS_OK && got > 0 && bytes->size <= most) {
+        if (bytes->size >= room) {
+            status = grow(bytes, &room, most, err);
+        }
+        got = status == MS_OK ? read_some(bytes->data + bytes->size, room + 1 - bytes->size) : 0;
+        bytes->size += got > 0 ? (size_t)got : 0;
+    }
+    if (got < 0) {
+        status =
+            ms_fail(err, MS_ERR_IO, "standard input: cannot be read at byte %zu: %s", bytes->size, strerror(errno));
+    } else if (status == MS_OK && bytes->size > most) {
+        status =
+            ms_fail(err, MS_ERR_LIMIT, "standard input: is longer than the %.3g MB allowed; save it and name the file",
+                    (double)most / 1e6);
+    }
+    if (status != MS_OK) {
+        ms_file_free(bytes);
+        return status;
+    }
+    bytes->data[bytes->size] = 0;
+    return MS_OK;
 }
 
 void ms_file_free(ms_bytes *bytes)
@@ -238,7 +317,7 @@ static ms_status open_path(ms_output *output, const char *path, ms_error *err)
 ms_status ms_output_open(ms_output *output, const char *path, ms_error *err)
 {
     *output = (ms_output){0};
-    if (strcmp(path, "-") == 0) {
+    if (ms_file_is_standard(path)) {
         output->stream = stdout;
         return MS_OK;
     }

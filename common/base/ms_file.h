@@ -36,6 +36,24 @@ MS_API ms_status ms_file_map(ms_bytes *bytes, const char *path, ms_error *err);
 /** Bytes of a mapped file that are not needed soon: their pages leave the memory of this process. */
 MS_API void ms_file_unneeded(const ms_bytes *bytes, size_t from, size_t size);
 
+/** Nonzero for "-", which is standard input where a command reads and standard output where it writes. */
+MS_API int ms_file_is_standard(const char *path);
+
+/**
+ * Reads standard input to its end.
+ *
+ * @param most bytes that are read at most
+ * @return MS_OK; MS_ERR_LIMIT if there are more; MS_ERR_IO; MS_ERR_NOMEM
+ */
+MS_API ms_status ms_file_read_standard(ms_bytes *bytes, size_t most, ms_error *err);
+
+/** What a file is called in messages: its path, or "standard input". */
+MS_API const char *ms_file_name(const char *path);
+
+/** Says why a file cannot be opened and, of one that is not there, which name in its folder is near. @param why errno
+ * @return MS_ERR_IO */
+MS_API ms_status ms_file_fail_open(ms_error *err, const char *path, int why);
+
 MS_API void ms_file_free(ms_bytes *bytes);
 
 /** FNV-1a of no byte. */

@@ -1,8 +1,6 @@
 #include "ms_measure.h"
 
-#include <stdio.h>
-#include <string.h>
-
+#include "base/ms_choice.h"
 #include "ms_metrics.h"
 
 /* What gives the value of each: of a field of ms_score both, of one of ms_metrics alone the second. */
@@ -69,17 +67,12 @@ int ms_measure_is_reached(const ms_measure *measure, double value, double asked)
 
 const ms_measure *ms_measure_find_goal(const char *name, ms_error *err)
 {
-    char names[256] = "";
+    ms_choice choice = {.typed = name};
     for (const ms_measure *m = ms_measures; m->name; m++) {
-        if (m->kind != MS_MEASURE_KIND_GOAL) {
-            continue;
-        }
-        if (strcmp(m->name, name) == 0) {
+        if (m->kind == MS_MEASURE_KIND_GOAL && ms_choice_offer(&choice, m->name)) {
             return m;
         }
-        const size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", m->name);
     }
-    ms_fail(err, MS_ERR_ARG, "there is no measure '%s'; choose from %s", name, names);
+    ms_choice_fail(&choice, err, "there is no measure '%s'", name);
     return NULL;
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/ms_choice.h"
 #include "ms_shape_build.h"
 
 /* Small enough that no product of three overflows or vanishes. */
@@ -84,16 +85,13 @@ const ms_shape_kind ms_shape_kinds[] = {
 
 const ms_shape_kind *ms_shape_find(const char *name, ms_error *err)
 {
-    char list[256] = "";
+    ms_choice choice = {.typed = name};
     for (const ms_shape_kind *kind = ms_shape_kinds; kind->name; kind++) {
-        if (strcmp(kind->name, name) == 0) {
+        if (ms_choice_offer(&choice, kind->name)) {
             return kind;
         }
-        if (strlen(list) + strlen(kind->name) + 3 <= sizeof list) {
-            strcat(strcat(list, kind == ms_shape_kinds ? "" : ", "), kind->name);
-        }
     }
-    ms_fail(err, MS_ERR_ARG, "no shape is called '%.40s'; there are: %s", name, list);
+    ms_choice_fail(&choice, err, "no shape is called '%s'", name);
     return NULL;
 }
 

@@ -22,7 +22,7 @@ static size_t seek_slot(const ms_labels *labels, uint32_t label)
 }
 
 /* Twice the slots, at most half of which are taken. */
-static ms_status grow(ms_labels *labels, ms_error *err)
+static ms_status grow_table(ms_labels *labels, ms_error *err)
 {
     const size_t slots = labels->n_slots ? 2 * labels->n_slots : FIRST_SLOTS;
     ms_label_entry *entry = realloc(labels->entry, slots / 2 * sizeof *entry);
@@ -50,7 +50,7 @@ static ms_label_entry *need_entry(ms_labels *labels, uint32_t label, ms_error *e
         return &labels->entry[labels->slot[at] - 1];
     }
     if (labels->count == labels->capacity) {
-        if (grow(labels, err) != MS_OK) {
+        if (grow_table(labels, err) != MS_OK) {
             return NULL;
         }
         at = seek_slot(labels, label);
@@ -76,7 +76,7 @@ static void add_run(ms_label_entry *entry, const int n[3], int lo, int hi, int y
 ms_status ms_labels_begin(ms_labels *labels, const int n[3], ms_error *err)
 {
     *labels = (ms_labels){.n = {n[0], n[1], n[2]}};
-    const ms_status status = grow(labels, err);
+    const ms_status status = grow_table(labels, err);
     if (status != MS_OK) {
         ms_labels_free(labels);
     }

@@ -1,4 +1,4 @@
-/** A volume file as it lies on the disk: its labels are taken slice by slice or box by box and never held all at once. */
+/** A volume file as it lies on the disk: labels are taken slice by slice or box by box, never held all at once. */
 #ifndef MS_SCAN_H
 #define MS_SCAN_H
 

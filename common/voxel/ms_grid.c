@@ -81,6 +81,18 @@ void ms_grid_place(double place[3], const ms_grid *grid, const double at[3])
     }
 }
 
+int ms_grid_holds(const ms_grid *grid, const double at[3])
+{
+    int voxel[3];
+    for (int a = 0; a < 3; a++) {
+        if (!(at[a] > -0.5 && at[a] < grid->n[a] - 0.5)) {
+            return 0;
+        }
+        voxel[a] = (int)rint(at[a]);
+    }
+    return grid->inside[ms_grid_index(grid, voxel[0], voxel[1], voxel[2])];
+}
+
 ms_ball ms_grid_ball(const ms_grid *grid, const ms_sphere *sphere)
 {
     ms_ball ball = {.radius = sphere->radius / grid->h};

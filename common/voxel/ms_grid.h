@@ -64,6 +64,9 @@ MS_API void ms_grid_at(double at[3], const ms_grid *grid, const double place[3])
 /** The place in the mesh's frame of a point of the grid. */
 MS_API void ms_grid_place(double place[3], const ms_grid *grid, const double at[3]);
 
+/** Nonzero if a point of the grid lies in a voxel inside the shape; 0 beyond the grid. */
+MS_API int ms_grid_holds(const ms_grid *grid, const double at[3]);
+
 /** A sphere of the mesh's frame in voxels, and back. */
 MS_API ms_ball ms_grid_ball(const ms_grid *grid, const ms_sphere *sphere);
 MS_API ms_sphere ms_grid_sphere(const ms_grid *grid, const ms_ball *ball);

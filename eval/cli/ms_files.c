@@ -48,6 +48,28 @@ int ms_files_is_stream(const char *path)
     return strcmp(path, "-") == 0 || (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode));
 }
 
+ms_status ms_files_check_standard(const char *const *path, size_t count, ms_error *err)
+{
+    size_t found = 0;
+    for (size_t f = 0; f < count; f++) {
+        found += path[f] && ms_file_is_standard(path[f]);
+    }
+    return found < 2 ? MS_OK
+                     : ms_fail(err, MS_ERR_ARG,
+                               "- is given for %zu inputs, and standard input can be read once; save the others and "
+                               "name their files",
+                               found);
+}
+
+const char *ms_files_stem(size_t *length, const char *path)
+{
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
+    base = ms_file_is_standard(path) ? "stdin" : base;
+    const char *dot = strrchr(base, '.');
+    *length = dot && dot > base ? (size_t)(dot - base) : strlen(base);
+    return base;
+}
+
 static ms_status make_room(ms_files *files, ms_error *err)
 {
     const size_t capacity = files->capacity ? 2 * files->capacity : 64;

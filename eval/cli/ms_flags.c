@@ -12,6 +12,16 @@
 /* Room for the flags of a command and the options of all generators. */
 enum { MAX_FLAGS = 128, HELP_COLUMN = 28 };
 
+const ms_command *ms_flags_find_command(ms_choice *choice, const ms_command *const *all)
+{
+    for (const ms_command *const *c = all; *c; c++) {
+        if (ms_choice_offer(choice, (*c)->name)) {
+            return *c;
+        }
+    }
+    return NULL;
+}
+
 static void print_flag(const ms_flag *flag)
 {
     char left[64];
@@ -36,7 +46,7 @@ static void print_help(const ms_command *command)
 /* What getopt works on. */
 typedef struct flag_tables {
     struct option longs[MAX_FLAGS];
-    char shorts[2 * MAX_FLAGS];
+    char shorts[2 * MAX_FLAGS + 2];
     size_t count;
 } flag_tables;
 
@@ -56,6 +66,7 @@ static void make_tables(flag_tables *t, const ms_command *command, int generator
 {
     char *letter = t->shorts;
     memset(t, 0, sizeof *t);
+    *letter++ = ':'; /* a missing argument is told from an unknown flag */
     for (const ms_flag *flag = command->flags; flag->name; flag++) {
         add_long(t, flag->name, flag->argument ? required_argument : no_argument, 0);
         if (flag->letter) {
@@ -73,13 +84,65 @@ static void make_tables(flag_tables *t, const ms_command *command, int generator
     }
 }
 
-static void print_choices(const ms_command *command, const flag_tables *t)
+/* How many flags begin like this word, and which of them is the first; only it, if that is its whole name. */
+static size_t find_flags(const char **first, const flag_tables *t, const char *word, size_t length)
 {
-    fprintf(stderr, "mskit %s: choose from", command->name);
+    size_t found = 0;
     for (size_t f = 0; f < t->count; f++) {
-        fprintf(stderr, "%s --%s", f ? "," : "", t->longs[f].name);
+        if (strncmp(t->longs[f].name, word, length) == 0) {
+            *first = found ? *first : t->longs[f].name;
+            found++;
+        }
+        if (strlen(t->longs[f].name) == length && memcmp(t->longs[f].name, word, length) == 0) {
+            *first = t->longs[f].name;
+            return 1;
+        }
     }
-    fputs("; --help tells more\n", stderr);
+    return found;
+}
+
+static ms_status fail_no_flag(ms_error *err, const flag_tables *t, const char *dashes, const char *word, size_t length)
+{
+    ms_choice choice = {.typed = word, .length = length};
+    for (size_t f = 0; f < t->count; f++) {
+        ms_choice_offer(&choice, t->longs[f].name);
+    }
+    const int near = choice.nearest[0] != '\0';
+    return ms_fail(err, MS_ERR_ARG, "there is no flag %s%.*s%s%s%s", dashes, (int)length, word,
+                   near ? "; did you mean --" : "", choice.nearest, near ? "?" : "");
+}
+
+/* A word behind two dashes. */
+static ms_status fail_long(ms_error *err, const flag_tables *t, const char *word)
+{
+    const size_t length = strcspn(word, "=");
+    const char *first = NULL;
+    const size_t found = find_flags(&first, t, word, length);
+    if (found == 1) {
+        return ms_fail(err, MS_ERR_ARG, "--%s takes no argument", first);
+    }
+    return found > 1 ? ms_fail(err, MS_ERR_ARG, "--%.*s may be short for %zu flags, as --%s; write more of it",
+                               (int)length, word, found, first)
+                     : fail_no_flag(err, t, "--", word, length);
+}
+
+/* Says which flag getopt did not take, and why, in a sentence. It stands behind a whole word, but within one of
+ * several letters, as -cells. */
+static int refuse_flag(const ms_command *command, const flag_tables *t, int found, int argc, char **argv)
+{
+    ms_error err;
+    const char *word = argv[optind - 1];
+    if (found == ':') {
+        ms_fail(&err, MS_ERR_ARG, "%s takes an argument", word);
+    } else if (optopt && optopt != 'h') {
+        const char letter = (char)optopt, *at = optind < argc ? argv[optind] : "";
+        word = at[0] == '-' && at[1] == letter ? at + 1 : &letter;
+        fail_no_flag(&err, t, "-", word, word == &letter ? 1 : strcspn(word, "="));
+    } else {
+        fail_long(&err, t, word + 2);
+    }
+    fprintf(stderr, "mskit %s: %s (mskit %s --help lists the flags)\n", command->name, err.text, command->name);
+    return EXIT_USAGE;
 }
 
 static const char *name_of_letter(const ms_command *command, int letter)
@@ -98,9 +161,7 @@ int ms_flags_parse(int *first_word, const ms_command *command, int generator_opt
     flag_tables t;
     int found, at = 0;
     ms_error err;
-    char name[64];
-    snprintf(name, sizeof name, "mskit %s", command->name);
-    argv[0] = name;              /* getopt's own messages begin with it */
+    opterr = 0;                  /* its messages would be ours and more */
     unsetenv("POSIXLY_CORRECT"); /* flags may stand anywhere */
     make_tables(&t, command, generator_options);
     while ((found = getopt_long(argc, argv, t.shorts, t.longs, &at)) != -1) {
@@ -108,9 +169,8 @@ int ms_flags_parse(int *first_word, const ms_command *command, int generator_opt
             print_help(command);
             return EXIT_DONE;
         }
-        if (found == '?') {
-            print_choices(command, &t); /* getopt has said what is wrong */
-            return EXIT_USAGE;
+        if (found == '?' || found == ':') {
+            return refuse_flag(command, &t, found, argc, argv);
         }
         const char *flag = found == 0 ? t.longs[at].name : name_of_letter(command, found);
         const ms_status status = handler(context, flag, optarg, &err);

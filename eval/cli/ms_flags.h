@@ -2,6 +2,7 @@
 #ifndef MS_FLAGS_H
 #define MS_FLAGS_H
 
+#include "base/ms_choice.h"
 #include "base/ms_error.h"
 #include "ms_option.h"
 
@@ -25,7 +26,12 @@ typedef struct ms_command {
     const ms_flag *flags;
     /** @return an exit code */
     int (*run)(const struct ms_command *command, int argc, char **argv);
+    /** In its place, of a command that tells of the others: all of them, NULL-ended. */
+    int (*run_of_all)(const struct ms_command *command, const struct ms_command *const *all, int argc, char **argv);
 } ms_command;
+
+/** The command that was typed; NULL if it is none of these, and all are offered. */
+const ms_command *ms_flags_find_command(ms_choice *choice, const ms_command *const *all);
 
 /**
  * Is told of each flag found. `name` is one of the table, or an option of any generator.

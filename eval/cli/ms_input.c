@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <omp.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -80,10 +81,11 @@ static ms_status name_file(ms_error *err, ms_status status, const ms_input *inpu
     return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", input->path, cause->text);
 }
 
-static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, const ms_mesh_mending *mending, ms_error *err)
+static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, const char *path, const ms_mesh_mending *mending,
+                            ms_error *err)
 {
     ms_error cause, remark;
-    ms_status status = ms_mesh_parse(&input->mesh, &remark, bytes, input->path, err);
+    ms_status status = ms_mesh_parse(&input->mesh, &remark, bytes, path, err);
     if (status == MS_OK && remark.text[0]) {
         fprintf(stderr, "%s\n", remark.text);
     }
@@ -122,21 +124,29 @@ static ms_status read_volume(ms_input *input, const ms_input_flags *flags, ms_er
     return name_file(err, status, input, &cause);
 }
 
-static ms_status read_mesh(ms_input *input, const ms_input_flags *flags, ms_error *err)
+/* What never ends is given up where it is longer than the memory that is allowed. */
+static ms_status read_standard_input(ms_bytes *bytes, const ms_input_flags *flags, ms_error *err)
+{
+    const double most = fmin(flags->max_memory, (double)PTRDIFF_MAX);
+    return ms_file_read_standard(bytes, (size_t)most, err);
+}
+
+/* A mesh by its ending, or from standard input by its content. */
+static ms_status read_mesh(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err)
 {
     ms_bytes bytes;
-    ms_status status = ms_file_read(&bytes, input->path, err);
+    const int is_standard = ms_file_is_standard(path);
+    ms_status status = is_standard ? read_standard_input(&bytes, flags, err) : ms_file_read(&bytes, path, err);
     if (status != MS_OK) {
         return status;
     }
     input->checksum = ms_file_checksum(&bytes);
-    status =
-        ms_mesh_read_is_mesh_path(input->path)
-            ? parse_mesh(input, &bytes, &flags->mending, err)
-            : ms_fail(err, MS_ERR_FORMAT,
-                      "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
-                      "%s",
-                      input->path, ms_volume_endings());
+    status = is_standard || ms_mesh_read_is_mesh_path(path)
+                 ? parse_mesh(input, &bytes, path, &flags->mending, err)
+                 : ms_fail(err, MS_ERR_FORMAT,
+                           "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
+                           "%s",
+                           path, ms_volume_endings());
     ms_file_free(&bytes);
     return status;
 }
@@ -145,7 +155,7 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
 {
     const double start = omp_get_wtime();
     memset(input, 0, sizeof *input);
-    input->path = path;
+    input->path = ms_file_name(path);
     if (flags->threads) {
         omp_set_num_threads(flags->threads);
     }
@@ -153,7 +163,8 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
         return ms_fail(err, MS_ERR_IO, "the name of the shape is empty; name a mesh or a volume");
     }
     open_line(input, "reading");
-    const ms_status status = (ms_volume_is_volume_path(path) ? read_volume : read_mesh)(input, flags, err);
+    const ms_status status =
+        ms_volume_is_volume_path(path) ? read_volume(input, flags, err) : read_mesh(input, path, flags, err);
     ms_progress_close();
     input->read_seconds = omp_get_wtime() - start;
     if (status != MS_OK) {

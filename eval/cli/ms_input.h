@@ -53,7 +53,7 @@ ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, con
 
 /** A shape that was read. */
 typedef struct ms_input {
-    const char *path;
+    const char *path;  /* "standard input" for "-" */
     uint64_t checksum; /* FNV-1a of the file */
     ms_mesh mesh;      /* empty for a volume */
     ms_mesh_report report;
@@ -70,7 +70,8 @@ typedef struct ms_input {
 
 /**
  * Reads a mesh or a volume; mends a mesh, and if it is closed takes its volume, centre and
- * inertia. What was mended, and whether bodies overlap, is said on stderr.
+ * inertia. What was mended, and whether bodies overlap, is said on stderr. "-" is standard input, which is a mesh of up
+ * to --max-memory bytes.
  */
 ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err);
 

@@ -1,6 +1,7 @@
 /* Flags about the shape and its grid. */
 #include <string.h>
 
+#include "base/ms_choice.h"
 #include "base/ms_text.h"
 #include "ms_input.h"
 
@@ -37,14 +38,13 @@ static ms_status parse_max_voxels(double *voxels, const char *text, ms_error *er
 
 static ms_status parse_rule(ms_voxel_rule *rule, const char *text, ms_error *err)
 {
-    if (strcmp(text, "half") == 0) {
-        *rule = MS_VOXEL_HALF;
-    } else if (strcmp(text, "centre") == 0) {
-        *rule = MS_VOXEL_CENTRE;
-    } else {
-        return ms_fail(err, MS_ERR_ARG, "--rule %s is not half or centre", text);
+    ms_choice choice = {.typed = text};
+    *rule = MS_VOXEL_HALF;
+    if (ms_choice_offer(&choice, "half")) {
+        return MS_OK;
     }
-    return MS_OK;
+    *rule = MS_VOXEL_CENTRE;
+    return ms_choice_offer(&choice, "centre") ? MS_OK : ms_choice_fail(&choice, err, "there is no --rule '%s'", text);
 }
 
 /* Takes a flag if it is one of MS_INPUT_MENDING_FLAGS. */

@@ -9,7 +9,7 @@
 /* clang-format off */
 #define MS_INPUT_VOLUME_FLAGS \
     {"label", 0, "L", "the label of a volume to take"}, \
-    {"threshold", 0, "T", "of a volume of grey values: what is above T is grains; connected components are the labels"}, \
+    {"threshold", 0, "T", "grey values above T are grains; the labels are their connected components"}, \
     {"otsu", 0, NULL, "the same with Otsu's threshold"}, \
     {"connectivity", 0, "6|18|26", "voxels of one component share faces, or edges, or corners (26)"}, \
     {"voxel-spacing", 0, "X,Y,Z", "edges of a voxel of a volume, in place of those of its file"}, \

@@ -5,14 +5,19 @@
 #include <omp.h>
 #include <string.h>
 
+#include "base/ms_choice.h"
+
 /* Takes one of two words; 1 for the second. */
 static ms_status take_choice(int *second, const char *name, const char *value, const char *const words[2],
                              ms_error *err)
 {
-    *second = strcmp(value, words[1]) == 0;
-    return *second || strcmp(value, words[0]) == 0
-               ? MS_OK
-               : ms_fail(err, MS_ERR_ARG, "--%s is %s or %s, not '%s'", name, words[0], words[1], value);
+    ms_choice choice = {.typed = value};
+    *second = 0;
+    if (ms_choice_offer(&choice, words[0])) {
+        return MS_OK;
+    }
+    *second = ms_choice_offer(&choice, words[1]);
+    return *second ? MS_OK : ms_choice_fail(&choice, err, "there are no --%s '%s'", name, value);
 }
 
 ms_status ms_mass_flag(int *taken, ms_mass_flags *flags, const char *name, const char *value, ms_error *err)
@@ -62,14 +67,15 @@ ms_status ms_mass_resolve(ms_mass_flags *flags, ms_error *err)
     if (flags->unit && flags->scale > 0) {
         return ms_fail(err, MS_ERR_ARG, "--unit and --scale exclude one another");
     }
+    ms_choice choice = {.typed = flags->unit};
     for (size_t u = 0; flags->unit && u < 3; u++) {
-        if (strcmp(flags->unit, UNITS[u].name) == 0) {
+        if (ms_choice_offer(&choice, UNITS[u].name)) {
             flags->scale = UNITS[u].metres;
         }
     }
     if (flags->unit && !(flags->scale > 0)) {
-        return ms_fail(err, MS_ERR_ARG, "--unit is m, mm or um, not '%s'; --scale takes any number of metres",
-                       flags->unit);
+        return ms_choice_fail(&choice, err, "there is no --unit '%s' (--scale takes any number of metres)",
+                              flags->unit);
     }
     flags->scale = flags->scale > 0 ? flags->scale : 1;
     return MS_OK;

@@ -91,12 +91,12 @@ ms_status ms_methods_add_clump(ms_methods *methods, const char *text, ms_error *
     return status == MS_OK ? ms_read_clump(&m->clump, &unused, m->options, err) : status;
 }
 
-/* By default options. */
+/* All but the baselines, by default options. */
 static ms_status add_all_generators(ms_methods *methods, ms_error *err)
 {
     ms_status status = MS_OK;
     for (const ms_generator *const *g = ms_generators; *g && status == MS_OK; g++) {
-        status = ms_methods_add(methods, (*g)->name, err);
+        status = (*g)->baseline ? MS_OK : ms_methods_add(methods, (*g)->name, err);
     }
     return status;
 }

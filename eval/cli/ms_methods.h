@@ -33,7 +33,7 @@ ms_status ms_methods_add(ms_methods *methods, const char *text, ms_error *err);
 ms_status ms_methods_add_clump(ms_methods *methods, const char *text, ms_error *err);
 
 /**
- * Does each stand there once? Adds every generator, by default options, if there is none yet.
+ * Does each stand there once? Adds every generator but the baselines, by default options, if there is none yet.
  * @return MS_OK; MS_ERR_ARG; as ms_methods_add
  */
 ms_status ms_methods_check(ms_methods *methods, ms_error *err);

@@ -9,8 +9,7 @@ enum { MS_RECIPE_MAX_OPTIONS = 256 };
 
 /* clang-format off */
 #define MS_RECIPE_FLAGS \
-    {"generator", 'g', "NAME", \
-     "the method, variational, mss, setcover or fcm (" MS_GENERATOR_DEFAULT "); mskit generators lists them"}, \
+    {"generator", 'g', "NAME", "the method (" MS_GENERATOR_DEFAULT "); mskit generators lists them"}, \
     {"set", 0, "OPTION=VALUE", "an option of the method (mskit help NAME); --OPTION VALUE does the same"}, \
     {"seed", 0, "S", "seed of methods that draw random numbers (1)"}
 /* clang-format on */

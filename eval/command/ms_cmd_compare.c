@@ -5,14 +5,16 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/ms_file.h"
 #include "cli/ms_outputs.h"
+#include "cli/ms_report.h"
 #include "compare/ms_compare.h"
 #include "compare/ms_compare_walk.h"
 #include "ms_commands.h"
 
 static const ms_flag FLAGS[] = {
     {"generator", 'g', "NAME[:OPTION=VALUE,...]",
-     "a method with its options; may be repeated (all methods, by default options)"},
+     "a method with its options; may be repeated (all but the baselines, by default options)"},
     {"clump", 0, "NAME=FILE", "spheres x,y,z,r of another tool; may be repeated; takes one shape"},
     {"spheres", 'n', "N,N,...", "numbers of spheres (5,10,20,50,100)"},
     {"cells", 0, "N,N,...", "resolutions: cells along the shortest side of the shape's box (100)"},
@@ -21,6 +23,7 @@ static const ms_flag FLAGS[] = {
     {"seed", 0, "S", "seed of methods that draw random numbers (1)"},
     {"output", 'o', "FILE", "the results, CSV (compare.csv)"},
     {"resume", 0, NULL, "go on with the results that are in FILE"},
+    {"json", 0, NULL, "all rows of FILE as JSON on standard output, too"},
     {"charts", 0, "DIR", "draw charts of all results into this folder, by gnuplot"},
     {"allow-open", 0, NULL, "take a mesh with holes: majority of the parities along three axes"},
     MS_INPUT_MENDING_FLAGS,
@@ -33,7 +36,7 @@ static const ms_flag FLAGS[] = {
 typedef struct compare_arguments {
     ms_comparison comparison;
     const char *output;
-    int resume;
+    int resume, json;
 } compare_arguments;
 
 static void insert_number(ms_numbers *list, double value)
@@ -99,8 +102,8 @@ static ms_status take_compare_flag(void *context, const char *name, const char *
     if (strcmp(name, "seed") == 0) {
         return ms_flags_whole(&c->seed, name, value, 0, 9007199254740992.0, err);
     }
-    if (strcmp(name, "resume") == 0) {
-        a->resume = 1;
+    if (strcmp(name, "resume") == 0 || strcmp(name, "json") == 0) {
+        *(name[0] == 'r' ? &a->resume : &a->json) = 1;
         return MS_OK;
     }
     *(strcmp(name, "output") == 0 ? &a->output : &c->charts) = value;
@@ -113,7 +116,7 @@ static ms_status check_files(const ms_comparison *c, const char *output, ms_erro
     ms_files files = {0};
     for (size_t s = 0; s < c->n_shapes; s++) {
         if (access(c->shape[s], R_OK) != 0) {
-            return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s; check the path", c->shape[s], strerror(errno));
+            return ms_file_fail_open(err, c->shape[s], errno);
         }
     }
     ms_status status = ms_compare_list_files(&files, c, err);
@@ -130,6 +133,17 @@ static ms_status check_files(const ms_comparison *c, const char *output, ms_erro
     return status;
 }
 
+/* What was walked is told, even where each row failed. */
+static ms_status walk_and_report(ms_csv *csv, const compare_arguments *a, ms_error *err)
+{
+    ms_error cause;
+    const ms_status walked = ms_compare_walk(csv, &a->comparison, err);
+    const ms_status told =
+        a->json ? ms_report_print(stdout, ms_compare_json(csv->row, csv->n_rows), walked == MS_OK ? err : &cause)
+                : MS_OK;
+    return walked == MS_OK ? told : walked;
+}
+
 static int execute_compare(const ms_command *command, const compare_arguments *a)
 {
     ms_error err;
@@ -140,12 +154,24 @@ static int execute_compare(const ms_command *command, const compare_arguments *a
     if (status == MS_OK) {
         status = ms_csv_open(&csv, a->output, header, a->resume, &err);
         if (status == MS_OK) {
-            status = ms_compare_walk(&csv, &a->comparison, &err);
+            status = walk_and_report(&csv, a, &err);
         }
         ms_csv_close(&csv);
     }
     free(header);
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
+}
+
+/* A shape is read for each resolution. */
+static ms_status check_standard(const ms_comparison *c, ms_error *err)
+{
+    for (size_t s = 0; s < c->n_shapes; s++) {
+        if (ms_file_is_standard(c->shape[s])) {
+            return ms_fail(err, MS_ERR_ARG,
+                           "compare may read a shape several times, and - once; save it and name the file");
+        }
+    }
+    return MS_OK;
 }
 
 /* What follows from all flags together. */
@@ -165,7 +191,8 @@ static ms_status resolve_compare(ms_comparison *c, ms_error *err)
     if (c->input.label) {
         snprintf(c->label, sizeof c->label, "%lu", (unsigned long)c->input.label);
     }
-    return ms_methods_check(&c->methods, err);
+    const ms_status status = check_standard(c, err);
+    return status == MS_OK ? ms_methods_check(&c->methods, err) : status;
 }
 
 static int run_compare(const ms_command *command, int argc, char **argv)
@@ -181,6 +208,7 @@ static int run_compare(const ms_command *command, int argc, char **argv)
     if (code == MS_FLAGS_GO_ON) {
         a.comparison.shape = argv + first;
         a.comparison.n_shapes = (size_t)(argc - first);
+        a.comparison.words = a.json ? stderr : stdout;
         const ms_status status = resolve_compare(&a.comparison, &err);
         code = status == MS_OK ? execute_compare(command, &a) : ms_flags_refuse(command, status, &err);
     }
@@ -191,7 +219,8 @@ static int run_compare(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_compare = {
     .name = "compare",
     .summary = "methods x shapes x resolutions x numbers of spheres, as CSV and charts",
-    .usage = "SHAPE... [-g NAME[:OPTION=VALUE,...]]... [-n N,N,...] [--cells N,N,...] [-o FILE] [--charts DIR]",
+    .usage =
+        "SHAPE... [-g NAME[:OPTION=VALUE,...]]... [-n N,N,...] [--cells N,N,...] [-o FILE] [--charts DIR] [--json]",
     .example = "mskit compare grain.stl -g mss -g mss:order=gain -g setcover -n 5,10,20,50 --charts charts",
     .flags = FLAGS,
     .run = run_compare,

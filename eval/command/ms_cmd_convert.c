@@ -1,6 +1,7 @@
 /* mskit convert CLUMP -o FILE */
 #include <string.h>
 
+#include "base/ms_file.h"
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
 #include "clump/formats/ms_read.h"
@@ -38,12 +39,12 @@ static ms_status complete_particle(ms_particle *particle, const convert_argument
                                    ms_error *err)
 {
     if (particle->mass > 0 && (a->mass.unit || a->mass.scale > 0) && a->mass.scale != particle->scale) {
-        return ms_fail(err, MS_ERR_ARG, "%s says that its unit is %g m, and not %g", a->clump, particle->scale,
-                       a->mass.scale);
+        return ms_fail(err, MS_ERR_ARG, "%s says that its unit is %g m, and not %g", ms_file_name(a->clump),
+                       particle->scale, a->mass.scale);
     }
     if (particle->density > 0 && a->mass.density > 0 && a->mass.density != particle->density) {
         return ms_fail(err, MS_ERR_ARG, "%s says that its density is %.9g kg/m^3; another takes mskit correct",
-                       a->clump, particle->density);
+                       ms_file_name(a->clump), particle->density);
     }
     if (!(particle->mass > 0) && clump->mass) {
         ms_status status = ms_particle_from_spheres(particle, clump, a->mass.scale > 0 ? a->mass.scale : 1, err);

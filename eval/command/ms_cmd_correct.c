@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_file.h"
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_report.h"
@@ -75,7 +76,7 @@ static ms_status report_correct(const correct_arguments *a, const ms_clump *clum
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the record of the run");
     }
     if (!a->json) {
-        fprintf(words, "%s, %zu spheres\n", a->clump, clump->n_spheres);
+        fprintf(words, "%s, %zu spheres\n", ms_file_name(a->clump), clump->n_spheres);
         ms_mass_print(words, mass);
     }
     const ms_content content = {.clump = clump, .particle = &mass->particle, .record = record};
@@ -143,7 +144,9 @@ static ms_status resolve_correct(correct_arguments *a, ms_error *err)
     if (!(a->mass.density > 0)) {
         return ms_fail(err, MS_ERR_ARG, "takes --density RHO, in kg/m^3");
     }
-    ms_status status = ms_mass_resolve(&a->mass, err);
+    const char *const inputs[] = {a->clump, a->target};
+    ms_status status = ms_files_check_standard(inputs, 2, err);
+    status = status == MS_OK ? ms_mass_resolve(&a->mass, err) : status;
     if (status == MS_OK) {
         const int only_json = a->json && !a->outputs.n_asked && !a->outputs.n_formats && !a->outputs.folder;
         status = only_json ? MS_OK : ms_outputs_resolve(&a->outputs, a->clump, "", MS_NEED_MASSES, 0, err);

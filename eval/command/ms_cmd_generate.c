@@ -322,6 +322,10 @@ static ms_status resolve_generate(generate_arguments *a, ms_error *err)
     ms_until_resolve(&a->stop);
     ms_status status = ms_recipe_resolve(&a->recipe, err);
     if (status == MS_OK) {
+        const char *const inputs[] = {a->shape, a->recipe.settings.clump_file};
+        status = ms_files_check_standard(inputs, 2, err);
+    }
+    if (status == MS_OK) {
         status = resolve_masses(a, err);
     }
     return status == MS_OK ? resolve_outputs(a, err) : status;

@@ -240,7 +240,7 @@ const ms_command ms_command_grains = {
     .name = "grains",
     .summary = "a clump for every grain of volumes, folders or a manifest",
     .usage = "SOURCE... -o DIR [-g NAME] [-n N] [--until MEASURE=VALUE]... [--format F]... [--part K/N] [--resume]",
-    .example = "mskit grains scan.npy -n 20 --least-voxels 100 --skip-border -o clumps",
+    .example = "mskit grains '*.stl' -n 20 --cells 50 -o clumps",
     .flags = FLAGS,
     .run = run_grains,
 };

@@ -14,6 +14,8 @@ static const ms_flag FLAGS[] = {
     {"json", 0, NULL, "as JSON"},
     MS_INPUT_VOLUME_FLAGS,
     MS_INPUT_MENDING_FLAGS,
+    {"max-memory", 0, "SIZE",
+     "refuse volumes, and a standard input, beyond this, as 500M or 8G (3/4 of the machine's)"},
     {0},
 };
 
@@ -249,7 +251,7 @@ static int run_info(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_info = {
     .name = "info",
     .summary = "what a shape is: closed or not, volume, inertia, principal frame; the labels of a volume",
-    .usage = "SHAPE [--json] [--label L] [--weld SHARE] [--fill-holes EDGES] [--drop-bodies SHARE]",
+    .usage = "SHAPE [--json] [--label L] [--weld SHARE] [--fill-holes EDGES] [--drop-bodies SHARE] [--max-memory SIZE]",
     .example = "mskit info grain.stl",
     .flags = FLAGS,
     .run = run_info,

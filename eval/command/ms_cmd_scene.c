@@ -172,13 +172,13 @@ static ms_status resolve_goal(ms_goal *goal, const ms_manifest *manifest, const 
  * memory. */
 static char *template_path(const scene_arguments *a, const char *shape)
 {
-    const char *slash = strrchr(shape, '/'), *base = slash ? slash + 1 : shape, *dot = strrchr(base, '.');
-    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
-    const size_t room = strlen(a->folder) + (size_t)length + strlen(a->format->ending) + 3;
+    size_t length;
+    const char *stem = ms_files_stem(&length, shape);
+    const size_t room = strlen(a->folder) + length + strlen(a->format->ending) + 3;
     char *path = malloc(room);
     if (path) {
         const int start = snprintf(path, room, "%s/", a->folder);
-        snprintf(path + start, room - (size_t)start, "%.*s.%s", length, base, a->format->ending);
+        snprintf(path + start, room - (size_t)start, "%.*s.%s", (int)length, stem, a->format->ending);
         ms_escape_file_name(path + start);
     }
     return path;
@@ -350,7 +350,11 @@ static int run_scene(const ms_command *command, int argc, char **argv)
     }
     a.source = argv[first];
     a.format = a.format ? a.format : ms_write_format_find("csv", &err);
-    const ms_status status = ms_recipe_resolve(&a.recipe, &err);
+    ms_status status = ms_recipe_resolve(&a.recipe, &err);
+    if (status == MS_OK) {
+        const char *const inputs[] = {a.source, a.recipe.settings.clump_file};
+        status = ms_files_check_standard(inputs, 2, &err);
+    }
     code = status == MS_OK ? read_and_work(command, &a) : ms_flags_refuse(command, status, &err);
     ms_recipe_free(&a.recipe);
     return code;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/ms_files.h"
 #include "cli/ms_input.h"
 #include "cli/ms_report.h"
 #include "clump/formats/ms_read.h"
@@ -81,6 +82,10 @@ static int run_score(const ms_command *command, int argc, char **argv)
     }
     if (a.json && a.curve) {
         return ms_flags_wrong_usage(command, "--curve prints CSV and --json JSON; choose one of them");
+    }
+    const char *const inputs[] = {argv[first], a.target};
+    if (ms_files_check_standard(inputs, 2, &err) != MS_OK) {
+        return ms_flags_wrong_usage(command, err.text);
     }
     ms_status status = ms_read_clump(&clump, &unused, argv[first], &err);
     if (status != MS_OK) {

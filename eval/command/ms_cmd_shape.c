@@ -2,7 +2,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/ms_choice.h"
 #include "base/ms_text.h"
+#include "cli/ms_json_object.h"
+#include "cli/ms_report.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "mesh/formats/ms_mesh_write.h"
 #include "ms_commands.h"
@@ -11,12 +14,13 @@
 static const ms_flag FLAGS[] = {
     {"output", 'o', "FILE", "the mesh: .stl, .obj, .ply or .off; - for OFF on standard output"},
     {"list", 0, NULL, "list the kinds and their parameters"},
+    {"json", 0, NULL, "the list as JSON"},
     {0},
 };
 
 typedef struct shape_arguments {
     const char *output;
-    int list;
+    int list, json;
 } shape_arguments;
 
 static ms_status take_shape_flag(void *context, const char *name, const char *value, ms_error *err)
@@ -26,7 +30,7 @@ static ms_status take_shape_flag(void *context, const char *name, const char *va
     if (strcmp(name, "output") == 0) {
         a->output = value;
     } else {
-        a->list = 1;
+        *(name[0] == 'l' ? &a->list : &a->json) = 1;
     }
     return MS_OK;
 }
@@ -41,12 +45,37 @@ static void list_kinds(void)
     }
 }
 
+static json_t *kinds_json(void)
+{
+    json_t *list = json_array();
+    for (const ms_shape_kind *kind = ms_shape_kinds; kind->name; kind++) {
+        json_t *parameters = json_array();
+        for (const ms_shape_parameter *p = kind->parameters; p->name; p++) {
+            ms_json_object_append(&parameters, json_pack("{s:s,s:f,s:f,s:f,s:s}", "name", p->name, "default",
+                                                         p->fallback, "min", p->min, "max", p->max, "help", p->help));
+        }
+        ms_json_object_append(
+            &list, json_pack("{s:s,s:s,s:o}", "name", kind->name, "summary", kind->summary, "parameters", parameters));
+    }
+    return list;
+}
+
+static int run_list(const ms_command *command, int json)
+{
+    ms_error err;
+    if (!json) {
+        list_kinds();
+        return EXIT_DONE;
+    }
+    return ms_report_print(stdout, kinds_json(), &err) == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
+}
+
 static ms_status set_value(double *value, const ms_shape_kind *kind, const char *assignment, ms_error *err)
 {
     const char *equals = strchr(assignment, '=');
-    for (const ms_shape_parameter *p = kind->parameters; equals && p->name; p++) {
-        const size_t length = (size_t)(equals - assignment);
-        if (strlen(p->name) == length && memcmp(p->name, assignment, length) == 0) {
+    ms_choice choice = {.typed = assignment, .length = strcspn(assignment, "=")};
+    for (const ms_shape_parameter *p = kind->parameters; p->name; p++) {
+        if (ms_choice_offer(&choice, p->name) && equals) {
             const ms_word word = {equals + 1, strlen(equals + 1)};
             if (word.length == 0 || !ms_text_to_double(&value[p - kind->parameters], &word)) {
                 return ms_fail(err, MS_ERR_ARG, "%s is not a number in %s", equals + 1, assignment);
@@ -54,8 +83,8 @@ static ms_status set_value(double *value, const ms_shape_kind *kind, const char 
             return MS_OK;
         }
     }
-    return ms_fail(err, MS_ERR_ARG, "'%s' does not set a parameter of %s; see mskit shape --list", assignment,
-                   kind->name);
+    return ms_choice_fail(&choice, err, "'%s' does not set a parameter of %s, as %s=%g does (mskit shape --list)",
+                          assignment, kind->name, kind->parameters[0].name, kind->parameters[0].fallback);
 }
 
 static int make(const ms_command *command, const char *output, int n_words, char **word)
@@ -95,8 +124,10 @@ static int run_shape(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (a.list) {
-        list_kinds();
-        return EXIT_DONE;
+        return run_list(command, a.json);
+    }
+    if (a.json) {
+        return ms_flags_wrong_usage(command, "--json is of the list; give --list beside it");
     }
     if (first >= argc || !a.output) {
         return ms_flags_wrong_usage(command, "takes a kind of shape and -o FILE; --list shows the kinds");
@@ -111,7 +142,7 @@ static int run_shape(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_shape = {
     .name = "shape",
     .summary = "make the mesh of an analytic or test body",
-    .usage = "KIND [KEY=VALUE]... -o FILE",
+    .usage = "KIND [KEY=VALUE]... -o FILE | --list [--json]",
     .example = "mskit shape ellipsoid a=2 b=1 c=1 -o ellipsoid.stl",
     .flags = FLAGS,
     .run = run_shape,

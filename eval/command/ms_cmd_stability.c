@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_file.h"
 #include "chart/ms_csv.h"
 #include "cli/ms_methods.h"
 #include "cli/ms_outputs.h"
@@ -17,7 +18,7 @@
 enum { DEFAULT_SPHERES = 20, DEFAULT_RUNS = 5, MOST_RUNS = 1000 };
 
 static const ms_flag FLAGS[] = {
-    {"generator", 'g', "NAME[:OPTION=VALUE,...]", "a method, with options; may be repeated (all methods)"},
+    {"generator", 'g', "NAME[:OPTION=VALUE,...]", "a method, with options; may be repeated (all but the baselines)"},
     {"spheres", 'n', "N", "spheres asked for in every run (20)"},
     {"until-dice", 0, "V", "also seek the number of spheres with which the method meets D = V, up to 10 N"},
     {"perturb", 0, "KIND",
@@ -113,6 +114,11 @@ static ms_status resolve_stability(stability_arguments *a, const char *const *sh
         a->plan.wanted[c] |= !any || c == 0;
     }
     ms_status status = ms_methods_check(&a->methods, err);
+    for (size_t s = 0; s < n_shapes && status == MS_OK; s++) {
+        if (ms_file_is_standard(shape[s])) {
+            status = ms_fail(err, MS_ERR_ARG, "stability reads a shape twice, and - once; save it and name the file");
+        }
+    }
     for (size_t m = 0; m < a->methods.count && status == MS_OK; m++) {
         const ms_settings *settings = &a->methods.method[m].settings;
         if (settings->n_planes || settings->clump.n_spheres) {
@@ -149,6 +155,18 @@ static ms_status check_stability_files(const stability_arguments *a, ms_error *e
     return status;
 }
 
+/* A table of which no row has spheres has failed. */
+static ms_status check_any_gave(const ms_stability_run *run, size_t count, ms_error *err)
+{
+    for (size_t r = 0; r < count; r++) {
+        if (ms_stability_gave(&run[r])) {
+            return MS_OK;
+        }
+    }
+    return ms_fail(err, MS_ERR_SHAPE, "not one of %zu rows succeeded; the first failed because of this: %.700s", count,
+                   run[0].cause.text);
+}
+
 static ms_status report_stability(const stability_arguments *a, const ms_stability_rows *rows,
                                   const ms_stability_run *run, size_t count, ms_error *err)
 {
@@ -162,7 +180,10 @@ static ms_status report_stability(const stability_arguments *a, const ms_stabili
         ms_statistics_print(words, groups, n_groups, a->plan.until_dice > 0);
     }
     free(groups);
-    return status == MS_OK && a->charts ? ms_stability_charts(a->charts, run, count, err) : status;
+    if (status == MS_OK && a->charts) {
+        status = ms_stability_charts(a->charts, run, count, err);
+    }
+    return status == MS_OK ? check_any_gave(run, count, err) : status;
 }
 
 /* Each row is on the disk as soon as those before are, so that one that is killed leaves those there are. */

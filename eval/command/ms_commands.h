@@ -4,7 +4,11 @@
 
 #include "cli/ms_flags.h"
 
+/* Shells that mskit completion knows. */
+#define MS_COMPLETION_SHELLS "bash|zsh"
+
 extern const ms_command ms_command_compare;
+extern const ms_command ms_command_completion;
 extern const ms_command ms_command_convert;
 extern const ms_command ms_command_correct;
 extern const ms_command ms_command_generate;
@@ -16,5 +20,6 @@ extern const ms_command ms_command_scene;
 extern const ms_command ms_command_score;
 extern const ms_command ms_command_shape;
 extern const ms_command ms_command_stability;
+extern const ms_command ms_command_version;
 
 #endif

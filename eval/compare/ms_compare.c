@@ -1,10 +1,14 @@
 #include "ms_compare.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/ms_escape.h"
 #include "base/ms_text.h"
+#include "cli/ms_files.h"
+#include "cli/ms_json_object.h"
+#include "cli/ms_report.h"
 
 #define COLUMN_NAME(code, name) [MS_COLUMN_##code] = (name),
 static const char *const NAMES[] = {MS_COLUMN_LIST_BEFORE(COLUMN_NAME) MS_COLUMN_LIST_BEHIND(COLUMN_NAME)};
@@ -76,10 +80,59 @@ char *ms_compare_key(const ms_compare_row *row)
     return make_text(row, MS_COLUMN_SPHERES);
 }
 
+static int is_text(int column)
+{
+    static const int TEXTS[] = {MS_COLUMN_SHAPE,   MS_COLUMN_CHECKSUM, MS_COLUMN_GENERATOR, MS_COLUMN_OPTIONS,
+                                MS_COLUMN_STOPPED, MS_COLUMN_VERSION,  MS_COLUMN_CAUSE};
+    for (size_t t = 0; t < sizeof TEXTS / sizeof *TEXTS; t++) {
+        if (TEXTS[t] == column) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static json_t *field_json(int column, const char *field)
+{
+    const ms_word word = {field, strlen(field)};
+    int64_t whole;
+    double number;
+    if (word.length == 0) {
+        return json_null();
+    }
+    if (!is_text(column) && ms_text_to_integer(&whole, &word)) {
+        return json_integer((json_int_t)whole);
+    }
+    if (!is_text(column) && ms_text_to_double(&number, &word)) {
+        return ms_report_number(number);
+    }
+    return ms_report_text(field); /* of a number that someone has spoilt, too */
+}
+
+static json_t *row_json(const char *row)
+{
+    char *field[MS_COLUMNS], *copy = strdup(row);
+    json_t *json = copy && ms_csv_split(field, MS_COLUMNS, copy) == MS_COLUMNS ? json_object() : NULL;
+    for (int c = 0; c < MS_COLUMNS && json; c++) {
+        ms_json_object_set(&json, name_column(c), field_json(c, field[c]));
+    }
+    free(copy);
+    return json;
+}
+
+json_t *ms_compare_json(char *const *row, size_t count)
+{
+    json_t *list = json_array();
+    for (size_t r = 0; r < count; r++) {
+        ms_json_object_append(&list, row_json(row[r]));
+    }
+    return list;
+}
+
 void ms_compare_name(char *out, size_t size, const char *shape, const char *label)
 {
-    const char *slash = strrchr(shape, '/'), *base = slash ? slash + 1 : shape, *dot = strrchr(base, '.');
-    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
-    snprintf(out, size, "%.*s%s%s", length, base, label[0] ? "-" : "", label);
+    size_t length;
+    const char *stem = ms_files_stem(&length, shape);
+    snprintf(out, size, "%.*s%s%s", (int)length, stem, label[0] ? "-" : "", label);
     ms_escape_file_name(out);
 }

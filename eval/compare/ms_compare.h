@@ -2,6 +2,8 @@
 #ifndef MS_COMPARE_H
 #define MS_COMPARE_H
 
+#include <jansson.h>
+
 #include "chart/ms_csv.h"
 #include "measure/ms_measure.h"
 
@@ -67,6 +69,14 @@ char *ms_compare_line(const ms_compare_row *row);
 
 /** How its line begins: the fields of what was asked for, with the comma behind them. Likewise. */
 char *ms_compare_key(const ms_compare_row *row);
+
+/**
+ * Rows of a file as a list of objects: a column is a number or text, null where it is empty.
+ *
+ * @param row lines as ms_compare_line makes them
+ * @return the caller owns it; NULL without memory, or where a row has not these columns
+ */
+json_t *ms_compare_json(char *const *row, size_t count);
 
 /** How the names of a shape's charts begin: its file without folder and ending, and the label. */
 void ms_compare_name(char *out, size_t size, const char *shape, const char *label);

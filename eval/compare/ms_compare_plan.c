@@ -21,7 +21,7 @@ ms_compare_row ms_compare_plan_row(const ms_comparison *a, const ms_compare_stag
     row.text[MS_COLUMN_CHECKSUM] = checksum;
     row.text[MS_COLUMN_LABEL] = a->label;
     row.text[MS_COLUMN_GENERATOR] = method->name;
-    row.text[MS_COLUMN_OPTIONS] = method->options;
+    row.text[MS_COLUMN_OPTIONS] = method->generator ? method->options : ms_file_name(method->options);
     row.number[MS_COLUMN_CELLS] = stage->cells;
     if (method->generator) {
         row.number[MS_COLUMN_SEED] = a->seed;

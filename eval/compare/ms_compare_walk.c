@@ -25,7 +25,8 @@ typedef struct compare_walk {
     const ms_compare_plan *plan;
     compare_result **result; /* of each run that is done and not taken; NULL without memory */
     ms_csv *csv;
-    size_t failed;    /* rows */
+    size_t made, failed; /* rows; of those made how many failed */
+    ms_error first_cause;
     ms_status drawn;  /* of the first chart that failed; the comparison goes on */
     ms_error why_not; /* it failed */
 } compare_walk;
@@ -38,27 +39,27 @@ static void put_input(ms_compare_row *row, const ms_input *input)
     row->number[MS_COLUMN_DISTANCE] = input->distance_seconds;
 }
 
-static void say_row(const ms_compare_row *row)
+static void say_row(FILE *words, const ms_compare_row *row)
 {
-    printf("%s %s%s%s", row->text[MS_COLUMN_SHAPE], row->text[MS_COLUMN_GENERATOR],
-           row->text[MS_COLUMN_OPTIONS][0] ? ":" : "", row->text[MS_COLUMN_OPTIONS]);
+    fprintf(words, "%s %s%s%s", row->text[MS_COLUMN_SHAPE], row->text[MS_COLUMN_GENERATOR],
+            row->text[MS_COLUMN_OPTIONS][0] ? ":" : "", row->text[MS_COLUMN_OPTIONS]);
     if (isfinite(row->number[MS_COLUMN_CELLS])) {
-        printf(", %g cells", row->number[MS_COLUMN_CELLS]);
+        fprintf(words, ", %g cells", row->number[MS_COLUMN_CELLS]);
     }
     const ms_column n = isfinite(row->number[MS_COLUMN_SPHERES]) ? MS_COLUMN_SPHERES : MS_COLUMN_ASKED;
     if (isfinite(row->number[n])) {
-        printf(", n %g", row->number[n]);
+        fprintf(words, ", n %g", row->number[n]);
     }
     if (isfinite(row->number[MS_COLUMN_DICE])) {
-        printf(": D %.4f", row->number[MS_COLUMN_DICE]);
+        fprintf(words, ": D %.4f", row->number[MS_COLUMN_DICE]);
     } else if (row->text[MS_COLUMN_CAUSE]) {
-        printf(": %s", row->text[MS_COLUMN_CAUSE]);
+        fprintf(words, ": %s", row->text[MS_COLUMN_CAUSE]);
     }
     if (isfinite(row->number[MS_COLUMN_GENERATE])) {
-        printf(", %.3g s", row->number[MS_COLUMN_GENERATE]);
+        fprintf(words, ", %.3g s", row->number[MS_COLUMN_GENERATE]);
     }
-    printf("\n");
-    fflush(stdout);
+    fprintf(words, "\n");
+    fflush(words);
 }
 
 /* Remembers the first failure of a chart. */
@@ -181,14 +182,25 @@ static void work_run(void *context, size_t at, ms_queue_place *place)
     ms_shared_input_release(&run->stage->shared);
 }
 
+/* Counts it, and remembers why the first one failed. Nonzero if it did. */
+static int note_row(compare_walk *w, const ms_compare_row *row)
+{
+    const int failed = !isfinite(row->number[MS_COLUMN_DICE]);
+    if (failed && !w->first_cause.text[0]) {
+        ms_fail(&w->first_cause, MS_ERR_SHAPE, "%s", row->text[MS_COLUMN_CAUSE]);
+    }
+    w->made++;
+    return failed;
+}
+
 static ms_status add_row(compare_walk *w, const ms_compare_row *row, size_t *failed, ms_error *err)
 {
     char *line = ms_compare_line(row);
     const ms_status status = line ? ms_csv_add(w->csv, line, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for a row");
     free(line);
     if (status == MS_OK) {
-        *failed += !isfinite(row->number[MS_COLUMN_DICE]);
-        say_row(row);
+        *failed += note_row(w, row);
+        say_row(w->a->words, row);
     }
     return status;
 }
@@ -277,12 +289,19 @@ ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error
     if (status != MS_OK) {
         return status;
     }
-    printf("wrote %s, %zu rows", csv->path, csv->n_rows);
-    printf(w.failed ? "; %zu of the new ones failed, see the column cause\n" : "\n", w.failed);
+    fprintf(comparison->words, "wrote %s, %zu rows", csv->path, csv->n_rows);
+    if (w.failed) {
+        fprintf(comparison->words, "; %zu of the new ones failed, see the column cause", w.failed);
+    }
+    putc('\n', comparison->words);
     if (comparison->charts) {
         ms_error why;
         note_drawn(&w, ms_compare_charts(csv, comparison->charts, &why), &why);
         *err = w.why_not;
+    }
+    if (w.drawn == MS_OK && w.made > 0 && w.failed == w.made) {
+        return ms_fail(err, MS_ERR_SHAPE, "not one of %zu rows succeeded; the first failed because of this: %.700s",
+                       w.made, w.first_cause.text);
     }
     return w.drawn;
 }

@@ -24,6 +24,7 @@ typedef struct ms_comparison {
     ms_numbers asked, cells; /* numbers of spheres; resolutions, which a volume does not take */
     char label[20];          /* as text; "" for none */
     double repeats, seed;
+    FILE *words;        /* where rows are said */
     const char *charts; /* folder, which exists; NULL for none */
 } ms_comparison;
 
@@ -33,11 +34,12 @@ ms_status ms_compare_list_files(ms_files *files, const ms_comparison *comparison
 
 /**
  * Adds the rows of all runs, in a fixed order; those that are there already must be its first rows, and are not run
- * again. Runs go side by side (ms_queue.h), unless times are the result: with charts, or repeats. Says each row on
- * standard output. Then draws the charts.
+ * again. Runs go side by side (ms_queue.h), unless times are the result: with charts, or repeats. Says each row.
+ * Then draws the charts.
  *
  * @param csv with ms_compare_header
- * @return MS_OK, also where runs failed: that is in their rows; MS_ERR_ARG for rows of another comparison; as
+ * @return MS_OK, also where some runs failed: that is in their rows; MS_ERR_SHAPE where each of the new ones did, when
+ *         all else is done; MS_ERR_ARG for rows of another comparison; as
  *         ms_csv_add; of charts, as ms_compare_charts and ms_compare_sheet_draw, when all else is done
  */
 ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error *err);

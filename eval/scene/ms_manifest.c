@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/ms_choice.h"
 #include "base/ms_text.h"
 
 enum { SHAPE, COUNT, TOLERANCE, COLUMNS };
@@ -78,8 +79,15 @@ static ms_status check_shape(const ms_manifest *manifest, const char *path, cons
             return ms_text_fail(err, text, "%.180s stands twice; add up the counts", path);
         }
     }
-    return access(path, R_OK) == 0 ? MS_OK
-                                   : ms_text_fail(err, text, "%.180s cannot be read: %s", path, strerror(errno));
+    if (ms_file_is_standard(path)) {
+        return ms_text_fail(err, text, "a manifest names files and not standard input");
+    }
+    if (access(path, R_OK) == 0) {
+        return MS_OK;
+    }
+    const int why = errno;
+    return ms_text_fail(err, text, "%.180s cannot be read: %s%s", path, strerror(why),
+                        why == ENOENT ? ms_choice_file_hint(path).text : "");
 }
 
 static ms_status read_count(uint64_t *particles, const ms_word *word, const ms_text *text, ms_error *err)

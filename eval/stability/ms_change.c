@@ -1,8 +1,8 @@
 #include "ms_change.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
+
+#include "base/ms_choice.h"
 
 static double level_none(uint64_t seed, int number, int runs)
 {
@@ -169,15 +169,13 @@ _Static_assert(sizeof ms_changes / sizeof *ms_changes <= MS_CHANGE_MOST, "room f
 
 const ms_change *ms_change_find(const char *name, ms_error *err)
 {
-    char names[256] = "";
+    ms_choice choice = {.typed = name};
     for (const ms_change *change = ms_changes + 1; change->name; change++) {
-        if (strcmp(change->name, name) == 0) {
+        if (ms_choice_offer(&choice, change->name)) {
             return change;
         }
-        const size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", change->name);
     }
-    ms_fail(err, MS_ERR_ARG, "there is no perturbation '%.40s'; choose from %s", name, names);
+    ms_choice_fail(&choice, err, "there is no perturbation '%s'", name);
     return NULL;
 }
 

@@ -35,10 +35,10 @@ static void choose_voxels(ms_input_flags *flags, const ms_hard_shape *shape, con
     flags->cells = flags->deq = 0;
 }
 
-const ms_hard_shape *ms_hard_shapes_find(const char *name)
+const ms_hard_shape *ms_hard_shapes_find(ms_choice *choice)
 {
     for (const ms_hard_shape *shape = ms_hard_shapes; shape->name; shape++) {
-        if (strcmp(shape->name, name) == 0) {
+        if (ms_choice_offer(choice, shape->name)) {
             return shape;
         }
     }

@@ -2,6 +2,7 @@
 #ifndef MS_HARD_SHAPES_H
 #define MS_HARD_SHAPES_H
 
+#include "base/ms_choice.h"
 #include "cli/ms_input.h"
 
 /** A shape of ms_shape and what is done to it. A table of them ends with a NULL name. */
@@ -19,8 +20,8 @@ extern const ms_hard_shape ms_hard_shapes[];
 /* Room for the name of each of them. */
 enum { MS_HARD_SHAPES_MOST = 32 };
 
-/** The shape of that name; NULL if there is none. */
-const ms_hard_shape *ms_hard_shapes_find(const char *name);
+/** The shape that was typed; NULL if it is none of these, and all are offered. */
+const ms_hard_shape *ms_hard_shapes_find(ms_choice *choice);
 
 /**
  * Makes a shape, as ms_input_read does a file. A mesh with holes is taken as --allow-open does, its voxel size from the

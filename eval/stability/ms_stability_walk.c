@@ -5,6 +5,7 @@
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "ms_hard_shapes.h"
 #include "queue/ms_shared_input.h"
@@ -36,9 +37,13 @@ size_t ms_stability_count(const ms_stability_plan *plan)
 
 static ms_status read_shape(ms_input *input, const char *name, ms_input_flags *flags, ms_error *err)
 {
-    const ms_hard_shape *built_in = ms_hard_shapes_find(name);
+    ms_choice choice = {.typed = name};
+    const ms_hard_shape *built_in = ms_hard_shapes_find(&choice);
     if (built_in) {
         return ms_hard_shapes_read(input, built_in, flags, err);
+    }
+    if (choice.nearest[0] && access(name, F_OK) != 0) {
+        return ms_choice_fail(&choice, err, "there is no file and no built-in shape '%s'", name);
     }
     const ms_status status = ms_input_read(input, name, flags, err);
     if (status == MS_OK && input->is_volume) {
@@ -65,7 +70,8 @@ ms_status ms_stability_try_shapes(const ms_stability_plan *plan, ms_error *err)
     uint64_t checksum;
     ms_status status = MS_OK;
     for (size_t s = 0; s < plan->n_shapes && status == MS_OK; s++) {
-        status = ms_hard_shapes_find(plan->shape[s]) ? MS_OK : sum_shape(&checksum, plan->shape[s], plan->flags, err);
+        ms_choice choice = {.typed = plan->shape[s]};
+        status = ms_hard_shapes_find(&choice) ? MS_OK : sum_shape(&checksum, plan->shape[s], plan->flags, err);
     }
     return status;
 }

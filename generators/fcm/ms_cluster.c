@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "base/ms_random.h"
+#include "base/ms_versions.h"
 #include "ms_power.h"
 
 /* Points side by side; partial sums over them; parts into which all points are cut, so that sums are
@@ -130,8 +131,8 @@ ms_status ms_cluster_build(ms_cluster **out, const double (*point)[4], size_t co
 }
 
 /* Squared distances of a block's points from the centres, and the least for each point. */
-static void measure_distances(double (*square)[LANES], double nearest[LANES], const block *b,
-                              const double (*centre)[AXES], size_t count, double least)
+MS_VERSIONS static void measure_distances(double (*square)[LANES], double nearest[LANES], const block *b,
+                                          const double (*centre)[AXES], size_t count, double least)
 {
     for (int l = 0; l < LANES; l++) {
         nearest[l] = HUGE_VAL;
@@ -149,8 +150,8 @@ static void measure_distances(double (*square)[LANES], double nearest[LANES], co
 }
 
 /* Squared distances become w_i (d / d_i). @param[out] total W */
-static void weigh_fuzzily(double (*weight)[LANES], double total[LANES], const double nearest[LANES], size_t count,
-                          double power)
+MS_VERSIONS static void weigh_fuzzily(double (*weight)[LANES], double total[LANES], const double nearest[LANES],
+                                      size_t count, double power)
 {
     for (int l = 0; l < LANES; l++) {
         total[l] = 0;
@@ -194,8 +195,8 @@ static void weigh_block(weights *w, const ms_cluster *c, size_t which, const dou
 }
 
 /* Adds a block's weighted points to the sums of the centres. */
-static void add_weighted(double (*sum)[TERMS], double (*weight)[LANES], const double factor[LANES], const block *b,
-                         size_t count)
+MS_VERSIONS static void add_weighted(double (*sum)[TERMS], double (*weight)[LANES], const double factor[LANES],
+                                     const block *b, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         const double *w = weight[i];

@@ -3,19 +3,20 @@
  * multi-spheres, COMPLAS XIV (2017). Section, equation and algorithm numbers are of that paper;
  * docs/methods/fcm.md says what it leaves open and how it was decided.
  */
-#include "ms_fcm.h"
+#include "ms_generator_list.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ms_vector.h"
 #include "measure/ms_metrics.h"
+#include "mesh/ms_hull.h"
 #include "ms_cluster.h"
+#include "ms_long_edges.h"
 #include "ms_random_spheres.h"
 #include "shared/ms_bisect_count.h"
-#include "shared/ms_cover.h"
 #include "shared/ms_judge.h"
+#include "shared/ms_order.h"
 
 enum {
     NODES_COVERED,
@@ -29,10 +30,17 @@ enum {
     START,
     RESTARTS,
     RADIUS,
-    OFF_VOLUME
+    OFF_VOLUME,
+    VOLUME,
+    NODES,
+    COVERS,
+    SEARCH
 };
 enum { CLUSTERING_FUZZY, CLUSTERING_KMEANS };
 enum { RADIUS_NODE, RADIUS_MEAN };
+enum { VOLUME_SHAPE, VOLUME_HULL };
+enum { NODES_THINNED, NODES_ALL };
+enum { SEARCH_HALVES, SEARCH_UP };
 
 static const ms_option OPTIONS[] = {
     [NODES_COVERED] = {"nodes-covered", MS_OPTION_REAL, 0.9, 0, 1, NULL, NULL,
@@ -61,6 +69,17 @@ static const ms_option OPTIONS[] = {
     [OFF_VOLUME] = {"off-volume", MS_OPTION_REAL, 0, 0, 2, NULL, NULL,
                     "ends at this volume of the union / of the shape (eq. 2); 0: 0.9, as the paper, where no number "
                     "and no measure is asked for, else not at all"},
+    [VOLUME] = {"volume", MS_OPTION_CHOICE, VOLUME_SHAPE, 0, 0, "shape|hull", NULL,
+                "of the shape in eq. 2: its own, or that of its convex hull (section 4)"},
+    [NODES] = {"nodes", MS_OPTION_CHOICE, NODES_THINNED, 0, 0, "thinned|all", NULL,
+               "that nodes-covered counts; thinned: where there are more than `filling`, one in each cube of the size "
+               "of a filling sphere's share, d_eq / filling^(1/3)"},
+    [COVERS] = {"covers", MS_OPTION_CHOICE, 0, 0, 0, "touched|within", NULL,
+                "nodes that a filling sphere covers: the one that it touches, or all within it (section 3, figure 1)"},
+    [SEARCH] =
+        {"search", MS_OPTION_CHOICE, SEARCH_HALVES, 0, 0, "halves|up", NULL,
+         "for the number of clusters that reaches a measure: doubled, then by halves; or one more each time, from "
+         "one up (section 4)"},
     {0},
 };
 
@@ -80,10 +99,6 @@ static const double DEFAULT_OFF_VOLUME = 0.9;
 /* Spheres whose centres and radii differ by less, in voxels, are one. */
 static const double SAME = 0.01;
 
-/* Edges that are longer than so many times the size of a sphere's share, d_eq / n^(1/3), let the spheres reach out: D
- * of cubes of 8 to 3458 nodes by 2 to 1000 spheres is then above that of finer meshes (docs/methods/fcm.md). */
-static const double EDGE_OF_SHARE = 1.5;
-
 typedef struct fcm {
     const ms_run *run;
     ms_random_spheres_rule rule;
@@ -91,7 +106,7 @@ typedef struct fcm {
     ms_cluster *cluster;
     size_t filled;     /* spheres to cluster */
     int dropped;       /* some were smaller than the least radius */
-    double off_volume; /* to be reached; 0: not asked for */
+    double off_volume; /* to be reached, relative to the shape's own volume; 0: not asked for */
     double (*few)[4];  /* centres of the last number of clusters that was not enough, at the first m */
     size_t n_few;
 } fcm;
@@ -144,9 +159,31 @@ static ms_status make_points(fcm *f, const ms_ball *ball, size_t count, ms_error
     return status;
 }
 
+/* Nodes nearer to each other than the spheres of the filling need not be told apart. 0: all count. */
+static double thinning_edge(const fcm *f)
+{
+    const double filling = fcm_option(f, FILLING);
+    const ms_target *target = f->run->target;
+    const int is_thinned = fcm_option(f, NODES) == NODES_THINNED && filling > 0 && (double)f->nodes.count > filling;
+    return is_thinned ? 2 * ms_target_equivalent_radius(target) / target->grid.h / cbrt(filling) : 0;
+}
+
+static void remark_thinning(const fcm *f, size_t counted)
+{
+    if (counted < f->nodes.count) {
+        ms_generator_remark(f->run,
+                            "%zu nodes are thinned to %zu, one in each cube of edge %.2g, the size of a filling "
+                            "sphere's share: --nodes-covered counts these; --nodes all counts each, and takes longer",
+                            f->nodes.count, counted, f->rule.thinned * f->run->target->grid.h);
+    }
+}
+
 static ms_status fill_shape(fcm *f, ms_error *err)
 {
+    ms_status status = ms_nodes_of_target(&f->nodes, f->run->target, err);
     f->rule = (ms_random_spheres_rule){.nodes_covered = fcm_option(f, NODES_COVERED),
+                                       .thinned = thinning_edge(f),
+                                       .within = fcm_option(f, COVERS) != 0,
                                        .least = (size_t)fcm_option(f, FILLING),
                                        .norm = (ms_norm)fcm_option(f, NORM),
                                        .offset = fcm_option(f, OFFSET),
@@ -155,12 +192,12 @@ static ms_status fill_shape(fcm *f, ms_error *err)
                                        .progress = f->run->progress,
                                        .progress_context = f->run->progress_context};
     ms_ball *ball = NULL;
-    size_t count = 0;
-    ms_status status = ms_nodes_of_target(&f->nodes, f->run->target, err);
+    size_t count = 0, counted;
     if (status == MS_OK) {
-        status = ms_random_spheres(&ball, &count, f->run->target, &f->nodes, &f->rule, err);
+        status = ms_random_spheres(&ball, &count, &counted, f->run->target, &f->nodes, &f->rule, err);
     }
     if (status == MS_OK) {
+        remark_thinning(f, counted);
         drop_small_balls(ball, &count, f);
         status = make_points(f, ball, count, err);
     }
@@ -317,35 +354,6 @@ static ms_status sweep_fuzzifier(trials *t, const fcm *f, ms_error *err)
     return status;
 }
 
-static ms_status add_sphere(ms_clump *clump, const ms_ball *ball, const ms_run *run, ms_error *err)
-{
-    ms_sphere sphere = ms_grid_sphere(&run->target->grid, ball);
-    sphere.radius = fmax(sphere.radius, run->stop.radius);
-    return ms_clump_add(clump, &sphere, err);
-}
-
-/* The spheres by the voxels of the shape that each adds, those that add none as they come. */
-static ms_status order_spheres(ms_clump *clump, const attempt *a, const ms_run *run, ms_error *err)
-{
-    ms_cover *cover = NULL;
-    uint8_t *taken = calloc(a->count + 1, sizeof *taken);
-    size_t which;
-    ms_status status = taken ? ms_cover_build(&cover, &run->target->grid, a->ball, a->count, 0, err)
-                             : ms_fail(err, MS_ERR_NOMEM, "no memory to order %zu spheres", a->count);
-    while (status == MS_OK && ms_cover_next(&which, cover) > 0) {
-        taken[which] = 1;
-        status = add_sphere(clump, &a->ball[which], run, err);
-    }
-    for (size_t b = 0; status == MS_OK && b < a->count; b++) {
-        if (!taken[b]) {
-            status = add_sphere(clump, &a->ball[b], run, err);
-        }
-    }
-    ms_cover_free(cover);
-    free(taken);
-    return status;
-}
-
 /* Where more clusters start from. */
 static void remember_centres(fcm *f, trials *t)
 {
@@ -369,7 +377,7 @@ static ms_status make_clump_of(void *context, ms_clump *clump, ms_stop_reason *r
         status = sweep_fuzzifier(&t, f, err);
     }
     if (status == MS_OK) {
-        status = order_spheres(clump, &t.best, f->run, err);
+        status = ms_order_by_gain(clump, t.best.ball, t.best.count, f->run, err);
     }
     *reason = t.best.reason;
     if (*reason == MS_STOP_NOT) {
@@ -382,6 +390,57 @@ static ms_status make_clump_of(void *context, ms_clump *clump, ms_stop_reason *r
     return status;
 }
 
+/* One cluster more each time, until they are enough or more would not help. */
+static ms_status search_upward(ms_clump *clump, ms_stop_reason *reason, size_t most, fcm *f, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t n = 1; n <= most && *reason == MS_STOP_NOT && status == MS_OK; n++) {
+        ms_clump_free(clump);
+        status = make_clump_of(f, clump, reason, n, err);
+    }
+    if (*reason == MS_STOP_NOT) {
+        *reason = MS_STOP_SPHERES;
+    }
+    return status;
+}
+
+/* The volume of the nodes' convex hull in voxels. Those of a volume are voxels, and have eight corners. */
+static ms_status find_hull_volume(double *volume, const fcm *f, ms_error *err)
+{
+    const size_t corners = f->run->target->mesh ? 1 : 8, count = corners * f->nodes.count;
+    double(*point)[3] = malloc((count + 1) * sizeof *point);
+    ms_mesh hull = {0};
+    ms_body body = {0};
+    ms_status status = point ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for the hull of %zu points", count);
+    for (size_t p = 0; p < count && status == MS_OK; p++) {
+        for (int a = 0; a < 3; a++) {
+            const double half = corners == 1 ? 0 : (p >> a & 1) != 0 ? 0.5 : -0.5;
+            point[p][a] = f->nodes.at[p / corners][a] + half;
+        }
+    }
+    if (status == MS_OK) {
+        status = ms_hull_build(&hull, (const double(*)[3])point, count, err);
+    }
+    if (status == MS_OK) {
+        status = ms_inertia_mesh(&body, &hull, err);
+    }
+    *volume = body.volume;
+    ms_mesh_free(&hull);
+    free(point);
+    return status;
+}
+
+/* The volume that is asked for of the hull, as one of the shape. */
+static ms_status ask_of_hull(fcm *f, ms_error *err)
+{
+    double volume;
+    const ms_status status = find_hull_volume(&volume, f, err);
+    if (status == MS_OK) {
+        f->off_volume *= volume / (double)f->run->target->voxels;
+    }
+    return status;
+}
+
 /* A number is solved for; for a measure it is sought. */
 static ms_status make_clump(ms_clump *clump, ms_stop_reason *reason, fcm *f, ms_error *err)
 {
@@ -389,51 +448,22 @@ static ms_status make_clump(ms_clump *clump, ms_stop_reason *reason, fcm *f, ms_
     if (f->off_volume == 0 && stop->spheres == 0 && !ms_stop_has_measure(stop)) {
         f->off_volume = DEFAULT_OFF_VOLUME;
     }
+    if (f->off_volume > 0 && fcm_option(f, VOLUME) == VOLUME_HULL) {
+        const ms_status asked = ask_of_hull(f, err);
+        if (asked != MS_OK) {
+            return asked;
+        }
+    }
     if (ms_stop_has_measure(stop) || f->off_volume > 0) {
         const size_t most = stop->spheres > 0 ? stop->spheres : MS_CLUMP_MAX_SPHERES;
-        return ms_bisect_count(clump, reason, most, make_clump_of, f, err);
+        return fcm_option(f, SEARCH) == SEARCH_UP ? search_upward(clump, reason, most, f, err)
+                                                  : ms_bisect_count(clump, reason, most, make_clump_of, f, err);
     }
     const ms_status status = make_clump_of(f, clump, reason, stop->spheres, err);
     if (*reason == MS_STOP_NOT) {
         *reason = MS_STOP_EXHAUSTED; /* some clusters coincide */
     }
     return status;
-}
-
-/* Mean over the surface of the longest edge of a triangle. */
-static double mean_edge(const ms_mesh *mesh)
-{
-    double sum = 0, area = 0;
-    for (size_t t = 0; t < mesh->n_triangles; t++) {
-        double side[3][3], normal[3], longest = 0;
-        for (int s = 0; s < 3; s++) {
-            const double *from = mesh->vertex[mesh->triangle[t][s]], *to = mesh->vertex[mesh->triangle[t][(s + 1) % 3]];
-            for (int a = 0; a < 3; a++) {
-                side[s][a] = to[a] - from[a];
-            }
-            longest = fmax(longest, ms_dot(side[s], side[s]));
-        }
-        ms_cross(normal, side[0], side[1]);
-        const double twice = sqrt(ms_dot(normal, normal));
-        sum += twice * sqrt(longest);
-        area += twice;
-    }
-    return area > 0 ? sum / area : 0;
-}
-
-/* Spheres reach to nodes, and through a face as far as its edges are long. */
-static void remark_long_edges(const ms_run *run, size_t n)
-{
-    const ms_mesh *mesh = run->target->mesh;
-    const double deq = 2 * ms_target_equivalent_radius(run->target);
-    const double most = deq * fmin(1, EDGE_OF_SHARE / cbrt((double)n)), edge = mesh ? mean_edge(mesh) : 0;
-    if (edge > most) {
-        ms_generator_remark(run,
-                            "the edges of the mesh are long, %.2g times the diameter d_eq of the ball of equal volume: "
-                            "spheres reach to its nodes and stand out of the faces between; refine the mesh to edges "
-                            "below %.2g d_eq for %zu spheres, or use another method",
-                            edge / deq, most / deq, n);
-    }
 }
 
 static ms_status generate_by_fcm(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
@@ -449,7 +479,7 @@ static ms_status generate_by_fcm(ms_clump *clump, ms_stop_reason *reason, const 
         status = make_clump(clump, reason, &f, err);
     }
     if (status == MS_OK) {
-        remark_long_edges(run, clump->n_spheres);
+        ms_long_edges_remark(run, clump->n_spheres);
     }
     free(f.few);
     ms_cluster_free(f.cluster);

@@ -12,7 +12,9 @@ typedef struct filling {
     const ms_target *target;
     const ms_nodes *nodes;
     double lo[3], hi[3]; /* box of the centres, in voxels */
-    uint8_t *covered;    /* one per node */
+    size_t *group;       /* of each node, which of those that count; NULL: itself */
+    size_t n_counted;    /* nodes that count */
+    uint8_t *covered;    /* one per node that counts */
     size_t n_covered;
     ms_ball *ball; /* as many as `room` */
     size_t count, room;
@@ -34,12 +36,19 @@ static void find_inside_box(filling *f)
     }
 }
 
-static ms_status open_filling(filling *f, const ms_target *target, const ms_nodes *nodes, uint64_t seed, ms_error *err)
+static ms_status open_filling(filling *f, const ms_target *target, const ms_nodes *nodes,
+                              const ms_random_spheres_rule *rule, ms_error *err)
 {
-    *f = (filling){.target = target, .nodes = nodes};
+    *f = (filling){.target = target, .nodes = nodes, .n_counted = nodes->count};
     find_inside_box(f);
-    f->covered = calloc(f->nodes->count, sizeof *f->covered);
-    f->random = ms_random_new((unsigned long)seed);
+    if (rule->thinned > 0) {
+        const ms_status status = ms_nodes_group(&f->group, &f->n_counted, nodes, rule->thinned, err);
+        if (status != MS_OK) {
+            return status;
+        }
+    }
+    f->covered = calloc(f->n_counted, sizeof *f->covered);
+    f->random = ms_random_new((unsigned long)rule->seed);
     if (!f->covered || !f->random) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory to fill a shape of %zu nodes", f->nodes->count);
     }
@@ -48,6 +57,7 @@ static ms_status open_filling(filling *f, const ms_target *target, const ms_node
 
 static void close_filling(filling *f)
 {
+    free(f->group);
     free(f->covered);
     ms_random_free(f->random);
 }
@@ -97,16 +107,27 @@ static ms_status make_room_for_spheres(filling *f, ms_error *err)
 
 static int is_full(const filling *f, const ms_random_spheres_rule *rule)
 {
-    return f->count >= rule->least && (double)f->n_covered >= rule->nodes_covered * (double)f->nodes->count;
+    return f->count >= rule->least && (double)f->n_covered >= rule->nodes_covered * (double)f->n_counted;
+}
+
+/* ms_nodes_visit. */
+static void cover_node(void *context, size_t node)
+{
+    filling *f = context;
+    uint8_t *covered = &f->covered[f->group ? f->group[node] : node];
+    f->n_covered += !*covered;
+    *covered = 1;
 }
 
 /* Keeps the spheres of a batch, one after the other, until the shape is full. */
 static void keep_spheres(filling *f, size_t drawn, const size_t *touched, const ms_random_spheres_rule *rule)
 {
     for (size_t b = 0; b < drawn && !is_full(f, rule); b++) {
-        f->n_covered += !f->covered[touched[b]];
-        f->covered[touched[b]] = 1;
-        f->count++;
+        const ms_ball *ball = &f->ball[f->count++];
+        cover_node(f, touched[b]);
+        if (rule->within) {
+            ms_nodes_visit_within(f->nodes, ball->centre, ball->radius, cover_node, f);
+        }
     }
 }
 
@@ -126,20 +147,21 @@ static void draw_batch(filling *f, size_t tries, const ms_random_spheres_rule *r
 
 static ms_status out_of_tries(const filling *f, const ms_random_spheres_rule *rule, ms_error *err)
 {
-    const double share = 100 * (double)f->n_covered / (double)f->nodes->count;
+    const double share = 100 * (double)f->n_covered / (double)f->n_counted;
     return ms_fail(err, MS_ERR_LIMIT,
                    "%zu random centres gave %zu spheres that touch %.1f %% of %zu nodes, not %g %%; "
                    "lower nodes-covered, raise tries, or coarsen the mesh",
-                   rule->tries, f->count, share, f->nodes->count, 100 * rule->nodes_covered);
+                   rule->tries, f->count, share, f->n_counted, 100 * rule->nodes_covered);
 }
 
-ms_status ms_random_spheres(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,
-                            const ms_random_spheres_rule *rule, ms_error *err)
+ms_status ms_random_spheres(ms_ball **ball, size_t *count, size_t *counted, const ms_target *target,
+                            const ms_nodes *nodes, const ms_random_spheres_rule *rule, ms_error *err)
 {
     filling f;
     *ball = NULL;
     *count = 0;
-    ms_status status = open_filling(&f, target, nodes, rule->seed, err);
+    ms_status status = open_filling(&f, target, nodes, rule, err);
+    *counted = f.n_counted;
     for (size_t left = rule->tries; status == MS_OK && !is_full(&f, rule);) {
         const size_t tries = left < BATCH ? left : BATCH;
         left -= tries;

@@ -3,13 +3,15 @@
 #define MS_RANDOM_SPHERES_H
 
 #include "ms_generator.h"
-#include "ms_nodes.h"
+#include "shared/ms_nodes.h"
 
 MS_C_BEGIN
 
 /** When the filling is complete, and when it is given up. */
 typedef struct ms_random_spheres_rule {
-    double nodes_covered; /* share of the nodes that have to be touched by a sphere, from 0 to 1 */
+    double nodes_covered; /* share of the nodes that have to be covered by a sphere, from 0 to 1 */
+    double thinned;       /* nodes in one cube of this edge, in voxels, count as one; 0: each counts */
+    int within;           /* nonzero: a sphere covers all nodes within it; else the one that it touches */
     size_t least;         /* as many spheres at least */
     ms_norm norm;         /* of the distance to a node */
     double offset;        /* added to each radius, in voxels */
@@ -21,13 +23,15 @@ typedef struct ms_random_spheres_rule {
 
 /**
  * Draws centres in the box of the shape. Those inside become spheres whose radius is the distance to the
- * nearest node (ms_nodes_of_target; eq. 1, a Euclidean norm). A sphere covers the node that it touches.
+ * nearest node (ms_nodes_of_target; eq. 1, a Euclidean norm). A sphere covers the node that it touches, or all within
+ * it.
  *
  * Of a volume voxels are drawn, and half a voxel is added, since the surface lies beyond the centres of the
  * border's voxels.
  *
  * @param[out] ball  in voxels of the target's grid, in the order drawn; the caller frees it; NULL on failure
  * @param[out] count how many
+ * @param[out] counted nodes, as far as they were counted: fewer where they were thinned
  * @param      nodes of the target
  * @return MS_OK; MS_ERR_LIMIT if the tries run out: the message says what share of the nodes was
  *         covered; MS_ERR_NOMEM
@@ -35,8 +39,8 @@ typedef struct ms_random_spheres_rule {
  * Source: MT19937 of GSL for the random numbers. Cost: tries * O(log nodes), all cores; the same spheres at any
  * number of threads.
  */
-ms_status ms_random_spheres(ms_ball **ball, size_t *count, const ms_target *target, const ms_nodes *nodes,
-                            const ms_random_spheres_rule *rule, ms_error *err);
+ms_status ms_random_spheres(ms_ball **ball, size_t *count, size_t *counted, const ms_target *target,
+                            const ms_nodes *nodes, const ms_random_spheres_rule *rule, ms_error *err);
 
 /**
  * The radius that a sphere about a centre inside has.

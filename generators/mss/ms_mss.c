@@ -4,7 +4,7 @@
  * section numbers are of that paper; docs/methods/mss.md says what it leaves open and how it
  * was decided.
  */
-#include "ms_mss.h"
+#include "ms_generator_list.h"
 
 #include <math.h>
 #include <stdlib.h>

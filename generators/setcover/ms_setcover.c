@@ -3,7 +3,7 @@
  * corrected mechanical properties, Granular Matter 21 (2019) 19. Section and algorithm numbers
  * are of that paper; docs/methods/setcover.md says what it leaves open and how it was decided.
  */
-#include "ms_setcover.h"
+#include "ms_generator_list.h"
 
 #include <math.h>
 #include <stdlib.h>

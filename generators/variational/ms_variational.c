@@ -3,7 +3,7 @@
  * greedy cover with more spheres than asked for, fit their exposed surfaces to the target's, drop the
  * least useful ones, fit again. docs/methods/variational.md derives it.
  */
-#include "ms_variational.h"
+#include "ms_generator_list.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,7 +9,7 @@
 #include "fcm/ms_cluster.h"
 #include "fcm/ms_random_spheres.h"
 #include "ms_generator.h"
-#include "mss/ms_mss.h"
+#include "ms_generator_list.h"
 
 enum { MOST = 100 };
 
@@ -82,7 +82,7 @@ int main(void)
     ms_target target = {0};
     ms_nodes nodes = {0};
     ms_ball *ball = NULL;
-    size_t count;
+    size_t count, counted;
     ms_error err;
     omp_set_num_threads(1);
     ms_status status = make_grain(&mesh, &err);
@@ -91,7 +91,7 @@ int main(void)
         status = ms_target_from_mesh(&target, &mesh, 1, 2.0 / 100, MS_VOXEL_HALF, &err);
     }
     if (status == MS_OK && (status = ms_nodes_of_target(&nodes, &target, &err)) == MS_OK &&
-        (status = ms_random_spheres(&ball, &count, &target, &nodes, &rule, &err)) == MS_OK) {
+        (status = ms_random_spheres(&ball, &count, &counted, &target, &nodes, &rule, &err)) == MS_OK) {
         status = compare(&target, ball, &err);
     }
     if (status != MS_OK) {

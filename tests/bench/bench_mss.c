@@ -8,7 +8,7 @@
 
 #include "bench_support.h"
 #include "ms_generator.h"
-#include "mss/ms_mss.h"
+#include "ms_generator_list.h"
 
 static double peak_bytes(void)
 {

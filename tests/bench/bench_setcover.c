@@ -5,7 +5,7 @@
 
 #include "bench_support.h"
 #include "ms_generator.h"
-#include "setcover/ms_setcover.h"
+#include "ms_generator_list.h"
 
 static ms_status run_setcover(const ms_target *target, double target_seconds, double coverage, const char *candidates,
                               ms_error *err)

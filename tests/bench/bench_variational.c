@@ -9,9 +9,7 @@
 #include "measure/ms_metrics.h"
 #include "mesh/ms_closest.h"
 #include "ms_generator.h"
-#include "mss/ms_mss.h"
-#include "setcover/ms_setcover.h"
-#include "variational/ms_variational.h"
+#include "ms_generator_list.h"
 #include "voxel/ms_raster.h"
 
 enum { POINTS = 1000 };

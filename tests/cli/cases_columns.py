@@ -1,4 +1,5 @@
 """The names that scripts rely on: the header line of every CSV and the keys of every JSON that the program writes."""
+import csv
 import json
 
 from support import Case
@@ -6,7 +7,8 @@ from support import Case
 SCORES = ("spheres eta dice coverage overshoot off_volume protrusion_max protrusion_rms gap_max gap_rms "
           "smallest_radius_ratio pieces volume inertia_error.moments inertia_error.weighted_mean "
           "inertia_error.axes_degrees inertia_error.centroid")
-TARGET = "path fnv1a rule grid voxel_size grid_origin voxels triangles closed"
+MENDED = "joined dropped_degenerate dropped_duplicate filled_holes dropped_bodies dropped_volume turned"
+TARGET = "path fnv1a rule grid voxel_size grid_origin voxels triangles closed " + MENDED
 MASSES = ("epsilon products_epsilon centre_epsilon optimal least most error_mass error_centre error_moments "
           "error_products seconds")
 PARTICLE = "scale density mass centre inertia principal_moments principal_axes"
@@ -100,11 +102,47 @@ class Columns(Case):
         run = self.mskit("info", "grain.stl", "--json").json
         body = "volume centroid inertia principal_moments principal_axes"
         self.assertEqual(keys(run), ("path box_lo box_hi area equivalent_diameter sphericity triangles vertices closed "
-                                     "open_edges nonmanifold_edges shells bodies cavities overlapping turned dropped_degenerate "
-                                     "dropped_duplicate " + body).split())
+                                     "open_edges nonmanifold_edges shells bodies cavities overlapping holes largest_hole " +
+                                     MENDED + " " + body).split())
 
     def test_json_of_generators(self):
-        self.assertEqual(keys(self.mskit("generators", "--json").json), "name summary source nested".split())
+        self.assertEqual(keys(self.mskit("generators", "--json").json), "name summary source nested baseline".split())
+
+    def test_json_of_help(self):
+        about = self.mskit("help", "mss", "--json").json
+        self.assertEqual(keys(about), "name summary source nested".split() +
+                         under("options", "name type default min max unit choices help"))
+        self.assertEqual([o["name"] for o in about["options"]],
+                         "spacing boost radius-offset order confine plane".split())
+        self.assertEqual(keys(self.mskit("help", "score", "--json").json), "name summary usage example".split() +
+                         under("flags", "name letter argument help"))
+
+    def test_json_of_shape(self):
+        kinds = self.mskit("shape", "--list", "--json").json
+        self.assertEqual(keys(kinds), ["name", "summary"] + under("parameters", "name default min max help"))
+        ball = next(kind for kind in kinds if kind["name"] == "ball")
+        self.assertEqual([(p["name"], p["default"]) for p in ball["parameters"]], [("r", 1), ("fineness", 56)])
+        self.assert_refused("shape", "ball", "--json", "-o", "x.stl", code=2, says=("--list",))
+
+    def test_json_of_compare(self):
+        """All rows of the file, in its columns: those that were there and those that failed, too."""
+        self.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        args = ("compare", "grain.stl", "open.obj", "-g", "mss:spacing=3", "-n", "2,3", "--cells", 10)
+        self.mskit(*args)
+        result = self.mskit(*args, "--resume", "--json")
+        rows = result.json
+        self.assertEqual(keys(rows), self.header("compare.csv").split(","))
+        with open(self.path("compare.csv"), encoding="utf-8") as stream:
+            written = list(csv.DictReader(stream))
+        self.assertEqual(len(rows), 4)
+        for row, columns in zip(rows, written):
+            for name, text in columns.items():
+                value = row[name]
+                self.assertEqual(value, None if not text else text if isinstance(value, str) else float(text), name)
+            self.assertEqual((row["options"], row["seed"]), ("spacing=3", 1))
+        self.assertEqual([row["dice"] is None for row in rows], [False, False, True, True])
+        self.assertIn("is open", rows[2]["cause"])
+        self.assertIn("wrote compare.csv", result.err)
 
     def test_json_of_stability(self):
         run = self.mskit("stability", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10, "--runs", 1, "--perturb",

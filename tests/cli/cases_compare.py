@@ -142,10 +142,31 @@ class Rows(Compare):
         self.assertEqual([(r["label"], r["cells"], r["voxel_size"], r["protrusion_max"]) for r in rows],
                          [("4", "", "1", "")])
 
-    def test_all_methods_by_default(self):
-        rows = self.compare("box.obj", "-n", "6", "--cells", "12")
-        names = [g["name"] for g in self.mskit("generators", "--json").json]
-        self.assertEqual([r["generator"] for r in rows], names)
+    def test_all_methods_by_default_and_baselines_by_name(self):
+        listed = self.mskit("generators", "--json").json
+        for names, flags in (([g["name"] for g in listed if not g["baseline"]], []),
+                             ([g["name"] for g in listed if g["baseline"]],
+                              [word for g in listed if g["baseline"] for word in ("-g", g["name"])])):
+            name = f"{len(flags)}.csv"
+            self.mskit("compare", "box.obj", *flags, "-n", "6", "--cells", "12", "-o", name)
+            rows = self.rows(name)
+            self.assertGreater(len(names), 2)
+            self.assertEqual([r["generator"] for r in rows], names)
+            self.assertTrue(all(r["dice"] for r in rows), rows)
+
+    def test_a_run_without_one_row_fails(self):
+        """Of the new rows, which are written and told all the same."""
+        self.write("box.obj", box_obj((0, 0, 0), (3, 2, 1)))
+        self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))
+        args = ("-g", "mss", "-n", "1,2", "--cells", "8", "--json")
+        says = "mskit compare: not one of 2 rows succeeded; the first failed because of this: open.obj: the mesh is open"
+        result = self.mskit("compare", "open.obj", *args, code=1)
+        self.assert_says(result, says)
+        self.assertEqual([row["dice"] for row in result.json], [None, None])
+        self.mskit("compare", "open.obj", *args, "--resume")  # of no new row none has failed
+        self.mskit("compare", "box.obj", *args, "-o", "two.csv")
+        self.assert_says(self.mskit("compare", "box.obj", "open.obj", *args, "-o", "two.csv", "--resume", code=1), says)
+        self.mskit("compare", "box.obj", "open.obj", *args, "-o", "both.csv")
 
     def test_failures_are_rows(self):
         self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))

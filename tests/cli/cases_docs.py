@@ -121,6 +121,10 @@ class Documents(Case):
                        self.mskit("score", "c.csv", "--target", shape, *grid, "--json").json,
                        self.mskit("scene", shape, *grid, "-g", "mss", "--tolerance", "dice=0.5", "--json").json]
             records += records[-1]["shapes"]
+            about, command = (self.mskit("help", name, "--json").json for name in ("mss", "score"))
+            records += about["options"] + [about, command] + command["flags"] + self.mskit("generators", "--json").json
+            kinds = self.mskit("shape", "--list", "--json").json
+            records += kinds + kinds[0]["parameters"]
             for record in records:
                 record.pop("options", None)  # those of a method are on its own page
                 for key in keys(record):

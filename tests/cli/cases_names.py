@@ -178,7 +178,8 @@ class Tables(Hostile):
         """Messages begin with the name of the file."""
         for name in ("=1", "+1", "-1", "@1"):
             self.write(name + ".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-            self.mskit("compare", "-g", "mss", "-n", "1", "--cells", "8", "-o", f"t{name}.csv", "--", name + ".obj")
+            self.mskit("compare", "-g", "mss", "-n", "1", "--cells", "8", "-o", f"t{name}.csv", "--", name + ".obj",
+                       code=1)
             rows = list(csv.DictReader(io.StringIO(self.read(f"t{name}.csv").decode())))
             self.assertTrue(rows[0]["cause"].startswith(("'" + name, "./" + name)), rows[0]["cause"])
 

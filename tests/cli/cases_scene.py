@@ -285,6 +285,11 @@ class Refused(Scene):
             with self.subTest(args=args):
                 self.assert_refused("scene", "scene.csv", *few, *args, code=1, says=says)
 
+    def test_a_shape_that_fails_ends_the_run(self):
+        """A scene is whole or not at all, so that no run is left without a row."""
+        self.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.assert_refused("scene", "open.obj", *QUICK, "--knee", "0.1", code=1, says=("open.obj: the mesh is open",))
+
     def test_templates_that_would_overwrite(self):
         os.mkdir(self.path("sub"))
         os.rename(self.path("box.obj"), self.path("sub/grain.obj"))

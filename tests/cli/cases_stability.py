@@ -137,6 +137,18 @@ class Stability(Case):
         self.assertEqual([row["status"] for row in rows[3:]], ["ok"] * 3)
         self.assertIn("2 failed, 0 unusable: 10 random centres", result.out)
 
+    def test_a_run_without_one_row_fails(self):
+        """The rows are written and told all the same."""
+        args = ("stability", "speck", "-g", "fcm:tries=10", "-n", "3", "--perturb", "seed", "--runs", "2")
+        says = "mskit stability: not one of 3 rows succeeded; the first failed because of this: 10 random centres"
+        result = self.mskit(*args, "-o", "s.csv", code=1)
+        self.assert_says(result, says)
+        self.assertIn("2 failed, 0 unusable", result.out)
+        self.assertEqual([row["status"] for row in rows_of(self.read("s.csv").decode())], ["failed"] * 3)
+        result = self.mskit(*args, "-o", "t.csv", "--json", code=1)
+        self.assert_says(result, says)
+        self.assertEqual([group["failed"] for group in result.json], [1, 2])
+
     def test_a_shape_that_cannot_be_used_is_no_failure_of_the_method(self):
         """Twice the cells do not fit the memory allowed."""
         groups = self.mskit("stability", "cube", "-g", "mss", "-n", "2", "--cells", "40", "--max-memory", "2M",

@@ -5,8 +5,8 @@ import shutil
 
 from support import Case, box_obj
 
-COMMANDS = ("generate", "score", "correct", "convert", "info", "shape", "compare", "stability", "scene", "generators",
-            "help")
+COMMANDS = ("generate", "score", "correct", "convert", "info", "shape", "compare", "stability", "scene", "grains",
+            "generators", "help", "version", "completion")
 
 
 class Help(Case):
@@ -25,7 +25,9 @@ class Help(Case):
         self.assertEqual(sorted(listed), sorted(COMMANDS))
 
     def test_version(self):
-        self.assertRegex(self.mskit("--version").out, r"^mskit \d+\.\d+\.\d+\n$")
+        for word in ("--version", "-V", "version"):
+            self.assertRegex(self.mskit(word).out, r"^mskit \d+\.\d+\.\d+\n$")
+        self.assert_refused("version", "x", code=2, says=("no words",))
 
     def test_help_of_every_command(self):
         for command in COMMANDS:
@@ -58,7 +60,7 @@ class Help(Case):
         table = self.mskit("generators").out
         self.assertIn("mss", [g["name"] for g in listed])
         for generator in listed:
-            self.assertEqual(set(generator), {"name", "summary", "source", "nested"})
+            self.assertEqual(set(generator), {"name", "summary", "source", "nested", "baseline"})
             self.assertIn(generator["name"], table)
             about = self.mskit("help", generator["name"]).out
             self.assertIn(generator["source"], about)
@@ -66,7 +68,7 @@ class Help(Case):
 
 
 class WrongUsage(Case):
-    """Each is refused before any work, and told what could be chosen."""
+    """Each is refused before any work, and told what could be chosen, or of flags, which are many, where they stand."""
 
     def setUp(self):
         super().setUp()
@@ -79,13 +81,14 @@ class WrongUsage(Case):
         for args, says in (
             (("nonsense",), ("'nonsense'", "generate", "score", "shape")),
             (("",), ("''", "generate")),
-            (("--nonsense",), ("--nonsense", "generate")),
-            ((*generate, "--nonsense"), ("--nonsense", "--cells", "--until", "--confine")),
-            ((*generate, "-z"), ("z", "--cells", "--until")),
-            (("score", "c.csv", "--nonsense"), ("--nonsense", "--target", "--curve")),
-            (("info", "--nonsense"), ("--nonsense", "--json", "--label")),
-            (("shape", "--nonsense"), ("--nonsense", "--output", "--list")),
-            (("generators", "--nonsense"), ("--nonsense", "--json")),
+            (("--nonsense",), ("--nonsense", "--help", "--version", "mskit generate --help")),
+            ((*generate, "--nonsense"), ("no flag --nonsense", "mskit generate --help")),
+            ((*generate, "-z"), ("no flag -z", "mskit generate --help")),
+            ((*generate, "--c", "1"), ("--c may be short for", "--correct")),
+            (("score", "c.csv", "--nonsense"), ("no flag --nonsense", "mskit score --help")),
+            (("info", "--nonsense"), ("no flag --nonsense", "mskit info --help")),
+            (("shape", "--nonsense"), ("no flag --nonsense", "mskit shape --help")),
+            (("generators", "--nonsense"), ("no flag --nonsense", "mskit generators --help")),
             (("help", "--nonsense"), ("--nonsense", "--help")),
             ((*generate, "--cells"), ("--cells", "argument")),
             ((*generate, "--confine=on"), ("--confine", "argument")),
@@ -95,7 +98,7 @@ class WrongUsage(Case):
             ((*mss, "--set", "nonsense=1"), ("'nonsense'", "spacing", "confine", "plane")),
             ((*generate, "--set", ""), ("name=value",)),
             ((*generate, "--set", "=1"), ("name=value",)),
-            ((*mss, "--order", "nonsense"), ("nonsense", "radius|gain")),
+            ((*mss, "--order", "nonsense"), ("nonsense", "radius, gain")),
             ((*mss, "--set", "confine=perhaps"), ("perhaps", "on", "off")),
             ((*generate, "--format", "nonsense"), ("'nonsense'", "csv", "json", "vtk")),
             ((*generate, "-o", "clump.nonsense"), ("clump.nonsense", "csv", "json", "vtk", "--format")),

@@ -166,7 +166,7 @@ class Scan(Case):
         centroid = [sum(at // 128**axis % 128 for at in voxels) / len(voxels) for axis in range(3)]
         for ending in ("npy", "mhd", "nrrd"):
             path = shared_file("nmc_ct_labels." + ending)
-            self.assert_refused("info", path, code=1, says=("several labels", "--label"))
+            self.assert_refused("generate", path, code=1, says=("several labels", "--label"))
             info = self.mskit("info", path, "--label", label, "--json").json
             self.assertEqual((info["voxels"], info["volume"]), (len(voxels), len(voxels)), ending)
             for axis in range(3):

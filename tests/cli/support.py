@@ -54,12 +54,14 @@ class Case(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.dir, name)
 
-    def mskit(self, *args, code=0, **more):
-        """Runs mskit and checks its exit code; None: any but a crash."""
+    def mskit(self, *args, code=0, stdin=subprocess.DEVNULL, **more):
+        """Runs mskit and checks its exit code; None: any but a crash. `stdin`: a file, open, or the bytes that it reads
+        there."""
         args = [os.fsencode(str(a)) if not isinstance(a, bytes) else a for a in args]
         start = seconds_of_children()
-        process = subprocess.run([MSKIT] + args, cwd=self.dir, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                 stderr=subprocess.PIPE, timeout=TIMEOUT, check=False, **more)
+        more.update({"input": stdin} if isinstance(stdin, bytes) else {"stdin": stdin})
+        process = subprocess.run([MSKIT] + args, cwd=self.dir, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                 timeout=TIMEOUT, check=False, **more)
         result = Result([os.fsdecode(a) for a in args], process, seconds_of_children() - start)
         wanted = (0, 1, 2) if code is None else (code,)
         self.assertIn(result.code, wanted, f"exit code should be {wanted}\n{result}")

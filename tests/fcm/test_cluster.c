@@ -5,8 +5,8 @@
 #include <omp.h>
 
 #include "fcm/ms_cluster.h"
-#include "fcm/ms_nodes.h"
 #include "fcm/ms_power.h"
+#include "shared/ms_nodes.h"
 
 enum { MANY = 700, MOST = 12 };
 

@@ -3,9 +3,9 @@
 
 #include <omp.h>
 
-#include "fcm/ms_fcm.h"
 #include "fcm/ms_random_spheres.h"
 #include "measure/ms_metrics.h"
+#include "ms_generator_list.h"
 #include "shared/ms_bisect_count.h"
 #include "support/body_samples.h"
 #include "voxel/ms_raster.h"
@@ -63,10 +63,10 @@ static void check_filling(const ms_target *target, const ms_random_spheres_rule 
 {
     ms_nodes nodes;
     ms_ball *ball;
-    size_t count, touched = 0, before = 0;
+    size_t count, counted, touched = 0, before = 0;
     ms_error err;
     assert_int_equal(ms_nodes_of_target(&nodes, target, &err), MS_OK);
-    if (ms_random_spheres(&ball, &count, target, &nodes, rule, &err) != MS_OK) {
+    if (ms_random_spheres(&ball, &count, &counted, target, &nodes, rule, &err) != MS_OK) {
         fail_msg("%s", err.text);
     }
     uint8_t *covered = calloc(nodes.count, 1);
@@ -83,8 +83,11 @@ static void check_filling(const ms_target *target, const ms_random_spheres_rule 
         }
         assert_close(ball[b].radius, away(nodes.at[nearest], c, rule->norm) + beyond, 1e-9);
         before = touched;
-        touched += target->mesh && !covered[nearest];
-        covered[nearest] = 1;
+        for (size_t n = 0; n < nodes.count && target->mesh; n++) {
+            const int is_within = rule->within && away(nodes.at[n], c, MS_NORM_EUCLIDEAN) <= ball[b].radius;
+            touched += (n == nearest || is_within) && !covered[n];
+            covered[n] |= n == nearest || is_within;
+        }
     }
     if (target->mesh) { /* of a volume several nodes may be nearest */
         const double wanted = rule->nodes_covered * (double)nodes.count;
@@ -106,6 +109,10 @@ static void the_filling_touches_nodes(void **state)
     check_filling(&target,
                   &(ms_random_spheres_rule){.nodes_covered = 0.6, .norm = MS_NORM_SUM, .offset = 1.5, .tries = 1000000},
                   1.5);
+    check_filling(&target,
+                  &(ms_random_spheres_rule){
+                      .nodes_covered = 0.8, .within = 1, .norm = MS_NORM_SUM, .offset = 0.7, .tries = 1000000},
+                  0.7);
     check_filling(&target, &(ms_random_spheres_rule){.nodes_covered = 0.2, .least = 1234, .tries = 1000000}, 0);
     ms_target_free(&target);
     ms_mesh_free(&mesh);
@@ -423,6 +430,7 @@ int main(void)
         cmocka_unit_test(the_volume_ends_the_run),         cmocka_unit_test(the_seed_decides),
         cmocka_unit_test(bad_options_are_refused),         cmocka_unit_test(the_least_number_is_found),
         cmocka_unit_test(long_edges_are_remarked),
+
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

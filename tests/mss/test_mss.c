@@ -8,7 +8,7 @@
 #include "mesh/formats/ms_mesh_read.h"
 #include "mesh/ms_closest.h"
 #include "ms_generator.h"
-#include "mss/ms_mss.h"
+#include "ms_generator_list.h"
 #include "mss/ms_mss_field.h"
 #include "voxel/ms_distance.h"
 

@@ -3,8 +3,8 @@
 
 #include "measure/ms_metrics.h"
 #include "ms_generator.h"
+#include "ms_generator_list.h"
 #include "setcover/ms_medial.h"
-#include "setcover/ms_setcover.h"
 
 /* Options as "name=value name=value". */
 static ms_status try_setcover(ms_clump *clump, ms_stop_reason *reason, const ms_target *target, ms_stop stop,

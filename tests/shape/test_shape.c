@@ -304,7 +304,7 @@ static void an_unknown_kind_names_the_known(void **state)
     ms_error err;
     (void)state;
     assert_null(ms_shape_find("cubus", &err));
-    expect_message(&err, "no shape is called 'cubus'; there are: ball, ellipsoid, ");
+    expect_message(&err, "no shape is called 'cubus'; choose from ball, ellipsoid, ");
     expect_message(&err, ", grain");
     assert_null(ms_shape_find("", NULL));
 }

@@ -6,12 +6,11 @@
 
 #include "base/ms_vector.h"
 #include "mesh/ms_closest.h"
-#include "mss/ms_mss.h"
+#include "ms_generator_list.h"
 #include "variational/ms_coverage_count.h"
 #include "variational/ms_pattern_search.h"
 #include "variational/ms_prune.h"
 #include "variational/ms_surface_fit.h"
-#include "variational/ms_variational.h"
 
 static double uniform(double from, double to)
 {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/ms_file.h"
+#include "base/ms_text.h"
 #include "ms_formats.h"
 #include "ms_json.h"
 
@@ -23,6 +24,42 @@ static ms_status read_bytes(ms_clump *clump, ms_particle *particle, ms_bytes *by
     return ms_xyzr_read(clump, particle, bytes, path, err);
 }
 
+/* A clump of MS_CLUMP_MAX_SPHERES is far shorter, so that an input without end is found out. */
+static const size_t MOST_BYTES = (size_t)1 << 28;
+
+/* Standard input has no ending: an object is JSON, other text is x y z r. */
+static ms_status read_standard(ms_clump *clump, ms_particle *particle, ms_error *err)
+{
+    const char *name = ms_file_name("-");
+    ms_bytes bytes;
+    ms_text text;
+    ms_status status = ms_file_read_standard(&bytes, MOST_BYTES, err);
+    if (status == MS_OK && bytes.size == 0) {
+        ms_file_free(&bytes);
+        return ms_fail(err, MS_ERR_FORMAT, "%s: is empty (0 bytes); it can be read once, so that - is given once",
+                       name);
+    }
+    if (status != MS_OK) {
+        return status;
+    }
+    ms_text_start(&text, &bytes, name);
+    const int is_json = ms_text_seek(&text) && *text.at == '{';
+    status = (is_json ? ms_json_read : ms_xyzr_read)(clump, particle, &bytes, name, err);
+    ms_file_free(&bytes);
+    return status;
+}
+
+static ms_status read_file(ms_clump *clump, ms_particle *particle, const char *path, ms_error *err)
+{
+    ms_bytes bytes;
+    ms_status status = ms_file_read(&bytes, path, err);
+    if (status == MS_OK) {
+        status = read_bytes(clump, particle, &bytes, path, err);
+        ms_file_free(&bytes);
+    }
+    return status;
+}
+
 static ms_status check_masses(const ms_clump *clump, const char *name, ms_error *err)
 {
     for (size_t s = 0; clump->mass && s < clump->n_spheres; s++) {
@@ -36,16 +73,12 @@ static ms_status check_masses(const ms_clump *clump, const char *name, ms_error 
 
 ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path, ms_error *err)
 {
-    ms_bytes bytes;
     memset(clump, 0, sizeof *clump);
     memset(particle, 0, sizeof *particle);
-    ms_status status = ms_file_read(&bytes, path, err);
+    ms_status status =
+        ms_file_is_standard(path) ? read_standard(clump, particle, err) : read_file(clump, particle, path, err);
     if (status == MS_OK) {
-        status = read_bytes(clump, particle, &bytes, path, err);
-        ms_file_free(&bytes);
-    }
-    if (status == MS_OK) {
-        status = check_masses(clump, path, err);
+        status = check_masses(clump, ms_file_name(path), err);
     }
     if (status != MS_OK) {
         ms_clump_free(clump);

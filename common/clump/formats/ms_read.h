@@ -10,7 +10,8 @@ MS_C_BEGIN
  * Reads a clump file; its ending names the format. CSV gives masses if its header says so (x,y,z,r,mass), JSON also
  * the particle, a LAMMPS molecule (.lammps) both, without the density. Sphere files of LIGGGHTS and YADE, and any
  * other text, are read as ms_read_spheres does; in .yade a fifth column is the id of the sphere's clump. Files of
- * formats that mskit only writes are refused.
+ * formats that mskit only writes are refused. "-" is standard input: JSON if it begins with a brace, else text of x y
+ * z r, 268 MB at most.
  *
  * @param[out] clump    the caller frees it; empty on failure
  * @param[out] particle zeros where the file does not know it

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/ms_choice.h"
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "ms_formats.h"
@@ -35,25 +36,15 @@ const ms_format ms_formats[] = {
     {0},
 };
 
-static void list_formats(char names[256])
-{
-    names[0] = '\0';
-    for (const ms_format *f = ms_formats; f->name; f++) {
-        const size_t used = strlen(names);
-        snprintf(names + used, 256 - used, "%s%s", used ? ", " : "", f->name);
-    }
-}
-
 const ms_format *ms_write_format_find(const char *name, ms_error *err)
 {
-    char names[256];
+    ms_choice choice = {.typed = name};
     for (const ms_format *f = ms_formats; f->name; f++) {
-        if (strcmp(f->name, name) == 0) {
+        if (ms_choice_offer(&choice, f->name)) {
             return f;
         }
     }
-    list_formats(names);
-    ms_fail(err, MS_ERR_ARG, "there is no clump format '%s'; choose from %s", name, names);
+    ms_choice_fail(&choice, err, "there is no clump format '%s'", name);
     return NULL;
 }
 

@@ -24,7 +24,8 @@ MS_C_BEGIN
 MS_API ms_status ms_mesh_read(ms_mesh *mesh, const char *path, ms_error *err);
 
 /**
- * The same from the bytes of a file that was read already; the path tells the format and stands in messages.
+ * The same from the bytes of a file that was read already; the path tells the format and stands in messages. Of "-",
+ * standard input, the content tells it.
  *
  * @param[out] remark what is wrong in the file though it was read, in one sentence; empty if nothing is; may be NULL
  */

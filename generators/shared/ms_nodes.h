@@ -44,6 +44,25 @@ ms_status ms_nodes_of_target(ms_nodes *nodes, const ms_target *target, ms_error 
  */
 size_t ms_nodes_nearest(double *distance, const ms_nodes *nodes, const double place[3], ms_norm norm);
 
+/**
+ * Sorts nodes into groups: those in one cube of a lattice are one. Groups are numbered from 0 on.
+ *
+ * @param[out] group    nodes->count values, in the tree's order; the caller frees it; NULL on failure
+ * @param[out] n_groups how many
+ * @param      edge     of the cubes, above 0
+ * @return MS_OK; MS_ERR_NOMEM
+ *
+ * Cost: O(count log count).
+ */
+ms_status ms_nodes_group(size_t **group, size_t *n_groups, const ms_nodes *nodes, double edge, ms_error *err);
+
+/** Is told of a node, by its index in the tree's order. */
+typedef void (*ms_nodes_visit)(void *context, size_t index);
+
+/** Visits the nodes no farther from a place than `radius` (Euclidean). Cost: O(log count + visited) typical. */
+void ms_nodes_visit_within(const ms_nodes *nodes, const double place[3], double radius, ms_nodes_visit visit,
+                           void *context);
+
 void ms_nodes_free(ms_nodes *nodes);
 
 MS_C_END

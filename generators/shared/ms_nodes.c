@@ -194,6 +194,90 @@ size_t ms_nodes_nearest(double *distance, const ms_nodes *nodes, const double pl
     return best.index;
 }
 
+/* A node by the cube that it is in. */
+typedef struct cubed_node {
+    int32_t cube[3];
+    size_t index;
+} cubed_node;
+
+static int compare_cubes(const void *a, const void *b)
+{
+    const cubed_node *x = a, *y = b;
+    for (int k = 0; k < 3; k++) {
+        if (x->cube[k] != y->cube[k]) {
+            return x->cube[k] < y->cube[k] ? -1 : 1;
+        }
+    }
+    return 0;
+}
+
+ms_status ms_nodes_group(size_t **group, size_t *n_groups, const ms_nodes *nodes, double edge, ms_error *err)
+{
+    cubed_node *sorted = malloc(nodes->count * sizeof *sorted);
+    *group = malloc(nodes->count * sizeof **group);
+    *n_groups = 0;
+    if (!sorted || !*group) {
+        free(sorted);
+        free(*group);
+        *group = NULL;
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to thin %zu nodes", nodes->count);
+    }
+    for (size_t p = 0; p < nodes->count; p++) {
+        sorted[p].index = p;
+        for (int a = 0; a < 3; a++) {
+            sorted[p].cube[a] = (int32_t)floor(nodes->at[p][a] / edge);
+        }
+    }
+    qsort(sorted, nodes->count, sizeof *sorted, compare_cubes);
+    for (size_t p = 0; p < nodes->count; p++) {
+        *n_groups += p == 0 || compare_cubes(&sorted[p - 1], &sorted[p]) != 0;
+        (*group)[sorted[p].index] = *n_groups - 1;
+    }
+    free(sorted);
+    return MS_OK;
+}
+
+/* Where nodes are visited, and by whom. */
+typedef struct visiting {
+    const ms_nodes *nodes;
+    const double *place;
+    double radius;
+    ms_nodes_visit visit;
+    void *context;
+} visiting;
+
+static void visit_node(const visiting *v, size_t p)
+{
+    if (ms_squared_distance(v->nodes->at[p], v->place) <= v->radius * v->radius) {
+        v->visit(v->context, p);
+    }
+}
+
+static void visit_range(const visiting *v, node_range r)
+{
+    while (r.end - r.first > LEAF) {
+        const size_t middle = middle_of(r);
+        const int axis = v->nodes->axis[middle];
+        const double beyond = v->place[axis] - v->nodes->at[middle][axis];
+        const node_range lower = {r.first, middle}, upper = {middle + 1, r.end};
+        visit_node(v, middle);
+        if (fabs(beyond) <= v->radius) {
+            visit_range(v, lower);
+        }
+        r = beyond < -v->radius ? lower : upper;
+    }
+    for (size_t p = r.first; p < r.end; p++) {
+        visit_node(v, p);
+    }
+}
+
+void ms_nodes_visit_within(const ms_nodes *nodes, const double place[3], double radius, ms_nodes_visit visit,
+                           void *context)
+{
+    const visiting v = {nodes, place, radius, visit, context};
+    visit_range(&v, (node_range){0, nodes->count});
+}
+
 void ms_nodes_free(ms_nodes *nodes)
 {
     if (nodes) {
