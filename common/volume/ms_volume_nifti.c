@@ -39,7 +39,7 @@ static ms_status load_header(nifti_1_header *raw, int *is_swapped, const ms_byte
                        bytes->size);
     }
     memcpy(raw, bytes->data, sizeof *raw);
-    *is_swapped = raw->dim[0] < 1 || raw->dim[0] > 7;
+    *is_swapped = raw->sizeof_hdr != (int)sizeof *raw;
     if (*is_swapped) {
         swap_nifti_header(raw, 1);
     }

@@ -24,6 +24,9 @@ static tmsize_t read_tiff(thandle_t handle, void *to, tmsize_t size)
         memcpy(to, source->bytes->data + source->at, count);
     }
     source->at += count;
+    if (count < (size_t)size && source->cause[0] == '\0') { /* of a link to the next page libtiff says nothing */
+        snprintf(source->cause, sizeof source->cause, "the file ends before");
+    }
     return (tmsize_t)count;
 }
 
