@@ -271,22 +271,31 @@ static ms_status add_page(ms_stored *stored, TIFF *tiff, const tiff_source *sour
     return MS_OK;
 }
 
+/* What follows behind a word in ImageJ's description; 0 without it, and for what is no count or length. */
+static double find_number(const char *text, const char *word)
+{
+    const char *at = strstr(text, word);
+    const double value = at ? strtod(at + strlen(word), NULL) : 0;
+    return value > 0 && value < 1e15 ? value : 0;
+}
+
 /* ImageJ says the distances of voxels, and writes stacks above 4 GB with one page for all slices. */
 static ms_status heed_imagej(ms_stored *stored, TIFF *tiff, long long *images, const char *path, ms_error *err)
 {
-    const char *text = NULL, *spacing, *count;
+    const char *text = NULL;
     float x = 0, y = 0;
     *images = 0;
     if (!TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) || strncmp(text, "ImageJ=", 7) != 0) {
         return MS_OK;
     }
-    count = strstr(text, "\nimages=");
-    spacing = strstr(text, "\nspacing=");
-    *images = count ? strtoll(count + 8, NULL, 10) : 0;
-    if (strstr(text, "\nchannels=") || strstr(text, "\nframes=")) {
-        return ms_fail(err, MS_ERR_FORMAT, "%s: is a hyperstack of several channels or times; save one of them", path);
+    *images = (long long)find_number(text, "\nimages=");
+    /* Slices are often called times or channels; but one thing they must be. */
+    if ((find_number(text, "\nslices=") > 1) + (find_number(text, "\nframes=") > 1) +
+            (find_number(text, "\nchannels=") > 1) >
+        1) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: is a hyperstack of slices by channels or times; save one of these", path);
     }
-    const double z = spacing ? strtod(spacing + 9, NULL) : 0;
+    const double z = find_number(text, "\nspacing=");
     if (z > 0 && TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x) && TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y) && x > 0 &&
         y > 0) {
         const double d[3] = {1 / (double)x, 1 / (double)y, z};

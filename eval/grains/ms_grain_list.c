@@ -22,7 +22,7 @@ enum { LONGEST_NAME = 200 };
 static size_t measure_stem(const char *base, size_t length)
 {
     for (int packed = 0; packed < 2; packed++) {
-        size_t dot = length;
+        size_t dot = length > 0 ? length - 1 : 0;
         while (dot > 0 && base[dot] != '.') {
             dot--;
         }

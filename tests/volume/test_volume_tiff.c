@@ -191,7 +191,15 @@ static void imagej_says_spacings(void **state)
     put_tiff(&made, &f, NZ - 1);
     expect_volume_refused(ms_volume_parse_tiff, &made, MS_ERR_FORMAT, "ImageJ wrote 4 slices and pages for 3");
     made.size = 0;
-    f.description = "ImageJ=1.53t\nimages=4\nchannels=2\n";
+    f.description = "ImageJ=1.53t\nimages=4\nslices=2\nframes=2\n";
+    put_tiff(&made, &f, NZ);
+    expect_volume_refused(ms_volume_parse_tiff, &made, MS_ERR_FORMAT, "is a hyperstack");
+    made.size = 0;
+    f.description = "ImageJ=1.53t\nimages=4\nframes=4\n"; /* slices that were called times */
+    put_tiff(&made, &f, NZ);
+    expect_volume(ms_volume_parse_tiff, &made, "sample", 100);
+    made.size = 0;
+    f.description = "ImageJ=1.53t\nimages=4\nchannels=2\nslices=2\n";
     put_tiff(&made, &f, NZ);
     expect_volume_refused(ms_volume_parse_tiff, &made, MS_ERR_FORMAT, "is a hyperstack");
 }
