@@ -124,9 +124,12 @@ ms_status ms_file_map(ms_bytes *bytes, const char *path, ms_error *err)
 
 void ms_file_unneeded(const ms_bytes *bytes, size_t from, size_t size)
 {
-    const size_t page = (size_t)sysconf(_SC_PAGESIZE), first = from / page * page, end = from + size;
-    if (bytes->mapped && end > first) {
-        /* Advice: no harm where it is not taken. */
+    enum { BESIDE = 1 << 16 }; /* what Linux maps together with a page that is touched (fault_around_bytes) */
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    const size_t first = from > BESIDE ? (from - BESIDE) / page * page : 0;
+    const size_t end = bytes->mapped - from > size + BESIDE ? from + size + BESIDE : bytes->mapped;
+    if (bytes->mapped && from < bytes->mapped) {
+        /* Advice: no harm where it is not taken; what is touched again is fetched again. */
         (void)madvise(bytes->data + first, end - first, MADV_DONTNEED);
     }
 }

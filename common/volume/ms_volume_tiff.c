@@ -204,13 +204,21 @@ static void place_tile(uint8_t *to, const uint8_t *tile, const tiff_page *page, 
     }
 }
 
-static int read_tiles(uint8_t *to, TIFF *tiff, const tiff_page *page)
+/* No compression of TIFF packs more tightly than deflate and LZW, 1 : 1032 and 1 : 1365. */
+static int can_hold(size_t file, size_t page_bytes)
+{
+    enum { MOST_RATIO = 2048 };
+    return page_bytes / MOST_RATIO <= file;
+}
+
+static int read_tiles(uint8_t *to, TIFF *tiff, const tiff_page *page, size_t file)
 {
     uint32_t size[2] = {0, 0};
     const tmsize_t bytes = TIFFTileSize(tiff);
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &size[0]);
     TIFFGetField(tiff, TIFFTAG_TILELENGTH, &size[1]);
-    if (bytes <= 0 || (size_t)bytes != (size_t)size[0] * size[1] * page->sample.size) {
+    if (bytes <= 0 || (size_t)bytes != (size_t)size[0] * size[1] * page->sample.size ||
+        !can_hold(file, (size_t)bytes)) {
         return 0;
     }
     uint8_t *tile = malloc((size_t)bytes);
@@ -226,13 +234,6 @@ static int read_tiles(uint8_t *to, TIFF *tiff, const tiff_page *page)
     }
     free(tile);
     return ok;
-}
-
-/* No compression of TIFF packs more tightly than deflate and LZW, 1 : 1032 and 1 : 1365. */
-static int can_hold(size_t file, size_t page_bytes)
-{
-    enum { MOST_RATIO = 2048 };
-    return page_bytes / MOST_RATIO <= file;
 }
 
 static ms_status add_page(ms_stored *stored, TIFF *tiff, const tiff_source *source, const char *path, size_t max_voxels,
@@ -264,7 +265,7 @@ static ms_status add_page(ms_stored *stored, TIFF *tiff, const tiff_source *sour
         return status;
     }
     uint8_t *to = stored->owned.data + bytes * (size_t)stored->header.n[2];
-    if (!(TIFFIsTiled(tiff) ? read_tiles(to, tiff, &page) : read_strips(to, tiff, bytes))) {
+    if (!(TIFFIsTiled(tiff) ? read_tiles(to, tiff, &page, source->bytes->size) : read_strips(to, tiff, bytes))) {
         return fail_tiff(source, number, path, err);
     }
     stored->header.n[2]++;
@@ -293,7 +294,8 @@ static ms_status heed_imagej(ms_stored *stored, TIFF *tiff, long long *images, c
     if ((find_number(text, "\nslices=") > 1) + (find_number(text, "\nframes=") > 1) +
             (find_number(text, "\nchannels=") > 1) >
         1) {
-        return ms_fail(err, MS_ERR_FORMAT, "%s: is a hyperstack of slices by channels or times; save one of these", path);
+        return ms_fail(err, MS_ERR_FORMAT, "%s: is a hyperstack of slices by channels or times; save one of these",
+                       path);
     }
     const double z = find_number(text, "\nspacing=");
     if (z > 0 && TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x) && TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y) && x > 0 &&

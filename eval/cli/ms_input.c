@@ -141,12 +141,13 @@ static ms_status read_mesh(ms_input *input, const char *path, const ms_input_fla
         return status;
     }
     input->checksum = ms_file_checksum(&bytes);
-    status = is_standard || ms_mesh_read_is_mesh_path(path)
-                 ? parse_mesh(input, &bytes, path, &flags->mending, err)
-                 : ms_fail(err, MS_ERR_FORMAT,
-                           "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
-                           "%s",
-                           path, ms_volume_endings());
+    status =
+        is_standard || ms_mesh_read_is_mesh_path(path)
+            ? parse_mesh(input, &bytes, path, &flags->mending, err)
+            : ms_fail(err, MS_ERR_FORMAT,
+                      "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
+                      "%s",
+                      path, ms_volume_endings());
     ms_file_free(&bytes);
     return status;
 }
