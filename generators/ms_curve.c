@@ -97,8 +97,9 @@ ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, const ms_clump *clump
     if (each) {
         memset(each, 0, clump->n_spheres * sizeof *each);
     }
-    const ms_status status = generator->nested ? take_prefixes(curve, each, clump, run, max_voxels, err)
-                                               : run_each(curve, each, clump, generator, run, max_voxels, err);
+    const ms_status status = ms_generator_is_nested(generator, run->settings)
+                                 ? take_prefixes(curve, each, clump, run, max_voxels, err)
+                                 : run_each(curve, each, clump, generator, run, max_voxels, err);
     if (each && status != MS_OK) {
         free_clumps(each, clump->n_spheres);
     }

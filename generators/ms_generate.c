@@ -36,15 +36,23 @@ static ms_generate_request fill_in(const ms_generate_request *request)
     return all;
 }
 
+/* What the method says that it takes; 0 of an unknown one. */
+static double method_bytes(const ms_generate_request *request)
+{
+    const ms_generator *generator = ms_generator_find(request->generator, NULL);
+    return generator ? generator->bytes_per_voxel : 0;
+}
+
 static size_t max_voxels(const ms_generate_request *request)
 {
-    const double most = request->max_bytes / MS_TARGET_BYTES_PER_VOXEL;
+    const double one[3] = {1, 1, 1};
+    const double most = request->max_bytes / ms_target_bytes(one, method_bytes(request));
     return most < 1e18 ? (size_t)most : (size_t)1e18;
 }
 
-static ms_status check_bytes(const double n[3], double max_bytes, ms_error *err)
+static ms_status check_bytes(const double n[3], const ms_generate_request *request, ms_error *err)
 {
-    const double bytes = ms_target_bytes(n);
+    const double bytes = ms_target_bytes(n, method_bytes(request)), max_bytes = request->max_bytes;
     return bytes <= max_bytes ? MS_OK
                               : ms_fail(err, MS_ERR_LIMIT,
                                         "a grid of %.6gx%.6gx%.6g voxels takes about %.3g GB, more than the %.3g GB "
@@ -85,7 +93,7 @@ static ms_status target_from_mesh(shape *s, const ms_generate_request *request, 
         return status;
     }
     ms_voxelize_extents(n, &s->mesh, h);
-    status = check_bytes(n, request->max_bytes, err);
+    status = check_bytes(n, request, err);
     return status == MS_OK ? ms_target_from_mesh(&s->target, &s->mesh, 1, h, MS_VOXEL_HALF, err) : status;
 }
 
@@ -97,7 +105,7 @@ static ms_status target_from_volume(shape *s, const ms_generate_request *request
     if (ms_target_label_box(lo, hi, &other, &s->volume, request->label)) { /* without voxels the target says why */
         const double n[3] = {hi[0] - lo[0] + 2 * MS_GRID_HULL, hi[1] - lo[1] + 2 * MS_GRID_HULL,
                              hi[2] - lo[2] + 2 * MS_GRID_HULL};
-        status = check_bytes(n, request->max_bytes, err);
+        status = check_bytes(n, request, err);
     }
     return status == MS_OK ? ms_target_from_volume(&s->target, &s->volume, request->label, err) : status;
 }

@@ -50,6 +50,15 @@ static ms_status check_coverage(const ms_clump *clump, const char *name, const m
                          name, clump->n_spheres, largest);
 }
 
+int ms_generator_is_nested(const ms_generator *generator, const ms_settings *settings)
+{
+    if (!generator->unnested_by || !settings) {
+        return generator->nested;
+    }
+    const ms_option *flag = ms_option_find(generator->options, generator->unnested_by);
+    return generator->nested && settings->value[flag - generator->options] == 0;
+}
+
 ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator, const ms_run *run,
                            ms_error *err)
 {

@@ -61,6 +61,8 @@ typedef struct ms_generator {
     const char *summary;      /* one line for `mskit generators` */
     const char *source;       /* the paper: authors, year, DOI or arXiv number */
     int nested;               /* nonzero: the first k spheres of a run are the clump of k spheres */
+    const char *unnested_by;  /* a FLAG among its options under which a nested one is not; NULL if there is none */
+    double bytes_per_voxel;   /* that a run takes beyond the target's at its peak; 0: as ms_target_bytes */
     int baseline;             /* nonzero: something plain to compare with, by name; promises no quality */
     const ms_option *options; /* ends with a NULL name */
     /**
@@ -79,6 +81,9 @@ typedef struct ms_generator {
 
 /** All generators; ends with NULL. */
 MS_API extern const ms_generator *const ms_generators[];
+
+/** Are the first k spheres of a run with these options the clump of k? @param settings NULL: defaults */
+MS_API int ms_generator_is_nested(const ms_generator *generator, const ms_settings *settings);
 
 /** The generator of that name, or NULL with a message that lists the names. */
 MS_API const ms_generator *ms_generator_find(const char *name, ms_error *err);

@@ -88,7 +88,7 @@ static ms_status map_all(ms_bytes *bytes, int fd, size_t size, const char *path,
 }
 
 /* The first `most` bytes, or the whole mapped. */
-static ms_status read_file(ms_bytes *bytes, const char *path, size_t most, int is_mapped, ms_error *err)
+static ms_status load_bytes(ms_bytes *bytes, const char *path, size_t most, int is_mapped, ms_error *err)
 {
     size_t size = 0;
     int fd;
@@ -109,17 +109,17 @@ static ms_status read_file(ms_bytes *bytes, const char *path, size_t most, int i
 
 ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err)
 {
-    return read_file(bytes, path, SIZE_MAX, 0, err);
+    return load_bytes(bytes, path, SIZE_MAX, 0, err);
 }
 
 ms_status ms_file_read_start(ms_bytes *bytes, const char *path, size_t most, ms_error *err)
 {
-    return read_file(bytes, path, most, 0, err);
+    return load_bytes(bytes, path, most, 0, err);
 }
 
 ms_status ms_file_map(ms_bytes *bytes, const char *path, ms_error *err)
 {
-    return read_file(bytes, path, SIZE_MAX, 1, err);
+    return load_bytes(bytes, path, SIZE_MAX, 1, err);
 }
 
 void ms_file_unneeded(const ms_bytes *bytes, size_t from, size_t size)

@@ -227,6 +227,9 @@ static void put_leaf_triangle(ms_bvh_triangle *out, const ms_mesh *mesh, uint32_
     }
     twice_area = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     out->sliver = !(twice_area > SLIVER * longest * longest);
+    for (int k = 0; k < 3; k++) {
+        out->normal[k] = out->sliver ? 0 : normal[k] / twice_area;
+    }
 }
 
 static void find_frame(ms_bvh *bvh, const ms_mesh *mesh)

@@ -7,8 +7,9 @@
 /** A triangle by one corner and two edges, relative to the centre of the mesh's box. */
 typedef struct ms_bvh_triangle {
     double a[3], ab[3], ac[3];
-    uint32_t id;     /* in the mesh */
-    uint32_t sliver; /* nonzero: so thin that its plane is ill defined */
+    double normal[3]; /* of length 1; 0 for a sliver */
+    uint32_t id;      /* in the mesh */
+    uint32_t sliver;  /* nonzero: so thin that its plane is ill defined */
 } ms_bvh_triangle;
 
 /**

@@ -173,6 +173,17 @@ static double side_by_triangle(const ms_bvh_triangle *t, const double ap[3], con
     return angle * ms_dot(normal, from) / twice_area;
 }
 
+/*
+ * Is the triangle's plane farther than the best for sure? In the depth of a round body the boxes of most faces are near
+ * enough and their planes are not; this costs a sixth of the triangle. A normal is off by 1e-10 (SLIVER), which counts
+ * by the distance from the corner.
+ */
+static int is_plane_farther(const ms_bvh_triangle *t, const double ap[3], double best)
+{
+    const double off = ms_dot(t->normal, ap);
+    return off * off > best + 1e-9 * (best + ms_dot(ap, ap));
+}
+
 static void search_leaf(nearest_search *s, uint32_t first, uint32_t count)
 {
     for (uint32_t k = first; k < first + count; k++) {
@@ -180,6 +191,9 @@ static void search_leaf(nearest_search *s, uint32_t first, uint32_t count)
         double ap[3], offset[3];
         for (int i = 0; i < 3; i++) {
             ap[i] = s->point[i] - t->a[i];
+        }
+        if (is_plane_farther(t, ap, s->best)) {
+            continue;
         }
         triangle_place at = t->sliver ? nearest_on_edges(t, ap) : nearest_place(t, ap);
         double square = distance_to(offset, t, ap, at);

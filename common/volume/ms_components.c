@@ -22,7 +22,7 @@ static void free_runs(run_list *list)
     free(list->first);
 }
 
-static ms_status add_run(run_list *list, int lo, int hi, ms_error *err)
+static ms_status append_run(run_list *list, int lo, int hi, ms_error *err)
 {
     if (list->count == list->capacity) {
         const size_t capacity = list->capacity ? list->capacity + list->capacity / 2 : 1024;
@@ -56,7 +56,7 @@ static void join(voxel_run *run, size_t a, size_t b)
 }
 
 /* Joins the runs of the last row to those of an earlier one that they touch, or miss by no more than `reach`. */
-static void join_rows(run_list *list, size_t row, size_t earlier, int reach)
+static void join_row_pair(run_list *list, size_t row, size_t earlier, int reach)
 {
     voxel_run *run = list->run;
     size_t a = list->first[row], b = list->first[earlier];
@@ -78,16 +78,16 @@ static void join_earlier_rows(run_list *list, size_t y, size_t z, int axes)
     const size_t row = z * list->ny + y;
     const int face = axes > 1; /* a row that shares a face: neighbours may be one aside as well */
     if (y > 0) {
-        join_rows(list, row, row - 1, face);
+        join_row_pair(list, row, row - 1, face);
     }
     if (z > 0) {
-        join_rows(list, row, row - list->ny, face);
+        join_row_pair(list, row, row - list->ny, face);
     }
     if (z > 0 && axes > 1 && y > 0) {
-        join_rows(list, row, row - list->ny - 1, axes > 2);
+        join_row_pair(list, row, row - list->ny - 1, axes > 2);
     }
     if (z > 0 && axes > 1 && y + 1 < list->ny) {
-        join_rows(list, row, row - list->ny + 1, axes > 2);
+        join_row_pair(list, row, row - list->ny + 1, axes > 2);
     }
 }
 
@@ -100,7 +100,7 @@ static ms_status find_runs(run_list *list, const uint32_t *label, int nx, int ax
             for (hi = lo; hi < nx && at[hi];) {
                 hi++;
             }
-            const ms_status status = hi > lo ? add_run(list, lo, hi, err) : MS_OK;
+            const ms_status status = hi > lo ? append_run(list, lo, hi, err) : MS_OK;
             if (status != MS_OK) {
                 return status;
             }

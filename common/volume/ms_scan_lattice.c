@@ -24,7 +24,7 @@ static int is_cubic(const ms_volume_header *header)
     return cubic;
 }
 
-static file_axis find_axis(const ms_volume_header *header, int a)
+static file_axis describe_axis(const ms_volume_header *header, int a)
 {
     file_axis axis = {.stride = header->sample.size};
     int f = 0;
@@ -76,7 +76,7 @@ ms_status ms_scan_store_lattice(ms_scan *scan, ms_error *err)
     scan->is_resampled = !is_cubic(header);
     scan->spacing = scan->is_resampled ? fmin(s[0], fmin(s[1], s[2])) : s[0];
     for (int a = 0; a < 3; a++) {
-        const file_axis axis = find_axis(header, a);
+        const file_axis axis = describe_axis(header, a);
         const double length = axis.spacing * (double)axis.n;
         const double n = scan->is_resampled ? fmax(1, round(length / scan->spacing)) : (double)axis.n;
         if (!(n <= INT_MAX)) {

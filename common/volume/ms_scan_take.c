@@ -43,7 +43,7 @@ static void widen(uint32_t *label, const uint8_t *at, size_t count, size_t size)
     }
 }
 
-static int is_plain(const ms_scan_store *store)
+static int are_plain(const ms_scan_store *store)
 {
     const ms_volume_header *h = &store->stored.header;
     return h->sample.kind == MS_SAMPLE_UNSIGNED && h->sample.size <= 4 && store->axis[0].step == h->sample.size &&
@@ -77,7 +77,7 @@ static ms_status take_row(uint32_t *label, const ms_scan *scan, int lo, int hi, 
         return MS_OK;
     }
     const uint8_t *row = store->stored.data + store->axis[1].near[y] + store->axis[2].near[z];
-    if (is_plain(store)) {
+    if (are_plain(store)) {
         widen(label, row + store->axis[0].near[lo], count, store->stored.header.sample.size);
         return MS_OK;
     }

@@ -1,7 +1,5 @@
 #include "ms_volume.h"
 
-#include <stdlib.h>
-
 #include "ms_scan.h"
 
 static ms_status take_all(ms_volume *volume, ms_scan *scan, ms_status status, size_t max_voxels, ms_error *err)
@@ -26,12 +24,4 @@ ms_status ms_volume_read(ms_volume *volume, const char *path, size_t max_voxels,
     ms_scan scan;
     const ms_scan_options options = ms_scan_defaults();
     return take_all(volume, &scan, ms_scan_open(&scan, path, &options, max_voxels, err), max_voxels, err);
-}
-
-void ms_volume_free(ms_volume *volume)
-{
-    if (volume) {
-        free(volume->label);
-        *volume = (ms_volume){0};
-    }
 }

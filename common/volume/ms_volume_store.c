@@ -204,3 +204,11 @@ void ms_volume_stored_free(ms_stored *stored)
     ms_file_free(&stored->owned);
     *stored = (ms_stored){0};
 }
+
+void ms_volume_free(ms_volume *volume)
+{
+    if (volume) {
+        free(volume->label);
+        *volume = (ms_volume){0};
+    }
+}

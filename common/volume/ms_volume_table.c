@@ -129,7 +129,7 @@ static int select_slice(const struct dirent *entry)
     return strcmp(ending, "tif") == 0 || strcmp(ending, "tiff") == 0;
 }
 
-static int is_digit(char c)
+static int is_decimal(char c)
 {
     return c >= '0' && c <= '9';
 }
@@ -139,7 +139,7 @@ static int compare_slices(const struct dirent **a, const struct dirent **b)
 {
     const char *x = (*a)->d_name, *y = (*b)->d_name;
     while (*x && *y) {
-        if (is_digit(*x) && is_digit(*y)) {
+        if (is_decimal(*x) && is_decimal(*y)) {
             x += strspn(x, "0");
             y += strspn(y, "0");
             const size_t lx = strspn(x, "0123456789"), ly = strspn(y, "0123456789");

@@ -334,7 +334,7 @@ static ms_status read_pages(ms_stored *stored, TIFF *tiff, const tiff_source *so
 }
 
 /* All pages of a file behind what is there. */
-static ms_status add_file(ms_stored *stored, const ms_bytes *bytes, const char *path, size_t max_voxels, ms_error *err)
+static ms_status add_pages(ms_stored *stored, const ms_bytes *bytes, const char *path, size_t max_voxels, ms_error *err)
 {
     tiff_source source;
     if (stored->header.n[2] == 0) {
@@ -364,7 +364,8 @@ int ms_volume_tiff_is_slice(const ms_bytes *bytes)
 
 #else
 
-static ms_status add_file(ms_stored *stored, const ms_bytes *bytes, const char *path, size_t max_voxels, ms_error *err)
+static ms_status refuse_file(ms_stored *stored, const ms_bytes *bytes, const char *path, size_t max_voxels,
+                             ms_error *err)
 {
     (void)stored;
     (void)bytes;
@@ -383,11 +384,21 @@ int ms_volume_tiff_is_slice(const ms_bytes *bytes)
 
 #endif
 
+static ms_status load_pages(ms_stored *stored, const ms_bytes *bytes, const char *path, size_t max_voxels,
+                            ms_error *err)
+{
+#if MS_WITH_TIFF
+    return add_pages(stored, bytes, path, max_voxels, err);
+#else
+    return refuse_file(stored, bytes, path, max_voxels, err);
+#endif
+}
+
 ms_status ms_volume_tiff_add(ms_stored *stored, const ms_bytes *bytes, const char *path, size_t max_voxels,
                              ms_error *err)
 {
     const int64_t before = stored->header.n[2];
-    const ms_status status = add_file(stored, bytes, path, max_voxels, err);
+    const ms_status status = load_pages(stored, bytes, path, max_voxels, err);
     return status == MS_OK && stored->header.n[2] != before + 1
                ? ms_fail(err, MS_ERR_FORMAT,
                          "%s: has %lld pages among files of one slice each; name it alone if it is a volume", path,
@@ -399,7 +410,7 @@ ms_status ms_volume_parse_tiff(ms_stored *stored, const ms_bytes *bytes, const c
                                ms_error *err)
 {
     *stored = (ms_stored){0};
-    const ms_status status = add_file(stored, bytes, path, max_voxels, err);
+    const ms_status status = load_pages(stored, bytes, path, max_voxels, err);
     if (status != MS_OK) {
         ms_volume_stored_free(stored);
     }

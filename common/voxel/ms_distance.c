@@ -108,30 +108,37 @@ static void lower_envelope(uint32_t *f, int first, int last, const lines *w)
     }
 }
 
+/* The part of a line of n voxels that is asked for: from <= u < to. */
+typedef struct line_part {
+    int n, from, to;
+} line_part;
+
 /* One line: background stays 0 and cuts it into runs, each with an envelope of its own that
- * the background voxels at its ends belong to. */
-static void transform_line(uint32_t *f, int n, const lines *w)
+ * the background voxels at its ends belong to. Runs with nothing that is asked for are left as they are. */
+static void transform_line(uint32_t *f, const line_part *s, const lines *w)
 {
     int u = 0;
-    while (u < n) {
+    while (u < s->to) {
         if (f[(size_t)u * BLOCK] == 0) {
             u++;
             continue;
         }
         const int first = u > 0 ? u - 1 : 0;
-        while (u < n && f[(size_t)u * BLOCK] != 0) {
+        while (u < s->n && f[(size_t)u * BLOCK] != 0) {
             u++;
         }
-        lower_envelope(f, first, u < n ? u : n - 1, w);
+        if (u > s->from) {
+            lower_envelope(f, first, u < s->n ? u : s->n - 1, w);
+        }
     }
 }
 
 /* Transforms a block of up to BLOCK neighbouring lines, their voxels `stride` apart, in the
  * work space; 0 if all are background. */
-static int transform_block(const uint32_t *grid, int width, int n, size_t stride, const lines *w)
+static int transform_block(const uint32_t *grid, int width, const line_part *s, size_t stride, const lines *w)
 {
     uint32_t any = 0;
-    for (int u = 0; u < n; u++) {
+    for (int u = 0; u < s->n; u++) {
         for (int c = 0; c < width; c++) {
             const uint32_t value = grid[(size_t)u * stride + (size_t)c];
             w->block[(size_t)u * BLOCK + (size_t)c] = value;
@@ -139,7 +146,7 @@ static int transform_block(const uint32_t *grid, int width, int n, size_t stride
         }
     }
     for (int c = 0; any && c < width; c++) {
-        transform_line(w->block + c, n, w);
+        transform_line(w->block + c, s, w);
     }
     return any != 0;
 }
@@ -149,15 +156,19 @@ static int block_width(int n, int at)
     return n - at < BLOCK ? n - at : BLOCK;
 }
 
-/* The pass along y of one plane of constant z, in place. */
-static void transform_plane(uint32_t *plane, const int n[3], const lines *w)
+/* The pass along y of one plane of constant z, rows of `width_x` voxels; what is asked for goes to `out`, which may be
+ * the plane itself. */
+static void transform_plane(uint32_t *out, const uint32_t *plane, int width_x, const line_part *y, const lines *w)
 {
-    for (int i = 0; i < n[0]; i += BLOCK) {
-        const int width = block_width(n[0], i);
-        if (transform_block(plane + i, width, n[1], (size_t)n[0], w)) {
-            for (int j = 0; j < n[1]; j++) {
-                memcpy(plane + (size_t)j * n[0] + i, w->block + (size_t)j * BLOCK, (size_t)width * sizeof *plane);
-            }
+    for (int i = 0; i < width_x; i += BLOCK) {
+        const int width = block_width(width_x, i);
+        const int any = transform_block(plane + i, width, y, (size_t)width_x, w);
+        if (!any && out == plane) {
+            continue; /* zeros already */
+        }
+        for (int j = y->from; j < y->to; j++) {
+            uint32_t *to = out + (size_t)(j - y->from) * (size_t)width_x + i;
+            memcpy(to, w->block + (size_t)j * BLOCK, (size_t)width * sizeof *to);
         }
     }
 }
@@ -172,34 +183,46 @@ static void write_background(float *roots, int width, int n, size_t stride)
     }
 }
 
-/* The pass along z of all lines with one y, and the roots. `row` is voxel (0, y, 0). */
-static void transform_slice(uint32_t *row, float *roots, const int n[3], const lines *w)
+/* The pass along z of all lines with one y, and the roots of what is asked for. `row` is the first voxel of that y,
+ * of planes `stride` apart; the roots' planes are `apart`. */
+static void transform_slice(float *roots, size_t apart, const uint32_t *row, size_t stride, int width_x,
+                            const line_part *z, const lines *w)
 {
-    const size_t stride = (size_t)n[0] * (size_t)n[1];
-    for (int i = 0; i < n[0]; i += BLOCK) {
-        const int width = block_width(n[0], i);
-        if (!transform_block(row + i, width, n[2], stride, w)) {
-            write_background(roots + i, width, n[2], stride);
+    for (int i = 0; i < width_x; i += BLOCK) {
+        const int width = block_width(width_x, i);
+        if (!transform_block(row + i, width, z, stride, w)) {
+            write_background(roots + i, width, z->to - z->from, apart);
             continue;
         }
-        for (int k = 0; k < n[2]; k++) {
+        for (int k = z->from; k < z->to; k++) {
             for (int c = 0; c < width; c++) {
                 const uint32_t squared = w->block[(size_t)k * BLOCK + (size_t)c];
                 const float root = sqrtf((float)squared);
-                roots[(size_t)k * stride + (size_t)(i + c)] = squared == NONE ? INFINITY : root;
+                roots[(size_t)(k - z->from) * apart + (size_t)(i + c)] = squared == NONE ? INFINITY : root;
             }
         }
     }
 }
 
-ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms_error *err)
+static ms_status check_extents(const int n[3], ms_error *err)
 {
     for (int a = 0; a < 3; a++) {
-        if (n[a] < 1 || n[a] > 32767) {
-            return ms_fail(err, MS_ERR_ARG, "grid extent %d along %c is not from 1 to 32767", n[a], "xyz"[a]);
+        if (n[a] < 1 || n[a] > MS_GRID_MAX_EXTENT) {
+            return ms_fail(err, MS_ERR_ARG, "grid extent %d along %c is not from 1 to %d", n[a], "xyz"[a],
+                           MS_GRID_MAX_EXTENT);
         }
     }
+    return MS_OK;
+}
+
+ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms_error *err)
+{
+    const ms_status status = check_extents(n, err);
+    if (status != MS_OK) {
+        return status;
+    }
     const size_t stride = (size_t)n[0] * (size_t)n[1];
+    const line_part y = {n[1], 0, n[1]}, z = {n[2], 0, n[2]};
     uint32_t *squared = (uint32_t *)(void *)distance;
     int out_of_memory = 0;
 #pragma omp parallel reduction(| : out_of_memory) if (stride * (size_t)n[2] >= MS_GRID_THREADS_FROM)
@@ -214,13 +237,13 @@ ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms
                 for (int j = 0; j < n[1]; j++) {
                     row_distances(plane + (size_t)j * n[0], inside + stride * k + (size_t)j * n[0], n[0]);
                 }
-                transform_plane(plane, n, &w);
+                transform_plane(plane, plane, n[0], &y, &w);
             }
         }
 #pragma omp for schedule(dynamic, 1)
         for (int j = 0; j < n[1]; j++) {
             if (ready) {
-                transform_slice(squared + (size_t)j * n[0], distance + (size_t)j * n[0], n, &w);
+                transform_slice(distance + (size_t)j * n[0], stride, squared + (size_t)j * n[0], stride, n[0], &z, &w);
             }
         }
         lines_free(&w);
@@ -229,4 +252,82 @@ ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms
         return ms_fail(err, MS_ERR_NOMEM, "no memory for lines of %d voxels", n[1] > n[2] ? n[1] : n[2]);
     }
     return MS_OK;
+}
+
+/* What ms_distance_box works with. */
+typedef struct box_job {
+    const uint8_t *inside;
+    uint32_t *between; /* after x and y: the box's columns, all planes */
+    int wide, high;    /* of the box, along x and y */
+    int lo_x, n_x;
+    line_part y, z;
+} box_job;
+
+/* The passes along x and y of plane k. */
+static void box_plane(const box_job *job, uint32_t *rows, uint32_t *row, int k, const lines *w)
+{
+    for (int j = 0; j < job->y.n; j++) {
+        row_distances(row, job->inside + ((size_t)k * job->y.n + (size_t)j) * job->n_x, job->n_x);
+        memcpy(rows + (size_t)j * job->wide, row + job->lo_x, (size_t)job->wide * sizeof *rows);
+    }
+    transform_plane(job->between + (size_t)k * job->wide * job->high, rows, job->wide, &job->y, w);
+}
+
+/* All passes. @return 0 without memory */
+static int transform_box(float *distance, const size_t apart[2], const box_job *job)
+{
+    const size_t plane = (size_t)job->wide * (size_t)job->high;
+    int out_of_memory = 0;
+#pragma omp parallel reduction(| : out_of_memory) if ((size_t)job->n_x * job->y.n * job->z.n >= MS_GRID_THREADS_FROM)
+    {
+        lines w = {0};
+        uint32_t *rows = malloc((size_t)job->wide * job->y.n * sizeof *rows);
+        uint32_t *row = malloc((size_t)job->n_x * sizeof *row);
+        const int ready = lines_alloc(&w, (size_t)(job->y.n > job->z.n ? job->y.n : job->z.n)) && rows && row;
+        out_of_memory = !ready;
+#pragma omp for schedule(dynamic, 1)
+        for (int k = 0; k < job->z.n; k++) {
+            if (ready) {
+                box_plane(job, rows, row, k, &w);
+            }
+        }
+#pragma omp for schedule(dynamic, 1)
+        for (int j = 0; j < job->high; j++) {
+            if (ready) {
+                transform_slice(distance + (size_t)j * apart[0], apart[1], job->between + (size_t)j * job->wide, plane,
+                                job->wide, &job->z, &w);
+            }
+        }
+        free(row);
+        free(rows);
+        lines_free(&w);
+    }
+    return !out_of_memory;
+}
+
+ms_status ms_distance_box(float *distance, const size_t apart[2], const uint8_t *inside, const int n[3],
+                          const int lo[3], const int hi[3], ms_error *err)
+{
+    const ms_status status = check_extents(n, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    for (int a = 0; a < 3; a++) {
+        if (lo[a] < 0 || hi[a] <= lo[a] || hi[a] > n[a]) {
+            return ms_fail(err, MS_ERR_ARG, "voxels %d to %d along %c are no part of a grid of %d", lo[a], hi[a],
+                           "xyz"[a], n[a]);
+        }
+    }
+    box_job job = {.inside = inside,
+                   .wide = hi[0] - lo[0],
+                   .high = hi[1] - lo[1],
+                   .lo_x = lo[0],
+                   .n_x = n[0],
+                   .y = {n[1], lo[1], hi[1]},
+                   .z = {n[2], lo[2], hi[2]}};
+    const size_t between = (size_t)job.wide * (size_t)job.high * (size_t)n[2];
+    job.between = malloc(between * sizeof *job.between);
+    const int done = job.between && transform_box(distance, apart, &job);
+    free(job.between);
+    return done ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for distances of %zu voxels", between);
 }

@@ -2,6 +2,7 @@
 #ifndef MS_DISTANCE_H
 #define MS_DISTANCE_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "base/ms_error.h"
@@ -23,6 +24,19 @@ MS_C_BEGIN
  * Cost: O(voxels), two sweeps over memory; all cores; the same bits at any number of threads.
  */
 MS_API ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms_error *err);
+
+/**
+ * The same for the voxels of a box alone, from the background of the whole grid given.
+ *
+ * @param[out] distance where voxel lo goes; those of the box are written, rows apart[0] values apart, planes apart[1]
+ * @param      lo,hi    the box lo <= (i,j,k) < hi, not empty, within the grid
+ * @return as ms_distance; also MS_ERR_ARG for a box that is no part of the grid
+ *
+ * Cost: along x of the grid, along y of the box's columns in all planes, along z of its columns; 4 bytes for each voxel
+ * of its columns.
+ */
+MS_API ms_status ms_distance_box(float *distance, const size_t apart[2], const uint8_t *inside, const int n[3],
+                                 const int lo[3], const int hi[3], ms_error *err);
 
 MS_C_END
 

@@ -24,7 +24,9 @@ ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule 
     raster->grid = grid;
     raster->rule = rule;
     raster->first = malloc(voxels * sizeof *raster->first);
-    if (!raster->first) {
+    raster->partial = calloc((size_t)grid->n[2], sizeof *raster->partial);
+    if (!raster->first || !raster->partial) {
+        ms_raster_free(raster);
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
     }
     memset(raster->first, 0xff, voxels * sizeof *raster->first);
@@ -38,24 +40,21 @@ void ms_raster_free(ms_raster *raster)
         free(raster->ball);
         free(raster->tally);
         free(raster->buried);
+        for (int k = 0; raster->partial && k < raster->grid->n[2]; k++) {
+            free(raster->partial[k].slot);
+        }
+        free(raster->partial);
         memset(raster, 0, sizeof *raster);
     }
 }
 
-/* Earlier balls that may share a border voxel with each new one, one list behind the other. */
-typedef struct neighbours {
-    size_t *start; /* of each new ball; one more at the end */
-    uint16_t *ball;
-    size_t used, capacity;
-} neighbours;
-
 /* What one thread has to know and to count while it works through planes. */
 typedef struct worker {
     ms_raster *raster;
-    size_t from;                  /* the first new ball */
-    const neighbours *neighbours; /* earlier balls whose border voxels each new one may share */
-    ms_tally *tally;              /* of the new balls */
-    int lo[3], hi[3];             /* box of what was covered */
+    size_t from;      /* the first new ball */
+    ms_tally *tally;  /* of the new balls */
+    int lo[3], hi[3]; /* box of what was covered */
+    int out_of_memory;
 } worker;
 
 /* Which of the voxel's sample points lie in the ball; (dx, dy, dz) from the ball's centre to
@@ -77,34 +76,82 @@ static uint64_t sample_mask(double dx, double dy, double dz, double radius_squar
     return mask;
 }
 
-/* The samples of a voxel in a ball; sets *centre if its centre is too. */
-static uint64_t ball_mask(int *centre, const ms_ball *ball, int i, int j, int k)
+/* What the balls so far cover of a voxel that they do not cover. */
+struct ms_raster_slot {
+    uint32_t voxel;  /* of the plane, and one; 0: free */
+    uint32_t centre; /* nonzero: they hold its centre */
+    uint64_t mask;   /* and these of its samples */
+};
+
+static uint32_t hash_voxel(uint32_t voxel, uint32_t room)
 {
-    const double dx = i - ball->centre[0], dy = j - ball->centre[1], dz = k - ball->centre[2];
-    const double reach = ball->radius + HALF_DIAGONAL, away = dx * dx + dy * dy + dz * dz;
-    if (away > reach * reach) {
+    return voxel * 2654435769u >> 7 & (room - 1); /* Knuth's multiplicative hashing; the room is a power of two */
+}
+
+/* Twice the room for a plane's slots. @return 0 without memory */
+static int grow_slots(ms_raster_partial *partial)
+{
+    const uint32_t room = partial->room ? 2 * partial->room : 64;
+    struct ms_raster_slot *slot = calloc(room, sizeof *slot);
+    if (!slot) {
         return 0;
     }
-    const double square = ball->radius * ball->radius + ON_SURFACE;
-    *centre |= away <= square;
-    return sample_mask(dx, dy, dz, square);
+    for (uint32_t s = 0; s < partial->room; s++) {
+        uint32_t at = hash_voxel(partial->slot[s].voxel, room);
+        if (partial->slot[s].voxel) {
+            while (slot[at].voxel) {
+                at = (at + 1) & (room - 1);
+            }
+            slot[at] = partial->slot[s];
+        }
+    }
+    free(partial->slot);
+    partial->slot = slot;
+    partial->room = room;
+    return 1;
+}
+
+/* The slot of a voxel of a plane, new ones empty; NULL without memory. */
+static struct ms_raster_slot *find_slot(ms_raster_partial *partial, uint32_t voxel)
+{
+    if (4 * partial->used >= 3 * partial->room && !grow_slots(partial)) {
+        return NULL;
+    }
+    uint32_t at = hash_voxel(voxel + 1, partial->room);
+    while (partial->slot[at].voxel && partial->slot[at].voxel != voxel + 1) {
+        at = (at + 1) & (partial->room - 1);
+    }
+    partial->used += partial->slot[at].voxel == 0;
+    partial->slot[at].voxel = voxel + 1;
+    return &partial->slot[at];
 }
 
 /* Does the union of ball b and those before it cover more than half of the voxel? Where half
  * of the samples are covered, the centre decides: a ball of radius 1/2 on a voxel's centre,
  * 0.52 of the voxel, covers 32 of 64 and has to cover the voxel (MSS 2.3). */
-static int covers_half(const worker *w, size_t b, int i, int j, int k)
+static int covers_half(worker *w, size_t b, int i, int j, int k)
 {
-    int centre = 0;
-    uint64_t mask = ball_mask(&centre, &w->raster->ball[b], i, j, k);
+    const ms_ball *ball = &w->raster->ball[b];
+    const double dx = i - ball->centre[0], dy = j - ball->centre[1], dz = k - ball->centre[2];
+    const double reach = ball->radius + HALF_DIAGONAL, away = dx * dx + dy * dy + dz * dz;
+    const double square = ball->radius * ball->radius + ON_SURFACE;
+    const int centre = away <= square;
+    const uint64_t mask = away > reach * reach ? 0 : sample_mask(dx, dy, dz, square);
     if (mask == 0 && !centre) {
         return 0; /* nothing new in this voxel */
     }
-    const size_t *range = w->neighbours->start + (b - w->from);
-    for (size_t at = range[0]; at < range[1] && __builtin_popcountll(mask) <= HALF_OF_SAMPLES; at++) {
-        mask |= ball_mask(&centre, &w->raster->ball[w->neighbours->ball[at]], i, j, k);
+    if (__builtin_popcountll(mask) + centre > HALF_OF_SAMPLES) {
+        return 1;
     }
-    return __builtin_popcountll(mask) + centre > HALF_OF_SAMPLES;
+    struct ms_raster_slot *slot =
+        find_slot(&w->raster->partial[k], (uint32_t)i + (uint32_t)w->raster->grid->n[0] * (uint32_t)j);
+    if (!slot) {
+        w->out_of_memory = 1;
+        return 0;
+    }
+    slot->mask |= mask;
+    slot->centre |= (uint32_t)centre;
+    return __builtin_popcountll(slot->mask) + (int)slot->centre > HALF_OF_SAMPLES;
 }
 
 /* Sums over the voxels of one row that a ball covers first. */
@@ -155,6 +202,25 @@ static int clamp_index(double value, int lo, int hi)
     return value < lo ? lo : value > hi ? hi : (int)value;
 }
 
+/* The first voxel from i on that is not covered, or `to`. Most of a row is covered: four voxels in a word are passed
+ * over at once, if none of the four numbers is the highest (of the complement, none is 0: Warren, Hacker's Delight,
+ * 6-1). */
+static int skip_covered(const uint16_t *first, int i, int to)
+{
+    const uint64_t ones = 0x0001000100010001u, highest = 0x8000800080008000u;
+    for (; i + 4 <= to; i += 4) {
+        uint64_t four;
+        memcpy(&four, first + i, sizeof four);
+        if ((~four - ones) & four & highest) {
+            break;
+        }
+    }
+    while (i < to && first[i] != MS_RASTER_NONE) {
+        i++;
+    }
+    return i;
+}
+
 /* One row of voxels: those between first[outer] are looked at, those within `inner` of the
  * centre are covered without looking. */
 static void cover_row(worker *w, size_t b, int j, int k, double outer, double inner)
@@ -169,9 +235,16 @@ static void cover_row(worker *w, size_t b, int j, int k, double outer, double in
     const int from = clamp_index(ceil(x - outer), 0, n), to = clamp_index(floor(x + outer) + 1, 0, n);
     const int full_from = inner < 0 ? to : clamp_index(ceil(x - inner), from, to);
     const int full_to = inner < 0 ? to : clamp_index(floor(x + inner) + 1, full_from, to);
-    for (int i = from; i < to; i++) {
-        const int full = i >= full_from && i < full_to;
-        if (first[i] == MS_RASTER_NONE && (full || covers_half(w, b, i, j, k))) {
+    for (int i = from; i < full_from; i++) {
+        if (first[i] == MS_RASTER_NONE && covers_half(w, b, i, j, k)) {
+            cover_voxel(&sums, first, inside, i, b);
+        }
+    }
+    for (int i = skip_covered(first, full_from, full_to); i < full_to; i = skip_covered(first, i + 1, full_to)) {
+        cover_voxel(&sums, first, inside, i, b);
+    }
+    for (int i = full_to; i < to; i++) {
+        if (first[i] == MS_RASTER_NONE && covers_half(w, b, i, j, k)) {
             cover_voxel(&sums, first, inside, i, b);
         }
     }
@@ -202,60 +275,17 @@ static void cover_plane(worker *w, size_t b, int k)
     }
 }
 
-static int add_neighbour(neighbours *list, size_t ball)
+/* One that lies within another covers nothing of its own. */
+static void find_buried(ms_raster *raster, size_t from)
 {
-    if (list->used == list->capacity) {
-        const size_t capacity = 2 * list->capacity + 256;
-        uint16_t *grown = realloc(list->ball, capacity * sizeof *grown);
-        if (!grown) {
-            return 0;
-        }
-        list->ball = grown;
-        list->capacity = capacity;
-    }
-    list->ball[list->used++] = (uint16_t)ball;
-    return 1;
-}
-
-/* Lists the neighbours of one ball. One that lies within another covers nothing of its own and
- * is buried: it gets no list and stands in none. @return 0 without memory */
-static int list_neighbours(neighbours *list, ms_raster *raster, size_t b)
-{
-    const ms_ball *ball = &raster->ball[b];
-    const size_t before = list->used;
-    for (size_t other = 0; other < b; other++) {
-        const ms_ball *o = &raster->ball[other];
-        const double away = ms_squared_distance(o->centre, ball->centre);
-        const double reach = o->radius + ball->radius + 2 * HALF_DIAGONAL, depth = o->radius - ball->radius;
-        if (raster->buried[other] || away > reach * reach) {
-            continue;
-        }
-        if (depth >= 0 && away <= depth * depth) {
-            raster->buried[b] = 1;
-            list->used = before;
-            return 1;
-        }
-        if (!add_neighbour(list, other)) {
-            return 0;
+    for (size_t b = from; b < raster->n_balls; b++) {
+        const ms_ball *ball = &raster->ball[b];
+        for (size_t other = 0; other < b && !raster->buried[b]; other++) {
+            const double depth = raster->ball[other].radius - ball->radius;
+            raster->buried[b] =
+                depth >= 0 && ms_squared_distance(raster->ball[other].centre, ball->centre) <= depth * depth;
         }
     }
-    return 1;
-}
-
-static ms_status find_neighbours(neighbours *list, ms_raster *raster, size_t from, ms_error *err)
-{
-    const size_t count = raster->n_balls - from;
-    *list = (neighbours){.start = malloc((count + 1) * sizeof *list->start)};
-    int complete = list->start != NULL;
-    for (size_t b = from; complete && b < raster->n_balls; b++) {
-        list->start[b - from] = list->used;
-        complete = list_neighbours(list, raster, b);
-    }
-    if (!complete) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for the neighbours of %zu spheres", count);
-    }
-    list->start[count] = list->used;
-    return MS_OK;
 }
 
 static ms_status append_balls(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err)
@@ -318,7 +348,7 @@ static void merge_sums(ms_raster *raster, const worker *w)
     }
 }
 
-static ms_status cover_balls(ms_raster *raster, size_t first_new, const neighbours *list, ms_error *err)
+static ms_status cover_balls(ms_raster *raster, size_t first_new, ms_error *err)
 {
     int from, to, out_of_memory = 0;
     plane_range(&from, &to, raster, first_new);
@@ -330,13 +360,10 @@ static ms_status cover_balls(ms_raster *raster, size_t first_new, const neighbou
     omp_init_lock(&merging);
 #pragma omp parallel reduction(| : out_of_memory) if (ms_grid_voxels(raster->grid) >= MS_GRID_THREADS_FROM)
     {
-        worker w = {.raster = raster,
-                    .from = first_new,
-                    .neighbours = list,
-                    .lo = {INT_MAX, INT_MAX, INT_MAX},
-                    .hi = {INT_MIN, INT_MIN, INT_MIN}};
+        worker w = {
+            .raster = raster, .from = first_new, .lo = {INT_MAX, INT_MAX, INT_MAX}, .hi = {INT_MIN, INT_MIN, INT_MIN}};
         w.tally = calloc(raster->n_balls - first_new, sizeof *w.tally);
-        out_of_memory = !w.tally;
+        w.out_of_memory = !w.tally;
 #pragma omp for schedule(dynamic, 1)
         for (int k = from; k < to; k++) {
             for (size_t b = first_new; w.tally && b < raster->n_balls; b++) {
@@ -351,19 +378,21 @@ static ms_status cover_balls(ms_raster *raster, size_t first_new, const neighbou
             omp_unset_lock(&merging);
         }
         free(w.tally);
+        out_of_memory = w.out_of_memory;
     }
     omp_destroy_lock(&merging);
     if (raster->hi[0] < raster->lo[0]) {
         memset(raster->lo, 0, sizeof raster->lo);
         memset(raster->hi, 0, sizeof raster->hi);
     }
-    return out_of_memory ? ms_fail(err, MS_ERR_NOMEM, "no memory to sum up %zu spheres", raster->n_balls) : MS_OK;
+    return out_of_memory
+               ? ms_fail(err, MS_ERR_NOMEM, "no memory for the union of %zu spheres; use fewer cells", raster->n_balls)
+               : MS_OK;
 }
 
 ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err)
 {
     const size_t first_new = raster->n_balls;
-    neighbours list = {0};
     memset(raster->lo, 0, sizeof raster->lo);
     memset(raster->hi, 0, sizeof raster->hi);
     if (count == 0) {
@@ -371,13 +400,9 @@ ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, m
     }
     ms_status status = append_balls(raster, balls, count, err);
     if (status == MS_OK) {
-        status = find_neighbours(&list, raster, first_new, err);
+        find_buried(raster, first_new);
+        status = cover_balls(raster, first_new, err);
     }
-    if (status == MS_OK) {
-        status = cover_balls(raster, first_new, &list, err);
-    }
-    free(list.start);
-    free(list.ball);
     return status;
 }
 

@@ -18,6 +18,12 @@ MS_C_BEGIN
 /* Indices are 16 bits wide, and the last says "none". */
 enum { MS_RASTER_MAX_BALLS = UINT16_MAX - 1 };
 
+/** Of a plane of voxels those that the balls so far cover in part, hashed. */
+typedef struct ms_raster_partial {
+    struct ms_raster_slot *slot;
+    uint32_t used, room;
+} ms_raster_partial;
+
 /**
  * Union of spheres on a grid. The first-cover index makes every prefix of the spheres a
  * union too: prefix k covers the voxels with first < k.
@@ -28,8 +34,9 @@ typedef struct ms_raster {
     uint16_t *first; /* one per voxel of the grid */
     size_t n_balls, capacity;
     ms_ball *ball;
-    uint8_t *buried;  /* one per ball: 1 if it lies within an earlier one */
-    ms_tally *tally;  /* one per ball: sums over the voxels that it is the first to cover */
+    ms_raster_partial *partial; /* one per plane across z, by the rule HALF */
+    uint8_t *buried;            /* one per ball: 1 if it lies within an earlier one */
+    ms_tally *tally;            /* one per ball: sums over the voxels that it is the first to cover */
     int lo[3], hi[3]; /* box lo <= (i,j,k) < hi of the voxels that the last ms_raster_add covered; empty: lo = hi */
 } ms_raster;
 
@@ -38,7 +45,8 @@ typedef struct ms_raster {
  *
  * @param[out] raster the caller frees it; empty on failure
  * @param      grid   the target; borrowed until ms_raster_free
- * @return MS_OK; MS_ERR_NOMEM. Two bytes a voxel.
+ * @return MS_OK; MS_ERR_NOMEM. Two bytes a voxel, and by the rule HALF some 24 for each that a ball's surface passes
+ *         through and that is not covered.
  */
 MS_API ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule rule, ms_error *err);
 

@@ -405,8 +405,9 @@ static void plane_work_free(plane_work *w)
 
 static ms_status sweep_planes(const sweep *s, ms_error *err)
 {
+    const int worth_it = s->take || ms_grid_voxels(s->grid) >= MS_GRID_THREADS_FROM;
     int out_of_memory = 0;
-#pragma omp parallel reduction(| : out_of_memory)
+#pragma omp parallel reduction(| : out_of_memory) if (worth_it)
     {
         plane_work w = plane_work_alloc(s);
 #pragma omp for schedule(dynamic, 4)

@@ -9,9 +9,9 @@
 #include "ms_distance.h"
 #include "ms_tally.h"
 
-double ms_target_bytes(const double n[3])
+double ms_target_bytes(const double n[3], double method)
 {
-    return MS_TARGET_BYTES_PER_VOXEL * n[0] * n[1] * n[2];
+    return (MS_TARGET_OWN_BYTES + (method > 0 ? method : MS_TARGET_METHOD_BYTES)) * n[0] * n[1] * n[2];
 }
 
 double ms_target_default_bytes(void)

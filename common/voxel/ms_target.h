@@ -25,11 +25,16 @@ typedef struct ms_target {
     size_t largest_piece;       /* its voxels */
 } ms_target;
 
-/* S: 1, E: 4; a generator: E~ 4, first-cover index 2, flags 1. */
-enum { MS_TARGET_BYTES_PER_VOXEL = 12 };
+/* S: 1, E: 4; a generator, if it does not say: E~ 4, first-cover index 2, flags 1. */
+enum { MS_TARGET_OWN_BYTES = 5, MS_TARGET_METHOD_BYTES = 7 };
+enum { MS_TARGET_BYTES_PER_VOXEL = MS_TARGET_OWN_BYTES + MS_TARGET_METHOD_BYTES };
 
-/** Bytes that the grid, the fields of the target and of a generator take at their peak. */
-MS_API double ms_target_bytes(const double n[3]);
+/**
+ * Bytes that the grid, the fields of the target and of a generator take at their peak.
+ *
+ * @param method bytes a voxel of the generator (ms_generator's bytes_per_voxel); 0: MS_TARGET_METHOD_BYTES
+ */
+MS_API double ms_target_bytes(const double n[3], double method);
 
 /** Three quarters of the machine's memory: how much a grid may take if no one says otherwise. */
 MS_API double ms_target_default_bytes(void);

@@ -127,6 +127,8 @@ static void put_series(FILE *stream, const ms_chart_series *series, int index, i
     fprintf(stream, " index %d using 1:2 ", index);
     if (series->style == MS_CHART_FRONT) {
         fputs("with steps lw 6 lc rgb '#bbbbbb'", stream);
+    } else if (series->style == MS_CHART_LINE) {
+        fputs("with lines lw 4 lc rgb '#999999'", stream);
     } else if (series->style == MS_CHART_POINTS) {
         fprintf(stream, "with points pt %d ps 1.3 lw 2 lc rgb '%s'", type, colour);
     } else {
@@ -184,7 +186,7 @@ static void put_script(FILE *stream, const ms_chart *chart, const char *name, co
             fputs(index ? ", \\\n" : "", stream);
             put_series(stream, &chart->series[s], index++, look, name);
         }
-        look += chart->series[s].style != MS_CHART_FRONT;
+        look += chart->series[s].style != MS_CHART_FRONT && chart->series[s].style != MS_CHART_LINE;
     }
     fputs("\nsmall = ',15'\n"
           "if (strstrt(GPVAL_TERMINALS, 'pngcairo') > 0) { set terminal pngcairo size 1200,900 font "

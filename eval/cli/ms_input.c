@@ -235,7 +235,7 @@ static void say_coarser(const ms_input *input, const ms_input_flags *flags, doub
 
 static ms_status check_memory(const double n[3], const ms_input_flags *flags, ms_error *err)
 {
-    const double bytes = ms_target_bytes(n);
+    const double bytes = ms_target_bytes(n, flags->method_bytes);
     if (bytes > flags->max_memory) {
         return ms_fail(err, MS_ERR_LIMIT,
                        "a grid of %.6gx%.6gx%.6g voxels takes about %.3g GB, more than the %.3g GB allowed; use fewer "
@@ -370,13 +370,13 @@ double ms_input_bytes(const ms_input *input, const ms_input_flags *flags)
     double h, n[3];
     ms_error ignored;
     if (input->is_volume) {
-        return measure_label(n, input, flags) ? ms_target_bytes(n) : 0;
+        return measure_label(n, input, flags) ? ms_target_bytes(n, flags->method_bytes) : 0;
     }
     if (choose_voxel_size(&h, input, flags, &ignored) != MS_OK) {
         return 0;
     }
     ms_voxelize_extents(n, &input->mesh, h);
-    return ms_target_bytes(n);
+    return ms_target_bytes(n, flags->method_bytes);
 }
 
 ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err)
@@ -394,7 +394,8 @@ ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error
 
 size_t ms_input_max_voxels(const ms_input_flags *flags)
 {
-    return (size_t)(flags->max_memory / MS_TARGET_BYTES_PER_VOXEL);
+    const double one[3] = {1, 1, 1};
+    return (size_t)(flags->max_memory / ms_target_bytes(one, flags->method_bytes));
 }
 
 void ms_input_free(ms_input *input)

@@ -22,9 +22,10 @@ typedef struct ms_input_flags {
     int allow_open;
     ms_scan_options scan; /* of a volume */
     uint32_t label;
-    double max_memory; /* bytes */
-    int threads;       /* 0: all */
-    int quiet;         /* nonzero: the size of the grid is not said */
+    double max_memory;   /* bytes */
+    double method_bytes; /* a voxel: what the method takes beyond the target (ms_generator); 0: as ms_target_bytes */
+    int threads;         /* 0: all */
+    int quiet;           /* nonzero: the size of the grid is not said */
 } ms_input_flags;
 
 /* clang-format off */

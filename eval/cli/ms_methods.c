@@ -112,6 +112,16 @@ ms_status ms_methods_list_files(ms_files *files, const ms_methods *methods, ms_e
     return status;
 }
 
+double ms_methods_bytes(const ms_methods *methods)
+{
+    double most = 0;
+    for (size_t m = 0; m < methods->count; m++) {
+        const ms_generator *generator = methods->method[m].generator;
+        most = generator && generator->bytes_per_voxel > most ? generator->bytes_per_voxel : most;
+    }
+    return most;
+}
+
 size_t ms_methods_clumps(const ms_methods *methods)
 {
     size_t found = 0;

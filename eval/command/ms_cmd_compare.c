@@ -221,7 +221,7 @@ const ms_command ms_command_compare = {
     .summary = "methods x shapes x resolutions x numbers of spheres, as CSV and charts",
     .usage =
         "SHAPE... [-g NAME[:OPTION=VALUE,...]]... [-n N,N,...] [--cells N,N,...] [-o FILE] [--charts DIR] [--json]",
-    .example = "mskit compare grain.stl -g mss -g mss:order=gain -g setcover -n 5,10,20,50 --charts charts",
+    .example = "mskit compare grain.stl -g mss -g mss:variant=paper -g setcover -n 5,10,20,50 --charts charts",
     .flags = FLAGS,
     .run = run_compare,
 };

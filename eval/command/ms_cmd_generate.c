@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/ms_expectation.h"
 #include "cli/ms_input.h"
+#include "cli/ms_json_object.h"
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_progress.h"
@@ -161,7 +163,8 @@ static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_
     ms_progress_say_remarks(&run, &line);
     ms_progress_open(&line);
     const double start = omp_get_wtime();
-    ms_progress_catch(a->recipe.generator->nested); /* what others have before their end is no clump */
+    ms_progress_catch(
+        ms_generator_is_nested(a->recipe.generator, run.settings)); /* what others have before their end is no clump */
     ms_status status = ms_generator_run(&r->clump, &r->reason, a->recipe.generator, &run, err);
     ms_progress_catch(0);
     const double generated = omp_get_wtime();
@@ -248,7 +251,8 @@ static ms_status write_outputs(const generate_arguments *a, const ms_input *inpu
     return status;
 }
 
-static ms_status report_generate(const generate_arguments *a, const ms_input *input, const ms_result *r, ms_error *err)
+static ms_status report_generate(const generate_arguments *a, const ms_input *input, const ms_result *r,
+                                 const ms_expect *expect, ms_error *err)
 {
     const ms_recipe *recipe = &a->recipe;
     json_t *json = ms_record_json(recipe->generator, &recipe->settings, &a->stop, (uint64_t)recipe->seed, input, r);
@@ -263,6 +267,7 @@ static ms_status report_generate(const generate_arguments *a, const ms_input *in
         fprintf(words, "%s with %s, stopped by %s, %.3g s\n", input->path, recipe->generator->name,
                 ms_stop_name(r->reason), r->generate_seconds);
         ms_report_metrics(words, &r->metrics, &input->target);
+        ms_expectation_say(words, expect, &r->metrics);
         if (r->mass.corrected) {
             ms_mass_print(words, &r->mass);
         }
@@ -270,6 +275,7 @@ static ms_status report_generate(const generate_arguments *a, const ms_input *in
     status = write_outputs(a, input, r, record, err);
     free(record);
     if (a->json && status == MS_OK) {
+        ms_json_object_set(&json, "expected", ms_expectation_factor_json(expect, &r->metrics));
         return ms_report_print(stdout, json, err);
     }
     json_decref(json);
@@ -277,11 +283,12 @@ static ms_status report_generate(const generate_arguments *a, const ms_input *in
 }
 
 /* The clump is written whatever failed; then it is said. */
-static ms_status write_and_say(const generate_arguments *a, const ms_input *input, ms_result *r, ms_error *err)
+static ms_status write_and_say(const generate_arguments *a, const ms_input *input, ms_result *r,
+                               const ms_expect *expect, ms_error *err)
 {
     ms_error cause = {""};
     const ms_status masses = add_masses(r, a, input, &cause);
-    ms_status status = report_generate(a, input, r, err);
+    ms_status status = report_generate(a, input, r, expect, err);
     if (status == MS_OK && masses != MS_OK) {
         status = ms_fail(err, masses, "the clump is written without masses, for which this failed: %s", cause.text);
     }
@@ -291,11 +298,22 @@ static ms_status write_and_say(const generate_arguments *a, const ms_input *inpu
     return status;
 }
 
+/* What is expected of the shape, and a word where the spheres asked for are hopeless. */
+static ms_status look_ahead(ms_expect *expect, const generate_arguments *a, const ms_input *input, ms_error *err)
+{
+    const ms_status status = ms_expectation_try(expect, input, err);
+    if (status == MS_OK && a->stop.spheres > 0) {
+        ms_expectation_warn(expect, input->path, a->stop.spheres);
+    }
+    return status;
+}
+
 static int execute_generate(const ms_command *command, const generate_arguments *a)
 {
     ms_error err;
     ms_input input;
     ms_result r;
+    ms_expect expect;
     memset(&r, 0, sizeof r);
     ms_status status = ms_input_read(&input, a->shape, &a->input, &err);
     if (status != MS_OK) {
@@ -306,10 +324,13 @@ static int execute_generate(const ms_command *command, const generate_arguments 
         status = ms_input_target(&input, &a->input, &err);
     }
     if (status == MS_OK) {
+        status = look_ahead(&expect, a, &input, &err);
+    }
+    if (status == MS_OK) {
         status = make_clump(&r, a, &input, &err);
     }
     if (status == MS_OK) {
-        status = write_and_say(a, &input, &r, &err);
+        status = write_and_say(a, &input, &r, &expect, &err);
     }
     ms_clump_free(&r.clump);
     ms_input_free(&input);
@@ -322,6 +343,7 @@ static ms_status resolve_generate(generate_arguments *a, ms_error *err)
     ms_until_resolve(&a->stop);
     ms_status status = ms_recipe_resolve(&a->recipe, err);
     if (status == MS_OK) {
+        a->input.method_bytes = a->recipe.generator->bytes_per_voxel;
         const char *const inputs[] = {a->shape, a->recipe.settings.clump_file};
         status = ms_files_check_standard(inputs, 2, err);
     }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/ms_expectation.h"
 #include "cli/ms_input.h"
 #include "cli/ms_json_object.h"
 #include "cli/ms_label_list.h"
@@ -11,6 +12,7 @@
 #include "ms_commands.h"
 
 static const ms_flag FLAGS[] = {
+    {"expect", 0, NULL, "also the least D to be expected by number of spheres, and the numbers for D"},
     {"json", 0, NULL, "as JSON"},
     MS_INPUT_VOLUME_FLAGS,
     MS_INPUT_MENDING_FLAGS,
@@ -21,15 +23,15 @@ static const ms_flag FLAGS[] = {
 
 typedef struct info_arguments {
     ms_input_flags input;
-    int json;
+    int json, expect;
 } info_arguments;
 
 static ms_status take_info_flag(void *context, const char *name, const char *value, ms_error *err)
 {
     info_arguments *a = context;
     int taken;
-    if (strcmp(name, "json") == 0) {
-        a->json = 1;
+    if (strcmp(name, "json") == 0 || strcmp(name, "expect") == 0) {
+        *(name[0] == 'j' ? &a->json : &a->expect) = 1;
         return MS_OK;
     }
     return ms_input_flag(&taken, &a->input, name, value, err);
@@ -43,6 +45,7 @@ typedef struct info_facts {
     int has_body;
     ms_body body;
     ms_principal principal;
+    ms_expect expect; /* empty if it was not asked for */
 } info_facts;
 
 static double equivalent_diameter(const info_facts *f)
@@ -151,6 +154,9 @@ static void print_facts(const info_facts *f)
     if (isfinite(sphericity(f))) {
         printf("  %-22s %.6f\n", "sphericity (Wadell)", sphericity(f));
     }
+    if (f->expect.curve[MS_EXPECT_FREE].count > 0) {
+        ms_expectation_print(stdout, &f->expect);
+    }
 }
 
 static json_t *facts_json(const info_facts *f)
@@ -179,6 +185,9 @@ static json_t *facts_json(const info_facts *f)
     }
     if (f->has_body) {
         ms_json_object_merge(&json, ms_report_body_json(&f->body, &f->principal));
+    }
+    if (f->expect.curve[MS_EXPECT_FREE].count > 0) {
+        ms_json_object_set(&json, "expected", ms_expectation_json(&f->expect));
     }
     return json;
 }
@@ -211,11 +220,14 @@ static ms_status list_labels(const ms_input *input, int as_json, ms_error *err)
     return status;
 }
 
-static ms_status tell_shape(ms_input *input, const ms_input_flags *flags, int as_json, ms_error *err)
+static ms_status tell_shape(ms_input *input, const info_arguments *a, ms_error *err)
 {
     info_facts f;
-    const ms_status status = gather(&f, input, flags, err);
-    if (status == MS_OK && as_json) {
+    ms_status status = gather(&f, input, &a->input, err);
+    if (status == MS_OK && a->expect) {
+        status = ms_expectation_find(&f.expect, input, err);
+    }
+    if (status == MS_OK && a->json) {
         return ms_report_print(stdout, facts_json(&f), err);
     }
     if (status == MS_OK) {
@@ -242,8 +254,8 @@ static int run_info(const ms_command *command, int argc, char **argv)
     if (status != MS_OK) {
         return ms_flags_fail(command, &err);
     }
-    status = input.labels.count > 1 && !a.input.label ? list_labels(&input, a.json, &err)
-                                                      : tell_shape(&input, &a.input, a.json, &err);
+    status =
+        input.labels.count > 1 && !a.input.label ? list_labels(&input, a.json, &err) : tell_shape(&input, &a, &err);
     ms_input_free(&input);
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
@@ -251,7 +263,8 @@ static int run_info(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_info = {
     .name = "info",
     .summary = "what a shape is: closed or not, volume, inertia, principal frame; the labels of a volume",
-    .usage = "SHAPE [--json] [--label L] [--weld SHARE] [--fill-holes EDGES] [--drop-bodies SHARE] [--max-memory SIZE]",
+    .usage = "SHAPE [--expect] [--json] [--label L] [--weld SHARE] [--fill-holes EDGES] [--drop-bodies SHARE] "
+             "[--max-memory SIZE]",
     .example = "mskit info grain.stl",
     .flags = FLAGS,
     .run = run_info,

@@ -22,6 +22,7 @@
     X(SPHERES, "n") \
     X(STOPPED, "stopped_by")
 #define MS_COLUMN_LIST_BEHIND(X) \
+    X(EXPECTED, "expected") \
     X(CORRECTED, "inertia_corrected") \
     X(EPSILON, "epsilon") \
     X(PRODUCTS, "products_epsilon") \

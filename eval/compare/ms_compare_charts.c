@@ -151,7 +151,30 @@ static size_t collect(ms_chart_point *point, const records *all, const record *f
     return count;
 }
 
-/* What a chart is made of; one point each for the front and for the method is the most a row can give. */
+/* What is expected, by number of spheres, each once. */
+static size_t collect_expected(ms_chart_point *point, const records *all, const record *shape)
+{
+    size_t count = 0;
+    for (size_t r = 0; r < all->count; r++) {
+        const record *one = &all->record[r];
+        if (same_shape(one, shape)) {
+            const ms_chart_point next = {.x = number(one, MS_COLUMN_SPHERES), .y = number(one, MS_COLUMN_EXPECTED)};
+            size_t at = count;
+            while (at > 0 && point[at - 1].x > next.x) {
+                at--;
+            }
+            if (isfinite(next.x) && isfinite(next.y) && !(at > 0 && point[at - 1].x == next.x)) {
+                memmove(point + at + 1, point + at, (count - at) * sizeof *point);
+                point[at] = next;
+                count++;
+            }
+        }
+    }
+    return count;
+}
+
+/* What a chart is made of; one point each for the front or what is expected and for the method is the most a row can
+ * give. */
 typedef struct draft {
     ms_chart_series *series;
     ms_chart_point *point;
@@ -182,7 +205,7 @@ static char *name_method(const record *r)
     return name;
 }
 
-/* The front comes first, so that it is drawn behind the others. */
+/* The front, or what is expected, comes first, so that it is drawn behind the others. */
 static ms_status fill_draft(draft *d, const records *all, const record *shape, const chart_kind *k, ms_error *err)
 {
     d->series = calloc(all->count + 1, sizeof *d->series);
@@ -191,7 +214,8 @@ static ms_status fill_draft(draft *d, const records *all, const record *shape, c
     if (!d->series || !d->name || !d->point) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for a chart of %zu rows", all->count);
     }
-    d->n_series = k->front ? 1 : 0;
+    const int expected = k->y == MS_COLUMN_DICE && k->x == MS_COLUMN_SPHERES;
+    d->n_series = k->front || expected ? 1 : 0;
     for (size_t r = 0; r < all->count; r++) {
         if (same_shape(&all->record[r], shape) && is_first(all, r, 1)) {
             ms_chart_point *point = d->point + d->n_points;
@@ -211,6 +235,9 @@ static ms_status fill_draft(draft *d, const records *all, const record *shape, c
             front[p].label[0] = '\0';
         }
         d->series[0] = (ms_chart_series){"Pareto front", MS_CHART_FRONT, count, front};
+    } else if (expected) {
+        ms_chart_point *line = d->point + d->n_points;
+        d->series[0] = (ms_chart_series){"expected least", MS_CHART_LINE, collect_expected(line, all, shape), line};
     }
     return MS_OK;
 }

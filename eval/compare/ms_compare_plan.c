@@ -83,7 +83,7 @@ static ms_status plan_run(compare_planner *p, ms_compare_run run, ms_error *err)
 static size_t count_asked(size_t *batch, const ms_comparison *a, const ms_method *method)
 {
     const size_t count = method->generator ? a->asked.count : 1;
-    *batch = method->generator && method->generator->nested ? count : 1;
+    *batch = method->generator && ms_generator_is_nested(method->generator, &method->settings) ? count : 1;
     return count;
 }
 
@@ -130,6 +130,7 @@ static ms_status plan_shape(compare_planner *p, const char *shape, ms_error *err
         stage->shape = shape;
         stage->cells = is_volume ? (double)NAN : p->a->cells.value[c];
         flags.cells = is_volume ? 0 : stage->cells;
+        flags.method_bytes = ms_methods_bytes(&p->a->methods);
         ms_shared_input_begin(&stage->shared, shape, read_as_it_is, &flags, 0);
         for (size_t m = 0; m < p->a->methods.count && status == MS_OK; m++) {
             status = plan_method(p, stage, &p->a->methods.method[m], err);

@@ -3,6 +3,7 @@
 #define MS_COMPARE_PLAN_H
 
 #include "chart/ms_csv.h"
+#include "expect/ms_expect.h"
 #include "ms_compare.h"
 #include "ms_compare_walk.h"
 #include "queue/ms_shared_input.h"
@@ -12,6 +13,8 @@ typedef struct ms_compare_stage {
     const char *shape;
     double cells; /* NAN for a volume */
     ms_shared_input shared;
+    ms_expect expect; /* of the shape, once a run has needed it; empty if nothing can be expected of it */
+    int is_expected;
 } ms_compare_stage;
 
 /** A run of a method on it, which gives one row or several. Without a method: the contact sheet of the shape. */

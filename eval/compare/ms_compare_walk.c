@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/ms_expectation.h"
 #include "ms_compare.h"
 #include "ms_compare_charts.h"
 #include "ms_compare_plan.h"
@@ -118,8 +119,22 @@ static ms_status judge_clump(compare_walk *w, compare_result *result, const ms_c
         row->number[MS_COLUMN_MEMORY] = trial->memory;
     }
     keep_clump(w, run, asked, clump, n);
+    row->number[MS_COLUMN_EXPECTED] = ms_expectation_dice(&run->stage->expect, n);
     return ms_trial_judge(row, clump, n, &run->stage->shared.input.target, ms_input_max_voxels(&w->a->input),
                           &result->cause);
+}
+
+/* What is expected of a shape, found by the first run that needs it; others wait. */
+static ms_status need_expected(ms_compare_stage *stage, ms_error *err)
+{
+    ms_status status = MS_OK;
+    pthread_mutex_lock(&stage->shared.lock);
+    if (!stage->is_expected) {
+        status = ms_expectation_try(&stage->expect, &stage->shared.input, err);
+        stage->is_expected = status == MS_OK;
+    }
+    pthread_mutex_unlock(&stage->shared.lock);
+    return status;
 }
 
 static ms_status make_trial(compare_walk *w, ms_trial *trial, const ms_compare_run *run, int beside, ms_error *err)
@@ -148,6 +163,9 @@ static void make_rows(compare_walk *w, compare_result *result, const ms_compare_
     ms_trial trial = {0};
     ms_error cause = shared->cause;
     ms_status made = shared->status;
+    if (made == MS_OK) {
+        made = need_expected(run->stage, &cause);
+    }
     if (made == MS_OK && run->method->generator) {
         made = make_trial(w, &trial, run, beside, &cause);
     }

@@ -209,6 +209,7 @@ static ms_status make_grain(ms_grain_row *row, ms_result *r, const grains_work *
     ms_input_flags flags = grain->how->input;
     ms_input input;
     flags.threads = 0; /* those of the queue */
+    flags.method_bytes = grain->how->recipe.generator->bytes_per_voxel;
     flags.label = grain->label;
     if (grain->source->is_volume) { /* has voxels of its own */
         flags.cells = flags.deq = flags.voxel_size = 0;

@@ -492,6 +492,7 @@ const ms_generator ms_generator_fcm = {
     .summary = "random spheres that touch the surface, put together by fuzzy c-means",
     .source = "F. Westbrink, A. Schwung, COMPLAS XIV (2017)",
     .nested = 0,
+    .bytes_per_voxel = 5,
     .options = OPTIONS,
     .generate = generate_by_fcm,
 };

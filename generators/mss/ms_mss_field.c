@@ -1,41 +1,54 @@
 #include "ms_mss_field.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "voxel/ms_distance.h"
 
-/* A part of the grid up to a fifth of it is transformed by itself: its flags and distances, five
- * bytes a voxel, then take no more memory than the flags of the whole grid would. */
-enum { LARGEST_PART = 5 };
+/* How far S~ may stand out of S, in voxels, beyond the distance to its background that E gives; write-back checks. */
+enum { STAND_OUT = 3 };
 
-typedef struct voxel_box {
-    int lo[3], hi[3];
-} voxel_box;
+/* A box is seen in at most so many cells along an axis where a bound on a distance is enough. */
+enum { CELLS = 24 };
 
-static size_t box_voxels(const voxel_box *b)
+static size_t count_box(const ms_mss_box *b)
 {
     return (size_t)(b->hi[0] - b->lo[0]) * (size_t)(b->hi[1] - b->lo[1]) * (size_t)(b->hi[2] - b->lo[2]);
 }
 
-static voxel_box box_grow(const voxel_box *b, int margin, const int n[3])
+ms_mss_box ms_mss_field_grow(const ms_mss_box *box, int margin, const int n[3])
 {
-    voxel_box grown;
+    ms_mss_box grown;
     for (int a = 0; a < 3; a++) {
-        grown.lo[a] = b->lo[a] > margin ? b->lo[a] - margin : 0;
-        grown.hi[a] = b->hi[a] < n[a] - margin ? b->hi[a] + margin : n[a];
+        grown.lo[a] = box->lo[a] > margin ? box->lo[a] - margin : 0;
+        grown.hi[a] = box->hi[a] < n[a] - margin ? box->hi[a] + margin : n[a];
     }
     return grown;
 }
 
-static void box_include(voxel_box *b, int from, int to, int j, int k)
+static ms_status add_changed(ms_mss_field *field, const ms_mss_box *box, ms_error *err)
 {
-    const int lo[3] = {from, j, k}, hi[3] = {to, j + 1, k + 1};
-    for (int a = 0; a < 3; a++) {
-        b->lo[a] = lo[a] < b->lo[a] ? lo[a] : b->lo[a];
-        b->hi[a] = hi[a] > b->hi[a] ? hi[a] : b->hi[a];
+    if (field->n_changed == field->room) {
+        const size_t room = 2 * field->room + 16;
+        ms_mss_box *grown = realloc(field->changed, room * sizeof *grown);
+        if (!grown) {
+            return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu boxes", room);
+        }
+        field->changed = grown;
+        field->room = room;
     }
+    field->changed[field->n_changed++] = *box;
+    return MS_OK;
+}
+
+ms_status ms_mss_field_touch_all(ms_mss_field *field, ms_error *err)
+{
+    ms_mss_box all = {{0, 0, 0}, {0, 0, 0}};
+    memcpy(all.hi, field->target->grid.n, sizeof all.hi);
+    field->n_changed = 0;
+    return add_changed(field, &all, err);
 }
 
 ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const ms_settings *settings, ms_error *err)
@@ -45,10 +58,10 @@ ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const 
     memset(field, 0, sizeof *field);
     field->target = target;
     field->weight = 1;
-    field->star = malloc(voxels * sizeof *field->star);
+    field->within = calloc(voxels, sizeof *field->within);
     field->own_e = settings->n_planes ? malloc(voxels * sizeof *field->own_e) : NULL;
-    if (!field->star || (settings->n_planes && !field->own_e)) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for the field E* of %zu voxels; use fewer cells", voxels);
+    if (!field->within || (settings->n_planes && !field->own_e)) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the field E~ of %zu voxels; use fewer cells", voxels);
     }
     if (settings->n_planes) {
         ms_planes_cut(field->own_e, target, settings);
@@ -56,34 +69,23 @@ ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const 
     field->e = settings->n_planes ? field->own_e : target->distance;
 #pragma omp parallel for reduction(max : deepest) if (voxels >= MS_GRID_THREADS_FROM)
     for (size_t v = 0; v < voxels; v++) {
-        field->star[v] = 2 * field->e[v];
         deepest = field->e[v] > deepest ? field->e[v] : deepest;
     }
     field->deepest = deepest;
-    memcpy(field->hi, target->grid.n, sizeof field->hi);
-    return ms_raster_alloc(&field->raster, &target->grid, target->rule, err);
+    const ms_status status = ms_mss_field_touch_all(field, err);
+    return status == MS_OK ? ms_raster_alloc(&field->raster, &target->grid, target->rule, err) : status;
 }
 
 void ms_mss_field_free(ms_mss_field *field)
 {
     ms_raster_free(&field->raster);
-    free(field->star);
+    free(field->within);
     free(field->own_e);
-}
-
-/* E* = E + w (E - E~), and back. */
-static float star_of(const ms_mss_field *field, float e, float e_union)
-{
-    return (1 + field->weight) * e - field->weight * e_union;
-}
-
-static float union_of(const ms_mss_field *field, float e, float star)
-{
-    return ((1 + field->weight) * e - star) / field->weight;
+    free(field->changed);
 }
 
 /* Which voxels of a part S~ covers. */
-static void copy_covered(uint8_t *covered, const ms_mss_field *field, const voxel_box *part)
+static void copy_covered(uint8_t *covered, const ms_mss_field *field, const ms_mss_box *part)
 {
     const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
 #pragma omp parallel for if (plane * (size_t)(part->hi[2] - part->lo[2]) >= MS_GRID_THREADS_FROM)
@@ -101,94 +103,210 @@ static void copy_covered(uint8_t *covered, const ms_mss_field *field, const voxe
 static ms_status update_whole(ms_mss_field *field, ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(&field->target->grid);
-    voxel_box all = {{0, 0, 0}, {0, 0, 0}};
-    memcpy(all.hi, field->target->grid.n, sizeof all.hi);
-    memcpy(field->lo, all.lo, sizeof field->lo);
-    memcpy(field->hi, all.hi, sizeof field->hi);
-    uint8_t *covered = malloc(voxels);
+    ms_status status = ms_mss_field_touch_all(field, err);
+    uint8_t *covered = status == MS_OK ? malloc(voxels) : NULL;
     if (!covered) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
+        return status != MS_OK
+                   ? status
+                   : ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
     }
-    copy_covered(covered, field, &all);
-    ms_status status = ms_distance(field->star, covered, all.hi, err);
+    copy_covered(covered, field, &field->changed[0]);
+    status = ms_distance(field->within, covered, field->target->grid.n, err);
     free(covered);
     float deepest = 0;
 #pragma omp parallel for reduction(max : deepest) if (voxels >= MS_GRID_THREADS_FROM)
     for (size_t v = 0; v < voxels; v++) {
-        deepest = field->star[v] > deepest ? field->star[v] : deepest;
-        field->star[v] = star_of(field, field->e[v], field->star[v]);
+        deepest = field->within[v] > deepest ? field->within[v] : deepest;
     }
-    field->deepest_union = deepest;
+    field->deepest_within = deepest;
     return status;
 }
 
-static double find_gap(int at, int lo, int hi)
-{
-    return at < lo ? lo - at : at >= hi ? at - hi + 1 : 0;
-}
-
-static void box_join(voxel_box *b, const voxel_box *other)
+/* Takes in the voxels lo <= (i,j,k) < hi. */
+static void include_box(ms_mss_box *b, const int lo[3], const int hi[3])
 {
     for (int a = 0; a < 3; a++) {
-        b->lo[a] = other->lo[a] < b->lo[a] ? other->lo[a] : b->lo[a];
-        b->hi[a] = other->hi[a] > b->hi[a] ? other->hi[a] : b->hi[a];
+        b->lo[a] = lo[a] < b->lo[a] ? lo[a] : b->lo[a];
+        b->hi[a] = hi[a] > b->hi[a] ? hi[a] : b->hi[a];
     }
 }
-#pragma omp declare reduction(hull:voxel_box : box_join(&omp_out, &omp_in)) initializer(omp_priv = omp_orig)
+
+static void join_boxes(ms_mss_box *b, const ms_mss_box *other)
+{
+    include_box(b, other->lo, other->hi);
+}
+#pragma omp declare reduction(hull:ms_mss_box : join_boxes(&omp_out, &omp_in)) initializer(omp_priv = omp_orig)
+
+/* How far the voxels in the cells of a box are from those that ball b has covered first, at least. */
+typedef struct cell_map {
+    int n[3], size;
+    float *away;
+} cell_map;
+
+/* A cell and those that touch it: the distance to these, in cells, is a bound on that of voxels. */
+static void clear_around(uint8_t *clear, const cell_map *map, int i, int j, int k)
+{
+    const int *n = map->n;
+    if (clear[i + n[0] * (j + n[1] * k)] == 2) {
+        return; /* done before */
+    }
+    for (int z = k > 0 ? k - 1 : 0; z <= k + 1 && z < n[2]; z++) {
+        for (int y = j > 0 ? j - 1 : 0; y <= j + 1 && y < n[1]; y++) {
+            for (int x = i > 0 ? i - 1 : 0; x <= i + 1 && x < n[0]; x++) {
+                uint8_t *cell = &clear[x + n[0] * (y + n[1] * z)];
+                *cell = *cell == 2 ? 2 : 0;
+            }
+        }
+    }
+    clear[i + n[0] * (j + n[1] * k)] = 2;
+}
+
+static void mark_cells(uint8_t *clear, const cell_map *map, const ms_mss_field *field, const ms_mss_box *box, size_t b,
+                       const ms_mss_box *covered)
+{
+    for (int k = covered->lo[2]; k < covered->hi[2]; k++) {
+        for (int j = covered->lo[1]; j < covered->hi[1]; j++) {
+            const uint16_t *first = field->raster.first + ms_grid_index(&field->target->grid, 0, j, k);
+            for (int i = covered->lo[0]; i < covered->hi[0]; i++) {
+                if (first[i] == b) {
+                    clear_around(clear, map, (i - box->lo[0]) / map->size, (j - box->lo[1]) / map->size,
+                                 (k - box->lo[2]) / map->size);
+                }
+            }
+        }
+    }
+}
+
+static ms_status map_cells(cell_map *map, const ms_mss_field *field, const ms_mss_box *box, size_t b,
+                           const ms_mss_box *covered, ms_error *err)
+{
+    int longest = 0;
+    size_t cells = 1;
+    for (int a = 0; a < 3; a++) {
+        longest = box->hi[a] - box->lo[a] > longest ? box->hi[a] - box->lo[a] : longest;
+    }
+    map->size = longest > 2 * CELLS ? (longest + CELLS - 1) / CELLS : 2;
+    for (int a = 0; a < 3; a++) {
+        map->n[a] = (box->hi[a] - box->lo[a] + map->size - 1) / map->size;
+        cells *= (size_t)map->n[a];
+    }
+    uint8_t *clear = malloc(cells);
+    map->away = malloc(cells * sizeof *map->away);
+    ms_status status = MS_OK;
+    if (!clear || !map->away) {
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory for %zu cells", cells);
+    } else {
+        memset(clear, 1, cells);
+        mark_cells(clear, map, field, box, b, covered);
+        for (size_t c = 0; c < cells; c++) {
+            clear[c] = clear[c] == 1;
+        }
+        status = ms_distance(map->away, clear, map->n, err);
+    }
+    for (size_t c = 0; c < cells && status == MS_OK; c++) {
+        map->away[c] *= (float)map->size;
+    }
+    free(clear);
+    return status;
+}
+
+/* Where E~ may change: rows of a box, the voxels from <= i < to of each. */
+typedef struct changed_rows {
+    ms_mss_box box;
+    int (*span)[2]; /* of row j of plane k: j - lo + rows * (k - lo); all of the box that was looked at */
+    ms_mss_box within;
+} changed_rows;
+
+static int *measure_span(const changed_rows *c, int j, int k)
+{
+    const size_t rows = (size_t)(c->within.hi[1] - c->within.lo[1]);
+    return c->span[(size_t)(j - c->within.lo[1]) + rows * (size_t)(k - c->within.lo[2])];
+}
 
 /*
- * The voxels whose E~ may change: those that are covered now, and those that had their
- * nearest background voxel among these, which then was within their old E~.
+ * The voxels of a row whose E~ may change by what ball b has covered: those voxels, and those that had their nearest
+ * background voxel among them, which then was as far as their old E~.
  */
-static voxel_box changed_box(const ms_mss_field *field)
+static void find_span(int span[2], const ms_mss_field *field, const cell_map *map, const ms_mss_box *box, size_t b,
+                      int j, int k)
 {
-    const ms_grid *grid = &field->target->grid;
-    voxel_box covered, changed;
-    memcpy(covered.lo, field->raster.lo, sizeof covered.lo);
-    memcpy(covered.hi, field->raster.hi, sizeof covered.hi);
-    const voxel_box reach = box_grow(&covered, (int)ceilf(field->deepest_union) + 1, grid->n);
-    changed = covered;
-#pragma omp parallel for schedule(dynamic, 4) reduction(hull \
-                                                        : changed) if (ms_grid_voxels(grid) >= MS_GRID_THREADS_FROM)
-    for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
-        for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
-            const double dz = find_gap(k, covered.lo[2], covered.hi[2]), dy = find_gap(j, covered.lo[1], covered.hi[1]);
-            const float away = (float)sqrt(dz * dz + dy * dy) - 0.01f; /* E~ is known up to rounding */
-            const size_t start = ms_grid_index(grid, 0, j, k);
-            const float *e = field->e + start, *star = field->star + start;
-            int from = reach.lo[0], to = reach.hi[0];
-            while (from < to &&
-                   union_of(field, e[from], star[from]) < fmaxf(away, (float)(covered.lo[0] - from) - 0.01f)) {
-                from++;
-            }
-            while (from < to &&
-                   union_of(field, e[to - 1], star[to - 1]) < fmaxf(away, (float)(to - covered.hi[0]) - 0.01f)) {
-                to--;
-            }
-            if (from < to) {
-                box_include(&changed, from, to, j, k);
+    const size_t start = ms_grid_index(&field->target->grid, box->lo[0], j, k);
+    const float *within = field->within + start;
+    const uint16_t *first = field->raster.first + start;
+    const float *away = map->away + (size_t)map->n[0] * ((size_t)((j - box->lo[1]) / map->size) +
+                                                         (size_t)map->n[1] * (size_t)((k - box->lo[2]) / map->size));
+    const int n = box->hi[0] - box->lo[0];
+    int from = n, to = 0;
+    for (int cell = 0; cell < map->n[0]; cell++) {
+        const int end = (cell + 1) * map->size < n ? (cell + 1) * map->size : n;
+        for (int i = cell * map->size; i < end; i++) {
+            if ((within[i] >= away[cell] && within[i] > 0) || first[i] == b) {
+                from = i < from ? i : from;
+                to = i + 1;
             }
         }
     }
-    return changed;
+    span[0] = box->lo[0] + from;
+    span[1] = box->lo[0] + (from < to ? to : from);
 }
 
-static float deepest_in(const ms_mss_field *field, const voxel_box *b)
+/* @param[out] changed the caller frees its spans */
+static ms_status find_changed(changed_rows *changed, const ms_mss_field *field, size_t b, const ms_mss_box *covered,
+                              ms_error *err)
 {
-    float deepest = 0;
-    for (int k = b->lo[2]; k < b->hi[2]; k++) {
-        for (int j = b->lo[1]; j < b->hi[1]; j++) {
-            const float *e = field->target->distance + ms_grid_index(&field->target->grid, 0, j, k);
-            for (int i = b->lo[0]; i < b->hi[0]; i++) {
-                deepest = e[i] > deepest ? e[i] : deepest;
+    const ms_mss_box reach = ms_mss_field_grow(covered, (int)ceilf(field->deepest_within), field->target->grid.n);
+    const size_t rows = (size_t)(reach.hi[1] - reach.lo[1]) * (size_t)(reach.hi[2] - reach.lo[2]);
+    cell_map map = {.away = NULL};
+    ms_mss_box box = *covered;
+    *changed = (changed_rows){.span = malloc(rows * sizeof *changed->span), .within = reach};
+    ms_status status = changed->span ? map_cells(&map, field, &reach, b, covered, err)
+                                     : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu rows", rows);
+    if (status == MS_OK) {
+#pragma omp parallel for schedule(dynamic, 4) reduction(hull : box) if (count_box(&reach) >= MS_GRID_THREADS_FROM)
+        for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
+            for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
+                int *span = measure_span(changed, j, k);
+                find_span(span, field, &map, &reach, b, j, k);
+                if (span[0] < span[1]) {
+                    include_box(&box, (int[3]){span[0], j, k}, (int[3]){span[1], j + 1, k + 1});
+                }
             }
         }
     }
-    return deepest;
+    free(map.away);
+    changed->box = box;
+    return status;
+}
+
+/* All voxels that may be the nearest background of a changed one: none is farther than E and what S~ stands out. */
+static ms_mss_box find_surroundings(const ms_mss_field *field, const changed_rows *changed)
+{
+    const ms_grid *grid = &field->target->grid;
+    const ms_mss_box *box = &changed->box;
+    ms_mss_box part = *box;
+#pragma omp parallel for reduction(hull : part) if (count_box(box) >= MS_GRID_THREADS_FROM)
+    for (int k = box->lo[2]; k < box->hi[2]; k++) {
+        for (int j = box->lo[1]; j < box->hi[1]; j++) {
+            const float *e = field->target->distance + ms_grid_index(grid, 0, j, k);
+            const int *span = measure_span(changed, j, k);
+            int lo = box->hi[0], hi = box->lo[0], deepest = 0;
+            for (int i = span[0]; i < span[1]; i++) {
+                const int reach = (int)e[i] + 1 + STAND_OUT;
+                deepest = reach > deepest ? reach : deepest;
+                lo = i - reach < lo ? i - reach : lo;
+                hi = i + reach >= hi ? i + reach + 1 : hi;
+            }
+            if (span[0] < span[1]) {
+                include_box(&part, (int[3]){lo, j - deepest, k - deepest},
+                            (int[3]){hi, j + deepest + 1, k + deepest + 1});
+            }
+        }
+    }
+    return ms_mss_field_grow(&part, 0, grid->n);
 }
 
 /* How far a voxel is from the outside of the part, where the part is not the grid's own end. */
-static int depth_in_part(const voxel_box *part, const int n[3], int i, int j, int k)
+static int find_depth(const ms_mss_box *part, const int n[3], int i, int j, int k)
 {
     const int at[3] = {i, j, k};
     int depth = MS_GRID_MAX_EXTENT;
@@ -203,79 +321,139 @@ static int depth_in_part(const voxel_box *part, const int n[3], int i, int j, in
     return depth;
 }
 
-/* Writes E* of the changed voxels; 0 if a distance may be to background beyond the part. */
-static int write_star(ms_mss_field *field, const float *distance, const voxel_box *part, const voxel_box *changed)
+/* Writes E~ of the changed voxels; 0 if a distance may be to background beyond the part. */
+static int write_within(ms_mss_field *field, const float *distance, const ms_mss_box *part, const changed_rows *changed)
 {
     const ms_grid *grid = &field->target->grid;
-    const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
-    float deepest = field->deepest_union;
+    const ms_mss_box *box = &changed->box;
+    const size_t row = (size_t)(box->hi[0] - box->lo[0]), plane = row * (size_t)(box->hi[1] - box->lo[1]);
+    float deepest = field->deepest_within;
     int exact = 1;
-#pragma omp parallel for reduction(& : exact) reduction(max : deepest) \
-    if (plane * (size_t)(part->hi[2] - part->lo[2]) >= MS_GRID_THREADS_FROM)
-    for (int k = changed->lo[2]; k < changed->hi[2]; k++) {
-        for (int j = changed->lo[1]; j < changed->hi[1]; j++) {
-            const float *from = distance + plane * (size_t)(k - part->lo[2]) + row * (size_t)(j - part->lo[1]);
-            const size_t start = ms_grid_index(grid, 0, j, k);
-            for (int i = changed->lo[0]; i < changed->hi[0]; i++) {
-                const float d = from[i - part->lo[0]];
-                exact &= d <= (float)depth_in_part(part, grid->n, i, j, k);
+#pragma omp parallel for reduction(& : exact) reduction(max : deepest) if (count_box(box) >= MS_GRID_THREADS_FROM)
+    for (int k = box->lo[2]; k < box->hi[2]; k++) {
+        for (int j = box->lo[1]; j < box->hi[1]; j++) {
+            const float *from = distance + plane * (size_t)(k - box->lo[2]) + row * (size_t)(j - box->lo[1]);
+            float *within = field->within + ms_grid_index(grid, 0, j, k);
+            const int *span = measure_span(changed, j, k);
+            for (int i = span[0]; i < span[1]; i++) {
+                const float d = from[i - box->lo[0]];
+                exact &= d <= 1 + STAND_OUT || d <= (float)find_depth(part, grid->n, i, j, k);
                 deepest = d > deepest ? d : deepest;
-                field->star[start + (size_t)i] = star_of(field, field->e[start + (size_t)i], d);
+                within[i] = d;
             }
         }
     }
-    field->deepest_union = deepest;
+    field->deepest_within = deepest;
     return exact;
 }
 
 /* @param[out] done 0 if the part proved too small */
-static ms_status update_part(int *done, ms_mss_field *field, const voxel_box *part, const voxel_box *changed,
+static ms_status update_part(int *done, ms_mss_field *field, const ms_mss_box *part, const changed_rows *changed,
                              ms_error *err)
 {
-    const size_t voxels = box_voxels(part);
-    const int n[3] = {part->hi[0] - part->lo[0], part->hi[1] - part->lo[1], part->hi[2] - part->lo[2]};
-    uint8_t *covered = malloc(voxels);
-    float *distance = malloc(voxels * sizeof *distance);
+    const ms_mss_box *box = &changed->box;
+    int n[3], lo[3], hi[3];
+    for (int a = 0; a < 3; a++) {
+        n[a] = part->hi[a] - part->lo[a];
+        lo[a] = box->lo[a] - part->lo[a];
+        hi[a] = box->hi[a] - part->lo[a];
+    }
+    const size_t row = (size_t)(hi[0] - lo[0]), apart[2] = {row, row * (size_t)(hi[1] - lo[1])};
+    uint8_t *covered = malloc(count_box(part));
+    float *distance = malloc(count_box(box) * sizeof *distance);
     ms_status status = MS_OK;
     *done = 0;
     if (!covered || !distance) {
-        status = ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", count_box(part));
     } else {
         copy_covered(covered, field, part);
-        status = ms_distance(distance, covered, n, err);
+        status = ms_distance_box(distance, apart, covered, n, lo, hi, err);
     }
-    if (status == MS_OK) {
-        *done = write_star(field, distance, part, changed);
-        memcpy(field->lo, changed->lo, sizeof field->lo);
-        memcpy(field->hi, changed->hi, sizeof field->hi);
-    }
+    *done = status == MS_OK && write_within(field, distance, part, changed);
     free(covered);
     free(distance);
     return status;
 }
 
-ms_status ms_mss_field_add(ms_mss_field *field, const ms_ball *balls, size_t count, ms_error *err)
+/* What a sphere has covered first. */
+typedef struct covered_box {
+    size_t ball;
+    ms_mss_box box;
+} covered_box;
+
+/* What transforming a part takes, in voxels of which a lower envelope is made along two axes. */
+static size_t cost_of_part(const ms_mss_box *box, const ms_mss_box *part)
 {
-    const int *n = field->target->grid.n;
-    ms_status status = ms_raster_add(&field->raster, balls, count, err);
-    memset(field->lo, 0, sizeof field->lo);
-    memset(field->hi, 0, sizeof field->hi);
-    if (status != MS_OK || field->raster.hi[0] == field->raster.lo[0]) {
-        return status; /* failed, or nothing newly covered */
-    }
-    /* Background is at most as far as that of the target, and spheres may stand out of it by
-     * a voxel or so; write_star checks. */
-    const voxel_box changed = changed_box(field);
-    const voxel_box part = box_grow(&changed, (int)ceilf(deepest_in(field, &changed)) + 2, n);
-    int done = 0;
-    if (box_voxels(&part) <= ms_grid_voxels(&field->target->grid) / LARGEST_PART) {
-        status = update_part(&done, field, &part, &changed, err);
-    }
-    return done || status != MS_OK ? status : update_whole(field, err);
+    const size_t lines_y = count_box(part) / (size_t)(part->hi[0] - part->lo[0]) * (size_t)(box->hi[0] - box->lo[0]);
+    const size_t lines_z = lines_y / (size_t)(part->hi[1] - part->lo[1]) * (size_t)(box->hi[1] - box->lo[1]);
+    return count_box(part) / 4 + (lines_y + lines_z) / 2;
 }
 
-ms_status ms_mss_field_set_weight(ms_mss_field *field, float weight, ms_error *err)
+/* That of the grid: background is passed over. */
+static size_t cost_of_whole(const ms_target *target)
 {
-    field->weight = weight;
-    return update_whole(field, err);
+    return target->voxels + ms_grid_voxels(&target->grid) / 4;
+}
+
+/*
+ * Brings E~ up to date where one sphere has covered voxels, unless the whole grid is sooner.
+ *
+ * @param[in,out] cost what the spheres before took
+ * @param         left how many spheres there are with this one, which are taken to cost the same
+ */
+static ms_status update_around(int *done, size_t *cost, ms_mss_field *field, const covered_box *covered, size_t left,
+                               ms_error *err)
+{
+    changed_rows changed;
+    *done = 0;
+    ms_status status = find_changed(&changed, field, covered->ball, &covered->box, err);
+    if (status == MS_OK) {
+        const ms_mss_box *box = &changed.box, part = find_surroundings(field, &changed);
+        const size_t columns = count_box(box) / (size_t)(box->hi[2] - box->lo[2]) * (size_t)(part.hi[2] - part.lo[2]);
+        const size_t bytes = count_box(&part) + sizeof(float) * (columns + count_box(box));
+        const size_t here = cost_of_part(box, &part), all = ms_grid_voxels(&field->target->grid);
+        if (*cost + left * here <= cost_of_whole(field->target) && bytes <= all / 4 * 7) {
+            status = add_changed(field, box, err);
+            status = status == MS_OK ? update_part(done, field, &part, &changed, err) : status;
+        }
+        *cost += here;
+    }
+    free(changed.span);
+    return status;
+}
+
+/* Adds spheres to S~; lists the boxes of what each has covered. */
+static ms_status spread_balls(covered_box *covered, size_t *n_covered, ms_mss_field *field, const ms_ball *balls,
+                              size_t count, ms_error *err)
+{
+    const ms_raster *raster = &field->raster;
+    ms_status status = MS_OK;
+    *n_covered = 0;
+    for (size_t b = 0; b < count && status == MS_OK; b++) {
+        status = ms_raster_add(&field->raster, &balls[b], 1, err);
+        if (status == MS_OK && raster->hi[0] > raster->lo[0]) {
+            covered_box *next = &covered[(*n_covered)++];
+            next->ball = raster->n_balls - 1;
+            memcpy(next->box.lo, raster->lo, sizeof next->box.lo);
+            memcpy(next->box.hi, raster->hi, sizeof next->box.hi);
+        }
+    }
+    return status;
+}
+
+ms_status ms_mss_field_add(ms_mss_field *field, const ms_ball *balls, size_t count, ms_error *err)
+{
+    size_t n_covered = 0, cost = 0;
+    int done = 1;
+    covered_box *covered = malloc((count + 1) * sizeof *covered);
+    field->n_changed = 0;
+    if (!covered) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
+    }
+    ms_status status = spread_balls(covered, &n_covered, field, balls, count, err);
+    for (size_t b = 0; b < n_covered && done && status == MS_OK; b++) {
+        status = update_around(&done, &cost, field, &covered[b], n_covered - b, err);
+    }
+    free(covered);
+    return done || status != MS_OK ? status : update_whole(field, err);
 }

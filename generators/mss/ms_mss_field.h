@@ -1,4 +1,4 @@
-/** The field E* = E + w (E - E~) of MSS (eq. 25: w = 1), kept up to date as spheres are added. Private to ms_mss. */
+/** The fields of MSS, E and E~ (eqs. 8, 25), the latter kept up to date as spheres are added. Private to ms_mss. */
 #ifndef MS_MSS_FIELD_H
 #define MS_MSS_FIELD_H
 
@@ -6,20 +6,26 @@
 #include "voxel/ms_raster.h"
 #include "voxel/ms_target.h"
 
+/** The voxels lo <= (i,j,k) < hi. */
+typedef struct ms_mss_box {
+    int lo[3], hi[3];
+} ms_mss_box;
+
 typedef struct ms_mss_field {
     const ms_target *target;
-    const float *e;      /* E; with planes, no more than the distance to the nearest plane */
-    float *own_e;        /* where e is kept if it is not the target's own */
-    ms_raster raster;    /* the union of the spheres so far, S~ */
-    float weight;        /* w */
-    float *star;         /* E*, in voxels */
-    float deepest;       /* largest E */
-    float deepest_union; /* largest E~ so far; E~ only grows */
-    int lo[3], hi[3];    /* box lo <= (i,j,k) < hi in which the last update changed E*; empty: lo = hi */
+    const float *e;       /* E; with planes, no more than the distance to the nearest plane */
+    float *own_e;         /* where e is kept if it is not the target's own */
+    ms_raster raster;     /* the union of the spheres so far, S~ */
+    float weight;         /* w of E* = E + w (E - E~); eq. 25: 1. The caller's to set */
+    float *within;        /* E~, in voxels: exact roots, so that equal distances compare equal */
+    float deepest;        /* largest E */
+    float deepest_within; /* at least the largest E~; E~ only grows */
+    ms_mss_box *changed;  /* where the last update can have changed E~ */
+    size_t n_changed, room;
 } ms_mss_field;
 
 /**
- * No spheres yet: w = 1, E~ = 0, E* = 2E; all of it counts as changed.
+ * No spheres yet: w = 1, E~ = 0; all of the grid counts as changed.
  *
  * @param settings its planes are walls: E has its maxima on either side
  * @return MS_OK; MS_ERR_NOMEM
@@ -27,13 +33,23 @@ typedef struct ms_mss_field {
 ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const ms_settings *settings, ms_error *err);
 
 /**
- * Adds spheres to S~ and recomputes E* where that can have changed it.
- * Cost: of a distance transform of the changed part and what surrounds it.
+ * Adds spheres to S~ and brings E~ up to date where they can have changed it.
+ * Cost: of a distance transform of the boxes that each of them changes and of what surrounds these, or of the grid if
+ * that is less.
  */
 ms_status ms_mss_field_add(ms_mss_field *field, const ms_ball *balls, size_t count, ms_error *err);
 
-/** Changes w; all of E* counts as changed. Cost: a distance transform of the grid. */
-ms_status ms_mss_field_set_weight(ms_mss_field *field, float weight, ms_error *err);
+/** Counts all of the grid as changed, as after a change of w. */
+ms_status ms_mss_field_touch_all(ms_mss_field *field, ms_error *err);
+
+/** E* of a voxel. */
+static inline float ms_mss_field_star(const ms_mss_field *field, size_t voxel)
+{
+    return (1 + field->weight) * field->e[voxel] - field->weight * field->within[voxel];
+}
+
+/** A box with `margin` voxels more on each side, cut to the grid. */
+ms_mss_box ms_mss_field_grow(const ms_mss_box *box, int margin, const int n[3]);
 
 void ms_mss_field_free(ms_mss_field *field);
 

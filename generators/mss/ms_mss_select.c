@@ -29,6 +29,11 @@ static double least_square(double spacing)
     return spacing * spacing * (1 - 1e-9);
 }
 
+int ms_mss_select_is_apart(const ms_mss_candidate *candidate, double spacing)
+{
+    return candidate->apart >= least_square(spacing);
+}
+
 /* The mean of a cluster, with the least radius of its members. */
 static ms_ball mean_ball(const ms_mss_candidate *cluster, size_t count)
 {
@@ -81,6 +86,17 @@ static void keep_apart_now(ms_mss_candidate *c, size_t count, const ms_ball *sph
 {
     for (size_t m = 0; m < count; m++) {
         c[m].now = fmin(c[m].now, ms_squared_distance(c[m].ball.centre, sphere->centre));
+    }
+}
+
+/* Those that overlap a sphere of this step wait: they are not apart from it at all. */
+static void put_off_overlapping(ms_mss_candidate *c, size_t count, const ms_ball *sphere)
+{
+    for (size_t m = 0; m < count; m++) {
+        const double reach = c[m].ball.radius + sphere->radius;
+        if (ms_squared_distance(c[m].ball.centre, sphere->centre) < reach * reach) {
+            c[m].now = 0;
+        }
     }
 }
 
@@ -183,6 +199,9 @@ static size_t select_equals(ms_ball *chosen, size_t limit, ms_mss_candidate *c, 
     size_t taken = 0;
     for (size_t s = 0; s < p.n_step; s++) {
         keep_apart_now(c, count, &p.step[s]);
+        if (rule->disjoint) {
+            put_off_overlapping(c, count, &p.step[s]);
+        }
     }
     while ((count = gather_eligible(c, count, rule->spacing, 0)) > 0 && taken < limit && !(rule->one_set && taken)) {
         const size_t set =
@@ -192,6 +211,9 @@ static size_t select_equals(ms_ball *chosen, size_t limit, ms_mss_candidate *c, 
         count -= set;
         for (size_t s = 0; s < placed_now; s++) {
             keep_apart_now(c, count, &chosen[taken + s]);
+            if (rule->disjoint) {
+                put_off_overlapping(c, count, &chosen[taken + s]);
+            }
         }
         taken += placed_now;
         p.n_step += placed_now;
@@ -210,6 +232,9 @@ size_t ms_mss_select(ms_ball *chosen, size_t limit, ms_mss_candidate *candidates
     count = gather_eligible(candidates, count, rule->spacing, rule->least_radius);
     qsort(candidates, count, sizeof *candidates, by_rank);
     for (size_t from = 0; from < count && taken < limit && !(rule->one_set && taken);) {
+        if (candidates[from].rank < rule->least_rank) {
+            break;
+        }
         const double least = candidates[from].rank - EQUAL * (1 + fabs(candidates[from].rank));
         size_t to = from + 1;
         while (to < count && candidates[to].rank >= least) {

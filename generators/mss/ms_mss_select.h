@@ -11,12 +11,19 @@ typedef struct ms_mss_candidate {
     size_t voxel; /* the maximum at voxel resolution */
     double apart; /* squared distance to the nearest sphere so far; HUGE_VAL if there is none */
     double now;   /* work space: the same, within a step */
+    double e;     /* E there, in voxels */
+    int counted;  /* the rank is what the sphere gains now; else no less */
 } ms_mss_candidate;
+
+/** Is it as far from all spheres as delta_min demands? */
+int ms_mss_select_is_apart(const ms_mss_candidate *candidate, double spacing);
 
 /** What is demanded of the spheres of a step. */
 typedef struct ms_mss_select_rule {
     double spacing;      /* delta_min, in voxels */
     double least_radius; /* smaller ones wait for a later step; in voxels */
+    double least_rank;   /* those below wait too */
+    int disjoint;        /* a set that overlaps one placed before in the step waits */
     double centroid[3];  /* of the target, in voxels */
     int one_set;         /* only the first set of equals (mirror images of one another) */
     int may_wait;        /* delta_min will shrink: a set that cannot be placed whole waits for that */

@@ -55,11 +55,12 @@ static touching_place find_ridge(touching_place rising, touching_place falling, 
     return rising;
 }
 
-double ms_medial_sphere(double centre[3], const ms_closest *closest, double stride, double tolerance)
+double ms_medial_sphere(double centre[3], double radius, const double nearest[3], const ms_closest *closest,
+                        double stride, double tolerance)
 {
-    touching_place here = {.slope = 1};
+    touching_place here = {.radius = radius, .slope = 1};
     memcpy(here.centre, centre, sizeof here.centre);
-    here.radius = ms_closest_distance(here.nearest, closest, centre, HUGE_VAL);
+    memcpy(here.nearest, nearest, sizeof here.nearest);
     for (int step = 0; step < MAX_STRIDES && here.radius > 0; step++, stride *= 2) {
         double u[3];
         for (int a = 0; a < 3; a++) {

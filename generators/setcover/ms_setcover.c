@@ -84,8 +84,8 @@ static ms_status generate_by_setcover(ms_clump *clump, ms_stop_reason *reason, c
     if (status == MS_OK) {
         drop_small(candidate, &count, run);
         ms_generator_stage(run, "what each candidate covers", (double)NAN);
-        status =
-            ms_cover_build(&cover, &run->target->grid, candidate, count, setcover_option(run, CONNECTED) != 0, err);
+        status = ms_cover_build(&cover, &run->target->grid, candidate, count,
+                                setcover_option(run, CONNECTED) != 0 ? MS_COVER_CONNECTED : MS_COVER_GROUPED, err);
     }
     if (status == MS_OK) {
         setcover_choice choice = {cover, candidate, count < found};
@@ -101,6 +101,7 @@ const ms_generator ms_generator_setcover = {
     .summary = "inscribed spheres on the thinned medial surface, each the one that covers most of what is left",
     .source = "F.-L. Yuan, Granular Matter 21 (2019) 19",
     .nested = 1,
+    .bytes_per_voxel = 12,
     .options = OPTIONS,
     .generate = generate_by_setcover,
 };

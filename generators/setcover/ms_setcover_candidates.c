@@ -7,6 +7,8 @@
 #include "base/ms_vector.h"
 #include "mesh/ms_inertia.h"
 #include "ms_medial.h"
+#include "ms_setcover_roll.h"
+#include "voxel/ms_distance.h"
 #include "voxel/ms_voxelize.h"
 
 /* A skeleton's grid of this size is allowed whatever the target's. */
@@ -170,28 +172,41 @@ static ms_status grid_of_voxels(ms_grid *out, const ms_target *target, const fra
     return MS_OK;
 }
 
-/* The sphere about a voxel's centre, in the mesh's unit: at the centre, or moved from there to the
- * medial surface. 0 where the centre may not be inside. */
-static double fit_to_mesh(double centre[3], const ms_closest *closest, double step, int move)
-{
-    const double radius = ms_closest_distance(NULL, closest, centre, HUGE_VAL);
-    if (!(radius > SURELY_INSIDE * step)) {
-        return 0;
-    }
-    return move ? ms_medial_sphere(centre, closest, step, MEDIAL_TOLERANCE * step) : radius;
-}
-
-/* The inscribed sphere of a candidate; a centre among voxels moves onto the nearest one. */
-static void fit_candidate(ms_ball *ball, const ms_target *target, double step, int move)
+/* The sphere about a voxel's centre as it lies. */
+static void fit_candidate(ms_ball *ball, const ms_target *target, double step)
 {
     const ms_grid *grid = &target->grid;
     if (is_by_mesh(target)) {
         ms_sphere sphere = ms_grid_sphere(grid, ball);
-        sphere.radius = fit_to_mesh(sphere.centre, target->closest, step, move);
+        sphere.radius = ms_closest_distance(NULL, target->closest, sphere.centre, HUGE_VAL);
+        sphere.radius = sphere.radius > SURELY_INSIDE * step ? sphere.radius : 0;
         *ball = ms_grid_ball(grid, &sphere);
     } else {
         ball->radius = (double)target->distance[nearest_voxel(ball->centre, grid)] - 0.5;
     }
+}
+
+/*
+ * The maximal sphere where a rolled one has come to, or if the field has misled it, where it came from. It has not if
+ * no face is between the two: if the sphere at the end holds the place it was rolled from.
+ */
+static ms_sphere fit_start(const ms_setcover_start *start, const ms_closest *closest, double step)
+{
+    ms_sphere sphere;
+    double nearest[3];
+    memcpy(sphere.centre, start->centre, sizeof sphere.centre);
+    sphere.radius = ms_closest_distance(nearest, closest, sphere.centre, HUGE_VAL);
+    const double rolled = sqrt(ms_squared_distance(start->from, start->centre));
+    if (rolled > 0 && !(sphere.radius > rolled + SURELY_INSIDE * step)) {
+        memcpy(sphere.centre, start->from, sizeof sphere.centre);
+        sphere.radius = ms_closest_distance(nearest, closest, sphere.centre, HUGE_VAL);
+    }
+    if (!(sphere.radius > SURELY_INSIDE * step)) {
+        sphere.radius = 0;
+        return sphere;
+    }
+    sphere.radius = ms_medial_sphere(sphere.centre, sphere.radius, nearest, closest, step, MEDIAL_TOLERANCE * step);
+    return sphere;
 }
 
 /* Lists the voxels of the skeleton. */
@@ -213,21 +228,50 @@ static ms_status list_centres(ms_ball **ball, size_t *count, const ms_grid *skel
     return MS_OK;
 }
 
-/* The spheres at all centres; drops those that came to nothing. */
-static void fit_all(ms_ball *ball, size_t *count, const ms_target *target, double step, int move)
+/* Drops the spheres that came to nothing. */
+static void drop_empty(ms_ball *ball, size_t *count)
 {
-    const ptrdiff_t all = (ptrdiff_t)*count;
     size_t kept = 0;
-#pragma omp parallel for schedule(dynamic, 64)
-    for (ptrdiff_t b = 0; b < all; b++) {
-        fit_candidate(&ball[b], target, step, move);
-    }
     for (size_t b = 0; b < *count; b++) {
         if (ball[b].radius > 0) {
             ball[kept++] = ball[b];
         }
     }
     *count = kept;
+}
+
+/* The spheres at all centres, which stay where they are. */
+static void fit_all(ms_ball *ball, size_t *count, const ms_target *target, double step)
+{
+    const ptrdiff_t all = (ptrdiff_t)*count;
+#pragma omp parallel for schedule(dynamic, 64)
+    for (ptrdiff_t b = 0; b < all; b++) {
+        fit_candidate(&ball[b], target, step);
+    }
+    drop_empty(ball, count);
+}
+
+/* The maximal spheres of all centres, as far as they differ. */
+static ms_status fit_maximal(ms_ball *ball, size_t *count, const ms_target *target, const ms_setcover_field *field,
+                             ms_error *err)
+{
+    ms_setcover_start *start = malloc((*count + 1) * sizeof *start);
+    if (!start) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu candidate spheres; use a smaller skeleton-deq", *count);
+    }
+    for (size_t b = 0; b < *count; b++) {
+        ms_grid_place(start[b].from, &target->grid, ball[b].centre);
+    }
+    const ms_status status = ms_setcover_roll(start, count, field, target->closest, err);
+    const ptrdiff_t kept = status == MS_OK ? (ptrdiff_t)*count : 0;
+#pragma omp parallel for schedule(dynamic, 64)
+    for (ptrdiff_t b = 0; b < kept; b++) {
+        const ms_sphere sphere = fit_start(&start[b], target->closest, field->h);
+        ball[b] = ms_grid_ball(&target->grid, &sphere);
+    }
+    free(start);
+    drop_empty(ball, count);
+    return status;
 }
 
 /* Thins the voxels; keeps those on the border, too, if asked for. */
@@ -261,20 +305,46 @@ static double choose_spacing(const ms_target *target, const ms_setcover_lattice 
     return lattice->align ? fmax(h, wanted) : h * fmax(1, floor(wanted / h));
 }
 
+/* How deep the lattice's voxels lie, before they are thinned. */
+static ms_status measure_depth(ms_setcover_field *field, float **depth, const ms_grid *skeleton, const frame *f,
+                               ms_error *err)
+{
+    const size_t voxels = ms_grid_voxels(skeleton);
+    *depth = malloc(voxels * sizeof **depth);
+    if (!*depth) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the depth of %zu voxels; use a smaller skeleton-deq", voxels);
+    }
+    *field = (ms_setcover_field){.h = skeleton->h, .depth = *depth};
+    memcpy(field->axis, f->axis, sizeof field->axis);
+    memcpy(field->n, skeleton->n, sizeof field->n);
+    for (int a = 0; a < 3; a++) {
+        field->origin[a] = f->origin[a];
+        for (int b = 0; b < 3; b++) {
+            field->origin[a] += skeleton->origin[b] * f->axis[b][a];
+        }
+    }
+    return ms_distance(*depth, skeleton->inside, skeleton->n, err);
+}
+
 ms_status ms_setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target,
                                  const ms_setcover_lattice *lattice, ms_error *err)
 {
     const double step = choose_spacing(target, lattice);
-    const int medial =
-        is_by_mesh(target) && lattice->kind == MS_SKELETON_SURFACE && lattice->centres == SETCOVER_MEDIAL;
+    const int by_mesh = is_by_mesh(target), maximal = by_mesh && lattice->centres != SETCOVER_ALL;
+    const int medial = maximal && lattice->kind == MS_SKELETON_SURFACE && lattice->centres == SETCOVER_MEDIAL;
     ms_grid skeleton = {0};
+    ms_setcover_field field;
+    float *depth = NULL;
     frame f;
     *ball = NULL;
     *count = 0;
     ms_status status = choose_frame(&f, target, lattice->align, err);
     if (status == MS_OK) {
-        status = is_by_mesh(target) ? grid_of_mesh(&skeleton, target, &f, step, lattice, err)
-                                    : grid_of_voxels(&skeleton, target, &f, step, lattice, err);
+        status = by_mesh ? grid_of_mesh(&skeleton, target, &f, step, lattice, err)
+                         : grid_of_voxels(&skeleton, target, &f, step, lattice, err);
+    }
+    if (status == MS_OK && maximal) {
+        status = measure_depth(&field, &depth, &skeleton, &f, err);
     }
     if (status == MS_OK && lattice->centres != SETCOVER_ALL) {
         status = thin_shape(&skeleton, lattice->kind, medial, err);
@@ -282,9 +352,12 @@ ms_status ms_setcover_candidates(ms_ball **ball, size_t *count, const ms_target 
     if (status == MS_OK) {
         status = list_centres(ball, count, &skeleton, &f, &target->grid, err);
     }
-    if (status == MS_OK) {
-        fit_all(*ball, count, target, step, lattice->centres != SETCOVER_ALL);
+    if (status == MS_OK && maximal) {
+        status = fit_maximal(*ball, count, target, &field, err);
+    } else if (status == MS_OK) {
+        fit_all(*ball, count, target, step);
     }
     ms_grid_free(&skeleton);
+    free(depth);
     return status;
 }

@@ -6,18 +6,27 @@
 #include "ms_cover.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/ms_vector.h"
+#include "ms_cover_bits.h"
 
-enum { WORD = 64 };
+enum { MOST_AT_ONCE = 64 };
 
 #define NEVER UINT32_MAX
 
-/* Runs kept for all candidates together, at most: 256 MB. */
-static const size_t MAX_RUNS = (size_t)1 << 24;
+/* Voxels of the grid for each run that may be kept: at most 6.4 bytes a voxel. */
+static const double VOXELS_A_RUN = 2.5;
+
+/* Of the runs that are free a candidate gets up to this part. */
+static const double SHARE = 1.0 / 512;
+
+/* In groups lie the centres of balls within this part of their radius, rounded down to a power of two; a group is
+ * dissolved when a ball was taken for less than this part of that radius' ball. */
+static const double GROUP_SIDE = 0.0625, GROUP_GAIN = 0.125;
 
 /* A candidate and what it would cover. */
 typedef struct heap_entry {
@@ -26,141 +35,63 @@ typedef struct heap_entry {
     uint32_t counted; /* how many balls had been taken by then; NEVER */
 } heap_entry;
 
-/* What was left of a row of a ball, within one word. */
-typedef struct run {
-    size_t word;
-    uint64_t bits;
-} run;
-
 /* All that was left of a ball when it was last counted. */
 typedef struct remains {
-    run *run; /* NULL: not known */
-    size_t n;
+    ms_cover_run *run; /* NULL: not known */
+    uint32_t n, room;
+    int is_member; /* of a group, and not its first */
 } remains;
 
 struct ms_cover {
-    int n[3];
-    size_t words;   /* per row */
-    uint64_t *left; /* voxels not yet covered, rows along x; one word more, so that a window may overhang */
+    ms_cover_bits left; /* not yet covered */
     const ms_ball *candidate;
     size_t count;
-    int connected;
+    ms_cover_rule rule;
     uint32_t n_taken;
-    remains *remains; /* of each candidate */
-    run *found;       /* room for most_runs, and one */
-    size_t most_runs; /* that are kept for a candidate */
+    remains *remains;       /* of each candidate */
+    size_t free_runs;       /* that may still be kept */
+    ms_cover_room *scratch; /* of each thread */
+    int threads;
+    uint32_t *next; /* in a group of candidates: its largest leads to the others, the last to NEVER; NULL: no groups */
+    int largest_class; /* of the groups that are not dissolved */
     /* A heap, the best first, and behind it those that touch no ball taken so far (connected). */
     heap_entry *entry;
     size_t n_heap, n_entries;
 };
 
-/* Not __builtin_popcountll, which gcc turns into a call for a plain x86-64: 2.7 ns by it, 1.1 to 1.6 by this;
- * clang: both 0.7 to 1.0. */
-static inline size_t popcount(uint64_t x)
+/* Keeps the runs of a candidate if they are few enough for the room that is left; whether they are kept changes no
+ * count, so that threads may race for it. */
+static void keep_remains(ms_cover *cover, remains *part, const ms_cover_room *room, size_t n)
 {
-    x -= x >> 1 & 0x5555555555555555u;
-    x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
-    x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
-    return (size_t)(x * 0x0101010101010101u >> 56);
-}
-
-/* The least whole number not below the value, from 0 to n. */
-static int round_up(double value, int n)
-{
-    if (!(value > 0)) {
-        return 0;
+    size_t left;
+#pragma omp atomic read
+    left = cover->free_runs;
+    if (n + 1 > room->room || (double)(n + 1) > SHARE * (double)left + 16 || n + 1 > left / (size_t)cover->threads) {
+        return;
     }
-    return value >= n ? n : (int)value + ((int)value < value);
-}
-
-/* One more than the largest whole number not above the value, from 0 to n. */
-static int round_above(double value, int n)
-{
-    if (!(value >= 0)) {
-        return 0;
+    part->run = malloc((n + 1) * sizeof *part->run);
+    if (part->run) {
+        memcpy(part->run, room->found, n * sizeof *part->run);
+        part->n = (uint32_t)n;
+        part->room = (uint32_t)n + 1;
+#pragma omp atomic
+        cover->free_runs -= part->room;
     }
-    return value >= n ? n : (int)value + 1;
 }
 
-/* Bits from..to-1 of a word, cut to the word. */
-static uint64_t run_mask(int from, int to)
+/* Gives back what is no longer needed of the room of a candidate's runs. */
+static void shrink_remains(ms_cover *cover, remains *part)
 {
-    const uint64_t above = from > 0 ? (from < WORD ? UINT64_MAX << from : 0) : UINT64_MAX;
-    const uint64_t below = to < WORD ? (to > 0 ? UINT64_MAX >> (WORD - to) : 0) : UINT64_MAX;
-    return above & below;
-}
-
-static inline void keep_run(ms_cover *cover, size_t *n_found, run found)
-{
-    cover->found[*n_found < cover->most_runs ? *n_found : cover->most_runs] = found;
-    *n_found += found.bits != 0;
-}
-
-/* Counts the bits that are left in the slab of a ball that is 64 voxels wide from x = base on; takes
- * them, or adds their runs to found while there is room, and to n_found. Most rows of a ball have nothing left, and
- * are passed over before their chord is known. Voxels are chosen by the same operations, to the bit,
- * as in ms_raster by the rule CENTRE. */
-static inline size_t walk_slab(ms_cover *cover, size_t *n_found, const ms_ball *ball, int base, int take)
-{
-    const double x = ball->centre[0], y = ball->centre[1], z = ball->centre[2], r = ball->radius;
-    const int planes = round_above(z + r, cover->n[2]), shift = base % WORD;
-    size_t sum = 0;
-    for (int k = round_up(z - r, cover->n[2]); k < planes; k++) {
-        const double dz = k - z, disc = r * r - dz * dz;
-        if (!(disc >= 0)) {
-            continue;
-        }
-        const double reach = sqrt(disc);
-        const int rows = round_above(y + reach, cover->n[1]);
-        int j = round_up(y - reach, cover->n[1]);
-        size_t word = cover->words * ((size_t)j + (size_t)cover->n[1] * (size_t)k) + (size_t)(base / WORD);
-        for (; j < rows; j++, word += cover->words) {
-            uint64_t *left = cover->left + word;
-            const uint64_t window = left[0] >> shift | left[1] << 1 << (WORD - 1 - shift);
-            const double dy = j - y, rest = r * r - (dy * dy + dz * dz);
-            if (window == 0 || !(rest >= 0)) {
-                continue;
-            }
-            const double chord = sqrt(rest);
-            const uint64_t bits =
-                window & run_mask(round_up(x - chord, cover->n[0]) - base, round_above(x + chord, cover->n[0]) - base);
-            const run low = {word, bits << shift}, high = {word + 1, bits >> 1 >> (WORD - 1 - shift)};
-            if (take) {
-                left[0] &= ~low.bits;
-                left[1] &= ~high.bits;
-            } else {
-                keep_run(cover, n_found, low);
-                keep_run(cover, n_found, high);
-            }
-            sum += popcount(bits);
-        }
+    if (part->n + 1 > part->room / 2) {
+        return;
     }
-    return sum;
-}
-
-static inline size_t walk_ball(ms_cover *cover, size_t *n_found, const ms_ball *ball, int take)
-{
-    const double x = ball->centre[0], r = ball->radius;
-    const int end = round_above(x + r, cover->n[0]);
-    size_t sum = 0;
-    for (int base = round_up(x - r, cover->n[0]); base < end; base += WORD) {
-        sum += walk_slab(cover, n_found, ball, base, take);
+    ms_cover_run *smaller = realloc(part->run, (part->n + 1) * sizeof *smaller);
+    if (smaller) {
+#pragma omp atomic
+        cover->free_runs += part->room - (part->n + 1);
+        part->run = smaller;
+        part->room = part->n + 1;
     }
-    return sum;
-}
-
-/* Counts again what is left of a ball whose runs are known; forgets those of which nothing is. */
-static size_t walk_runs(const ms_cover *cover, remains *part)
-{
-    size_t sum = 0, kept = 0;
-    for (size_t m = 0; m < part->n; m++) {
-        const run left = {part->run[m].word, part->run[m].bits & cover->left[part->run[m].word]};
-        part->run[kept] = left;
-        kept += left.bits != 0;
-        sum += popcount(left.bits);
-    }
-    part->n = kept;
-    return sum;
 }
 
 /* The voxels of a candidate that are left; its runs are kept once they are few. */
@@ -168,14 +99,14 @@ static size_t count_left(ms_cover *cover, uint32_t index)
 {
     remains *part = &cover->remains[index];
     if (part->run) {
-        return walk_runs(cover, part);
+        const size_t sum = ms_cover_bits_recount(&cover->left, part->run, &part->n);
+        shrink_remains(cover, part);
+        return sum;
     }
+    ms_cover_room *room = &cover->scratch[omp_get_thread_num()];
     size_t n = 0;
-    const size_t sum = walk_ball(cover, &n, &cover->candidate[index], 0);
-    if (n <= cover->most_runs && (part->run = malloc((n + 1) * sizeof *part->run))) {
-        memcpy(part->run, cover->found, n * sizeof *part->run);
-        part->n = n;
-    }
+    const size_t sum = ms_cover_bits_walk(&cover->left, room, &n, &cover->candidate[index]);
+    keep_remains(cover, part, room, n);
     return sum;
 }
 
@@ -185,11 +116,9 @@ static void cover_ball(ms_cover *cover, uint32_t index)
     remains *part = &cover->remains[index];
     size_t none = 0;
     if (!part->run) {
-        walk_ball(cover, &none, &cover->candidate[index], 1);
+        ms_cover_bits_walk(&cover->left, NULL, &none, &cover->candidate[index]);
     }
-    for (size_t m = 0; m < part->n; m++) {
-        cover->left[part->run[m].word] &= ~part->run[m].bits;
-    }
+    ms_cover_bits_take(&cover->left, part->run, part->n);
 }
 
 /* Is a the better one? No two candidates are equal. */
@@ -233,6 +162,7 @@ static void sift_up(ms_cover *cover, size_t at)
 static void drop_first(ms_cover *cover)
 {
     remains *part = &cover->remains[cover->entry[0].index];
+    cover->free_runs += part->room;
     free(part->run);
     *part = (remains){0};
     cover->entry[0] = cover->entry[--cover->n_heap];
@@ -261,65 +191,197 @@ static void admit_overlapping(ms_cover *cover, const ms_ball *ball)
     }
 }
 
+/* As many voxels as a ball can hold: their cubes lie in a ball larger by half a cube's diagonal. */
+static heap_entry uncounted(const ms_cover *cover, uint32_t index)
+{
+    const double most = 4.2 * pow(cover->candidate[index].radius + 0.87, 3);
+    return (heap_entry){.gain = (uint64_t)fmin(most, 1e18) + 1, .index = index, .counted = NEVER};
+}
+
+/* The other candidates of a group enter the heap. */
+static void dissolve_group(ms_cover *cover, uint32_t leader)
+{
+    uint32_t member = cover->next[leader];
+    cover->next[leader] = NEVER;
+    while (member != NEVER) {
+        const uint32_t after = cover->next[member];
+        cover->next[member] = NEVER;
+        cover->entry[cover->n_heap] = uncounted(cover, member);
+        cover->n_entries++;
+        sift_up(cover, cover->n_heap++);
+        member = after;
+    }
+}
+
+/* Of a radius, from 2^class on. */
+static int find_class(double radius)
+{
+    int exponent;
+    frexp(radius, &exponent);
+    return exponent - 1;
+}
+
+/* Dissolves the groups of balls so large that within a group gains may differ by as much as the last one. */
+static void dissolve_large(ms_cover *cover, double gain)
+{
+    int keep = cover->largest_class;
+    while (keep > 0 && gain < GROUP_GAIN * 4.18879 * pow(8, keep)) {
+        keep--;
+    }
+    if (keep == cover->largest_class) {
+        return;
+    }
+    cover->largest_class = keep;
+    for (size_t c = 0; c < cover->count; c++) {
+        if (cover->next[c] != NEVER && find_class(cover->candidate[c].radius) > keep) {
+            dissolve_group(cover, (uint32_t)c);
+        }
+    }
+}
+
 static void take_first(ms_cover *cover)
 {
     const uint32_t index = cover->entry[0].index;
+    const size_t gain = cover->entry[0].gain;
     const ms_ball *ball = &cover->candidate[index];
     cover_ball(cover, index);
     drop_first(cover);
     cover->n_taken++;
-    if (cover->connected) {
+    if (cover->rule == MS_COVER_CONNECTED) {
         if (cover->n_taken == 1) {
             cover->n_heap = 0;
         }
         admit_overlapping(cover, ball);
+    } else if (cover->next) {
+        dissolve_large(cover, (double)gain);
     }
+}
+
+/* Takes the first of the heap out, to come back by return_entry. */
+static heap_entry borrow_first(ms_cover *cover)
+{
+    const heap_entry first = cover->entry[0];
+    cover->entry[0] = cover->entry[--cover->n_heap];
+    cover->entry[cover->n_heap] = first;
+    if (cover->n_heap > 1) {
+        sift_down(cover, 0);
+    }
+    return first;
+}
+
+/* Counts the best bounds again, up to so many at once as long as they are no exact counts. More than are needed may be
+ * counted, which changes no choice. */
+static void count_best(ms_cover *cover, int at_once)
+{
+    heap_entry stale[MOST_AT_ONCE];
+    int n = 0;
+    while (n < at_once && cover->n_heap > 0 && cover->entry[0].counted != cover->n_taken) {
+        stale[n++] = borrow_first(cover);
+    }
+#pragma omp parallel for schedule(dynamic, 1) num_threads(cover->threads) if (n > 1)
+    for (int e = 0; e < n; e++) {
+        stale[e].gain = count_left(cover, stale[e].index);
+        stale[e].counted = cover->n_taken;
+    }
+    for (int e = n; e-- > 0;) { /* where they were put, in the order of a stack */
+        cover->entry[cover->n_heap] = stale[e];
+        sift_up(cover, cover->n_heap++);
+    }
+}
+
+/* Is the first of the heap, whose count is exact, to be taken? If not, the heap is another one. */
+static int settle_first(ms_cover *cover)
+{
+    const heap_entry *first = &cover->entry[0];
+    if (first->gain == 0) {
+        drop_first(cover);
+        return 0;
+    }
+    if (cover->next && cover->next[first->index] != NEVER) {
+        dissolve_group(cover, first->index);
+        return 0;
+    }
+    return 1;
 }
 
 size_t ms_cover_next(size_t *which, ms_cover *cover)
 {
+    int at_once = 1;
     while (cover->n_heap > 0) {
-        heap_entry *first = &cover->entry[0];
-        if (first->counted == cover->n_taken) {
-            const size_t gain = first->gain;
-            *which = first->index;
+        if (cover->entry[0].counted != cover->n_taken) {
+            count_best(cover, at_once);
+            at_once = cover->threads > 1 && at_once < MOST_AT_ONCE ? 2 * at_once : at_once;
+        } else if (settle_first(cover)) {
+            const size_t gain = cover->entry[0].gain;
+            *which = cover->entry[0].index;
             take_first(cover);
             return gain;
-        }
-        first->gain = count_left(cover, first->index);
-        first->counted = cover->n_taken;
-        if (first->gain == 0) {
-            drop_first(cover);
-        } else {
-            sift_down(cover, 0);
         }
     }
     return 0;
 }
 
-static void fill_left(ms_cover *cover, const ms_grid *grid)
+/* A candidate and the cell of its group. */
+typedef struct group_entry {
+    uint64_t cell;
+    double radius;
+    uint32_t index;
+} group_entry;
+
+/* By cell, in it the largest first. */
+static int compare_members(const void *one, const void *other)
 {
-    const ptrdiff_t rows = (ptrdiff_t)grid->n[1] * grid->n[2];
-#pragma omp parallel for schedule(static)
-    for (ptrdiff_t row = 0; row < rows; row++) {
-        const uint8_t *inside = grid->inside + (size_t)grid->n[0] * (size_t)row;
-        uint64_t *word = cover->left + cover->words * (size_t)row;
-        for (int i = 0; i < grid->n[0]; i++) {
-            word[i / WORD] |= (uint64_t)(inside[i] != 0) << i % WORD;
-        }
+    const group_entry *a = one, *b = other;
+    if (a->cell != b->cell) {
+        return a->cell < b->cell ? -1 : 1;
     }
+    if (a->radius != b->radius) {
+        return a->radius > b->radius ? -1 : 1;
+    }
+    return a->index < b->index ? -1 : 1;
 }
 
-/* Every candidate, with as many voxels as a ball can hold: their cubes lie in a ball larger by half
- * a cube's diagonal. What they cover is counted when they first come to the top. */
-static void rank_all(ms_cover *cover, size_t count)
+static uint64_t find_group_cell(const ms_ball *ball, int class)
 {
-    for (size_t c = 0; c < count; c++) {
-        const double r = cover->candidate[c].radius;
-        if (r > 0) {
-            const double most = 4.2 * pow(r + 0.87, 3);
-            cover->entry[cover->n_entries++] =
-                (heap_entry){.gain = (uint64_t)fmin(most, 1e18) + 1, .index = (uint32_t)c, .counted = NEVER};
+    const double side = ldexp(GROUP_SIDE, class);
+    uint64_t cell = (uint64_t) class;
+    for (int a = 0; a < 3; a++) {
+        cell = cell << 19 | (uint64_t)fmin(fmax(floor(ball->centre[a] / side), 0), 0x7ffff);
+    }
+    return cell;
+}
+
+/* Puts the candidates into groups; the largest of each stands for it. */
+static ms_status form_groups(ms_cover *cover, ms_error *err)
+{
+    group_entry *entry = malloc((cover->count + 1) * sizeof *entry);
+    cover->next = malloc((cover->count + 1) * sizeof *cover->next);
+    if (!entry || !cover->next) {
+        free(entry);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to group %zu spheres; use fewer cells", cover->count);
+    }
+    for (size_t c = 0; c < cover->count; c++) {
+        const ms_ball *ball = &cover->candidate[c];
+        const int class = ball->radius >= 1 ? find_class(ball->radius) : 0;
+        cover->largest_class = class > cover->largest_class ? class : cover->largest_class;
+        entry[c] = (group_entry){find_group_cell(ball, class), ball->radius, (uint32_t)c};
+    }
+    qsort(entry, cover->count, sizeof *entry, compare_members);
+    for (size_t c = 0; c < cover->count; c++) {
+        const int follows = c + 1 < cover->count && entry[c + 1].cell == entry[c].cell;
+        cover->next[entry[c].index] = follows ? entry[c + 1].index : NEVER;
+        cover->remains[entry[c].index].is_member = c > 0 && entry[c - 1].cell == entry[c].cell;
+    }
+    free(entry);
+    return MS_OK;
+}
+
+/* Every candidate, but of groups their first. What they cover is counted when they first come to the top. */
+static void rank_all(ms_cover *cover)
+{
+    for (size_t c = 0; c < cover->count; c++) {
+        if (cover->candidate[c].radius > 0 && !cover->remains[c].is_member) {
+            cover->entry[cover->n_entries++] = uncounted(cover, (uint32_t)c);
         }
     }
     cover->n_heap = cover->n_entries;
@@ -328,39 +390,51 @@ static void rank_all(ms_cover *cover, size_t count)
     }
 }
 
-ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *candidate, size_t count, int connected,
-                         ms_error *err)
+/* Room to find runs, for each thread. */
+static int make_scratch(ms_cover *cover)
+{
+    cover->threads = omp_get_max_threads();
+    cover->scratch = calloc((size_t)cover->threads, sizeof *cover->scratch);
+    const size_t room = (size_t)(SHARE * (double)cover->free_runs) + 16;
+    int complete = cover->scratch != NULL;
+    for (int t = 0; complete && t < cover->threads; t++) {
+        cover->scratch[t] = (ms_cover_room){malloc((room + 1) * sizeof(ms_cover_run)), room};
+        complete = cover->scratch[t].found != NULL;
+    }
+    return complete;
+}
+
+ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *candidate, size_t count,
+                         ms_cover_rule rule, ms_error *err)
 {
     *out = NULL;
-    if (count > UINT32_MAX) {
+    if (count >= UINT32_MAX) {
         return ms_fail(err, MS_ERR_LIMIT,
-                       "%zu candidates for spheres, and no more than %u can be compared; use fewer "
+                       "%zu candidates for spheres, and fewer than %u can be compared; use fewer "
                        "cells",
                        count, (unsigned)UINT32_MAX);
     }
-    const size_t words = ((size_t)grid->n[0] + WORD - 1) / WORD;
-    const size_t total = words * (size_t)grid->n[1] * (size_t)grid->n[2] + 1;
-    const size_t most_runs = MAX_RUNS / (count + 1024);
     ms_cover *cover = calloc(1, sizeof *cover);
     if (cover) {
-        *cover = (ms_cover){.n = {grid->n[0], grid->n[1], grid->n[2]},
-                            .words = words,
-                            .candidate = candidate,
+        *cover = (ms_cover){.candidate = candidate,
                             .count = count,
-                            .connected = connected,
-                            .left = calloc(total, sizeof *cover->left),
+                            .rule = rule,
                             .entry = malloc((count + 1) * sizeof *cover->entry),
                             .remains = calloc(count + 1, sizeof *cover->remains),
-                            .most_runs = most_runs,
-                            .found = malloc((most_runs + 1) * sizeof *cover->found)};
+                            .free_runs = (size_t)((double)ms_grid_voxels(grid) / VOXELS_A_RUN)};
     }
-    if (!cover || !cover->left || !cover->entry || !cover->remains || !cover->found) {
+    if (!cover || !ms_cover_bits_alloc(&cover->left, grid) || !cover->entry || !cover->remains ||
+        !make_scratch(cover)) {
         ms_cover_free(cover);
         return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres on %zu voxels; use fewer cells", count,
                        ms_grid_voxels(grid));
     }
-    fill_left(cover, grid);
-    rank_all(cover, count);
+    const ms_status status = rule == MS_COVER_GROUPED ? form_groups(cover, err) : MS_OK;
+    if (status != MS_OK) {
+        ms_cover_free(cover);
+        return status;
+    }
+    rank_all(cover);
     *out = cover;
     return MS_OK;
 }
@@ -371,9 +445,13 @@ void ms_cover_free(ms_cover *cover)
         for (size_t c = 0; cover->remains && c < cover->count; c++) {
             free(cover->remains[c].run);
         }
+        for (int t = 0; cover->scratch && t < cover->threads; t++) {
+            free(cover->scratch[t].found);
+        }
+        free(cover->scratch);
         free(cover->remains);
-        free(cover->found);
-        free(cover->left);
+        free(cover->next);
+        ms_cover_bits_free(&cover->left);
         free(cover->entry);
         free(cover);
     }

@@ -12,6 +12,15 @@ MS_C_BEGIN
 /** Opaque: the voxels not yet covered, one bit each, and what each ball would cover of them. */
 typedef struct ms_cover ms_cover;
 
+/** Which candidate may be next. */
+typedef enum ms_cover_rule {
+    MS_COVER_ANY,       /* the one that covers most */
+    MS_COVER_CONNECTED, /* of those that overlap one taken before, so that every prefix is one piece */
+    MS_COVER_GROUPED    /* any, but candidates whose centres lie within a sixteenth of their radius are looked at only
+                           when the largest of them is the best, or when gains have fallen to an eighth of such a
+                           ball: nearly the same choice, counted much less often */
+} ms_cover_rule;
+
 /**
  * Starts with nothing covered. A candidate covers the voxels inside the shape whose centres it contains
  * (on the surface counts, but for rounding: ms_raster's rule MS_VOXEL_CENTRE).
@@ -19,14 +28,12 @@ typedef struct ms_cover ms_cover;
  * @param[out] out       freed by ms_cover_free; NULL on failure
  * @param      grid      the target; read here only
  * @param      candidate `count` balls, in voxels; borrowed until ms_cover_free
- * @param      connected nonzero: after the first one, only balls are taken that overlap one
- *                       taken before, so that every prefix is one piece
- * @return MS_OK; MS_ERR_NOMEM; MS_ERR_LIMIT for more than 2^32-1 candidates
+ * @return MS_OK; MS_ERR_NOMEM; MS_ERR_LIMIT for 2^32-1 candidates or more
  *
- * Cost: one pass over the grid, all cores; 40 bytes per candidate, a bit per voxel, 256 MB at most.
+ * Cost: one pass over the grid, all cores; 48 bytes per candidate, 6.5 per voxel of the grid at most.
  */
-ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *candidate, size_t count, int connected,
-                         ms_error *err);
+ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *candidate, size_t count,
+                         ms_cover_rule rule, ms_error *err);
 
 /**
  * Takes the candidate that covers the most voxels not yet covered: of equals the one of larger
@@ -34,9 +41,9 @@ ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *can
  *
  * Gains only fall, so that a stale count is a bound: only candidates whose bound beats the
  * best exact count are counted again (lazy evaluation; Minoux 1978). The choice is exactly
- * the greedy one (Yuan 2019, algorithm 2). Cost: a count takes one pass over the rows of the ball
- * that have anything left, 64 voxels at a time; each candidate is counted at least once before the
- * choice comes down to its size. One core.
+ * the greedy one (Yuan 2019, algorithm 2; but for MS_COVER_GROUPED). Cost: a count takes one pass over the rows of
+ * the ball that have anything left, 64 voxels at a time; each candidate is counted at least once before the
+ * choice comes down to its size. All cores: the best bounds are counted several at once, which changes no choice.
  *
  * @param[out] which index of the candidate
  * @return how many voxels it covers that were not covered; 0: no candidate covers any, and

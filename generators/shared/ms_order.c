@@ -17,7 +17,7 @@ ms_status ms_order_by_gain(ms_clump *clump, const ms_ball *ball, size_t count, c
     ms_cover *cover = NULL;
     uint8_t *taken = calloc(count + 1, sizeof *taken);
     size_t which;
-    ms_status status = taken ? ms_cover_build(&cover, &run->target->grid, ball, count, 0, err)
+    ms_status status = taken ? ms_cover_build(&cover, &run->target->grid, ball, count, MS_COVER_ANY, err)
                              : ms_fail(err, MS_ERR_NOMEM, "no memory to order %zu spheres", count);
     while (status == MS_OK && ms_cover_next(&which, cover) > 0) {
         taken[which] = 1;

@@ -29,18 +29,29 @@ enum { MS_CAPS_BLOCK = 8 };
 typedef struct ms_caps {
     float axis[3][MS_CAPS_BLOCK]; /* to the other centres, in radii */
     float least[MS_CAPS_BLOCK];
+    float length[MS_CAPS_BLOCK]; /* of the axis */
+    float root[MS_CAPS_BLOCK];   /* of length^2 - least^2: length times the sine of the cap's angle */
 } ms_caps;
 
 /** Sorts the ends of `count` balls. */
 void ms_caps_sort(ms_caps_window *s);
 
+/** A neighbour, and in which class of sizes its cap is. */
+typedef struct ms_caps_near {
+    uint32_t ball;
+    int class;
+} ms_caps_near;
+
 /**
- * What other spheres cover of one's surface.
+ * What other spheres cover of one's surface: the largest caps first, about, so that what is covered is soon known.
  *
+ * @param[out] near  room for count
  * @param[out] block room for count / MS_CAPS_BLOCK + 1
+ * @param      turn  its columns are the axes of the frame in which normals are given
  * @return how many blocks
  */
-size_t ms_caps_find(ms_caps *block, const ms_caps_window *s, uint32_t self);
+size_t ms_caps_find(ms_caps *block, ms_caps_near *near, const ms_caps_window *s, uint32_t self,
+                    const double turn[3][3]);
 
 /** Is the place with this normal covered? The block that covers it is tried first next time. */
 static inline int ms_caps_cover(size_t *first, const ms_caps *block, size_t blocks, const float normal[3])
@@ -60,5 +71,14 @@ static inline int ms_caps_cover(size_t *first, const ms_caps *block, size_t bloc
     }
     return 0;
 }
+
+/**
+ * Which caps matter for the normals within an angle of a centre.
+ *
+ * @param[out] out    those that reach there, packed; room for `blocks`
+ * @param      cosine of the angle, and its sine
+ * @return how many blocks; -1: one cap covers them all (if in doubt, it does not)
+ */
+int ms_caps_narrow(ms_caps *out, const ms_caps *block, size_t blocks, const float centre[3], float cosine, float sine);
 
 #endif

@@ -4,6 +4,13 @@
 #include <stdlib.h>
 
 #include "base/ms_vector.h"
+#include "ms_surface_tally.h"
+
+/* Voxels of the view up to which a count says less than the exposed surface. */
+static const double FEW = 100;
+
+/* A sphere is idle whose loss is less than this part of the mismatch that is a sphere's share. */
+static const double IDLE = 0.05;
 
 /* Counts all spheres and their images on the grid; `all` is how many there are. */
 static ms_status count_all(ms_coverage_count *out, size_t *all, const ms_ball *ball, size_t count,
@@ -43,9 +50,10 @@ static void put_back(ms_coverage_count *o, const ms_ball image[8], size_t images
     }
 }
 
-/* What the mismatch would grow by without each sphere; of images together, for each of them: as they overlap. */
-static ms_status find_losses(int64_t *loss, const ms_ball *ball, size_t count, const ms_coarse_view *view,
-                             const ms_mirror *m, ms_error *err)
+/* What the mismatch would grow by without each sphere, by voxels of the view; of images together, for each of them: as
+ * they overlap. */
+static ms_status count_losses(double *loss, const ms_ball *ball, size_t count, const ms_coarse_view *view,
+                              const ms_mirror *m, ms_error *err)
 {
     ms_coverage_count o;
     size_t all = 0;
@@ -55,16 +63,42 @@ static ms_status find_losses(int64_t *loss, const ms_ball *ball, size_t count, c
 #pragma omp parallel for schedule(dynamic, 4)
     for (size_t b = 0; b < alone; b++) {
         const ms_ball coarse = ms_coarse_view_ball(view, &ball[b]);
-        loss[b] = ms_coverage_count_loss(&o, &coarse);
+        loss[b] = (double)ms_coverage_count_loss(&o, &coarse);
     }
     for (size_t b = 0; b < paired; b++) {
         ms_ball image[8];
         size_t images;
-        loss[b] = take_away(&o, image, &images, &ball[b], view, m);
+        loss[b] = (double)take_away(&o, image, &images, &ball[b], view, m);
         put_back(&o, image, images);
-        loss[b] /= (int64_t)images;
+        loss[b] /= (double)images;
     }
     ms_coverage_count_close(&o);
+    return status;
+}
+
+/* Does the exposed surface tell losses better than voxels? Not of spheres whose own images cover them. */
+static int is_surface_sharper(const ms_surface_fit *fit)
+{
+    const int *across = fit->mirror.across;
+    return ms_signed_distance_is_exact(fit->field) && !(across[0] || across[1] || across[2]);
+}
+
+/* The same in voxels of the target; where few are counted, by the exposed surface. */
+static ms_status find_losses(double *loss, const ms_ball *ball, size_t count, const ms_coarse_view *view,
+                             const ms_surface_fit *fit, ms_error *err)
+{
+    const double cell = (double)view->step * view->step * view->step;
+    double *fine = malloc((count + 1) * sizeof *fine);
+    ms_status status = fine ? count_losses(loss, ball, count, view, &fit->mirror, err)
+                            : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", count);
+    const int exact = is_surface_sharper(fit);
+    if (status == MS_OK && exact) {
+        status = ms_surface_tally(fine, NULL, fit, ball, count, err);
+    }
+    for (size_t b = 0; b < count && status == MS_OK; b++) {
+        loss[b] = exact && fabs(loss[b]) < FEW ? fine[b] : loss[b] * cell;
+    }
+    free(fine);
     return status;
 }
 
@@ -93,7 +127,7 @@ static int do_dropped_overlap(const ms_ball *a, const ms_ball *b)
 }
 
 /* The cheapest sphere that overlaps none of those dropped already and has no more than that many images. */
-static size_t find_cheapest(const ms_ball *ball, size_t count, const int64_t *loss, size_t images, const ms_mirror *m,
+static size_t find_cheapest(const ms_ball *ball, size_t count, const double *loss, size_t images, const ms_mirror *m,
                             const ms_ball *dropped, size_t n_dropped)
 {
     size_t best = SIZE_MAX;
@@ -109,13 +143,14 @@ static size_t find_cheapest(const ms_ball *ball, size_t count, const int64_t *lo
     return best;
 }
 
-ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_coarse_view *view, const ms_mirror *m,
-                            ms_error *err)
+ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_coarse_view *view,
+                            const ms_surface_fit *fit, ms_error *err)
 {
+    const ms_mirror *m = &fit->mirror;
     ms_ball *dropped = malloc((most + 1) * sizeof *dropped);
-    int64_t *loss = malloc((*count + 1) * sizeof *loss);
+    double *loss = malloc((*count + 1) * sizeof *loss);
     size_t n_dropped = 0, gone = 0, b;
-    ms_status status = dropped && loss ? find_losses(loss, ball, *count, view, m, err)
+    ms_status status = dropped && loss ? find_losses(loss, ball, *count, view, fit, err)
                                        : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
     while (status == MS_OK && gone < most &&
            (b = find_cheapest(ball, *count, loss, most - gone, m, dropped, n_dropped)) != SIZE_MAX) {
@@ -133,14 +168,16 @@ ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_
 }
 
 /* Once; a sphere that stays may become idle when a later one goes. Returns how many went. */
-static size_t drop_idle(ms_ball *ball, size_t *count, ms_coverage_count *o, const ms_coarse_view *view,
-                        const ms_mirror *m)
+static size_t drop_idle(ms_ball *ball, size_t *count, ms_coverage_count *o, const double *loss, double least,
+                        const ms_coarse_view *view, const ms_mirror *m)
 {
     size_t kept = 0;
     for (size_t b = 0; b < *count; b++) {
         ms_ball image[8];
         size_t images;
-        if (take_away(o, image, &images, &ball[b], view, m) > 0) {
+        if (loss[b] > least) {
+            ball[kept++] = ball[b];
+        } else if (take_away(o, image, &images, &ball[b], view, m) > 0) {
             put_back(o, image, images);
             ball[kept++] = ball[b];
         }
@@ -150,14 +187,23 @@ static size_t drop_idle(ms_ball *ball, size_t *count, ms_coverage_count *o, cons
     return gone;
 }
 
-ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_grid *grid, const ms_mirror *m, ms_error *err)
+/* By voxels; where the surface is known better than by them, also by what is exposed. */
+ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_surface_fit *fit, ms_error *err)
 {
-    const ms_coarse_view whole = {.step = 1, .grid = *grid}; /* borrows the voxels */
-    ms_coverage_count o;
-    size_t all;
-    const ms_status status = count_all(&o, &all, ball, *count, &whole, m, err);
-    while (status == MS_OK && drop_idle(ball, count, &o, &whole, m) > 0) {
+    const ms_coarse_view whole = {.step = 1, .grid = fit->field->target->grid}; /* borrows the voxels */
+    double *loss = calloc(*count + 1, sizeof *loss), mismatch = 0;
+    size_t all, gone = 1;
+    ms_coverage_count o = {0};
+    ms_status status = loss ? count_all(&o, &all, ball, *count, &whole, &fit->mirror, err)
+                            : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
+    while (status == MS_OK && gone > 0) {
+        if (is_surface_sharper(fit)) {
+            status = ms_surface_tally(loss, &mismatch, fit, ball, *count, err);
+        }
+        const double least = IDLE * mismatch / (double)*count;
+        gone = status == MS_OK ? drop_idle(ball, count, &o, loss, least, &whole, &fit->mirror) : 0;
     }
     ms_coverage_count_close(&o);
+    free(loss);
     return status;
 }

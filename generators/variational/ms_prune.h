@@ -4,7 +4,7 @@
 
 #include "ms_coarse_view.h"
 #include "ms_coverage_count.h"
-#include "ms_mirror.h"
+#include "ms_surface_fit.h"
 
 /**
  * Drops the spheres whose loss raises |S xor U| least. Of those dropped at once no two overlap, as the loss of one
@@ -18,14 +18,14 @@
  *
  * Cost: ms_coverage_count_open, and the voxels of all spheres; all cores.
  */
-ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_coarse_view *view, const ms_mirror *m,
-                            ms_error *err);
+ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_coarse_view *view,
+                            const ms_surface_fit *fit, ms_error *err);
 
 /**
  * Drops spheres without which |S xor U| is no larger: inside others, or where nothing is left to gain.
  *
  * @return, cost: as above
  */
-ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_grid *grid, const ms_mirror *m, ms_error *err);
+ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_surface_fit *fit, ms_error *err);
 
 #endif

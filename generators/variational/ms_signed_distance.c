@@ -15,6 +15,11 @@ void ms_signed_distance_free(ms_signed_distance *field)
     }
 }
 
+int ms_signed_distance_is_exact(const ms_signed_distance *field)
+{
+    return field->target->mesh && field->target->closed;
+}
+
 static size_t node_index(const ms_signed_distance *field, int i, int j, int k)
 {
     return (size_t)i + (size_t)field->n[0] * ((size_t)j + (size_t)field->n[1] * (size_t)k);
@@ -69,20 +74,29 @@ ms_status ms_signed_distance_alloc(ms_signed_distance *field, const ms_target *t
     for (size_t v = 0; v < nodes; v++) {
         field->phi[v] = NAN;
     }
-    const ms_status status = target->mesh && target->closed ? MS_OK : fill_from_voxels(field, err);
+    const ms_status status = ms_signed_distance_is_exact(field) ? MS_OK : fill_from_voxels(field, err);
     if (status != MS_OK) {
         ms_signed_distance_free(field);
     }
     return status;
 }
 
+/* Farther from the surface than half a voxel's diagonal, all of the voxel about a node is on one side. */
 static float compute_node(const ms_signed_distance *field, size_t node)
 {
     const ms_grid *grid = &field->target->grid;
-    const size_t nx = (size_t)field->n[0], ny = (size_t)field->n[1], step = (size_t)field->step;
-    const double at[3] = {(double)(node % nx * step), (double)(node / nx % ny * step), (double)(node / nx / ny * step)};
+    const size_t nx = (size_t)field->n[0], ny = (size_t)field->n[1];
+    const int i = (int)(node % nx) * field->step, j = (int)(node / nx % ny) * field->step,
+              k = (int)(node / nx / ny) * field->step;
+    const double at[3] = {i, j, k};
     double place[3];
     ms_grid_place(place, grid, at);
+    if (i < grid->n[0] && j < grid->n[1] && k < grid->n[2]) {
+        const double away = ms_closest_distance(NULL, field->target->closest, place, HUGE_VAL) / grid->h;
+        if (away > 0.9) {
+            return (float)(grid->inside[ms_grid_index(grid, i, j, k)] ? -away : away);
+        }
+    }
     return (float)(ms_closest_signed_distance(field->target->closest, place) / grid->h);
 }
 
@@ -100,19 +114,46 @@ static inline double node_value(const ms_signed_distance *field, size_t node)
     return (double)phi;
 }
 
-double ms_signed_distance_at(const ms_signed_distance *field, const double place[3])
+/* Weights of the four nodes about a place between the second and the third: Catmull-Rom, exact for parabolas. */
+static void cubic_weights(double w[4], double t)
+{
+    w[0] = t * (t * (2 - t) - 1) / 2;
+    w[1] = 1 + t * t * (3 * t - 5) / 2;
+    w[2] = t * (1 + t * (4 - 3 * t)) / 2;
+    w[3] = t * t * (t - 1) / 2;
+}
+
+/* Nodes beyond the border are those on it. */
+static double look_up_cubic(const ms_signed_distance *field, const int at[3], const double part[3])
+{
+    size_t index[3][4];
+    double w[3][4], sum = 0;
+    size_t stride = 1;
+    for (int a = 0; a < 3; a++) {
+        cubic_weights(w[a], part[a]);
+        for (int i = 0; i < 4; i++) {
+            const int node = at[a] + i - 1;
+            index[a][i] = stride * (size_t)(node < 0 ? 0 : node < field->n[a] ? node : field->n[a] - 1);
+        }
+        stride *= (size_t)field->n[a];
+    }
+    for (int k = 0; k < 4; k++) {
+        for (int j = 0; j < 4; j++) {
+            const size_t row = index[2][k] + index[1][j];
+            double along = 0;
+            for (int i = 0; i < 4; i++) {
+                along += w[0][i] * node_value(field, row + index[0][i]);
+            }
+            sum += w[2][k] * w[1][j] * along;
+        }
+    }
+    return sum;
+}
+
+static double look_up_linear(const ms_signed_distance *field, const int at[3], const double part[3])
 {
     const size_t nx = (size_t)field->n[0], stride[3] = {1, nx, nx * (size_t)field->n[1]};
-    size_t node = 0;
-    double part[3], beyond = 0;
-    for (int a = 0; a < 3; a++) {
-        const double x = place[a] / field->step, last = field->n[a] - 1;
-        const double inside = x < 0 ? 0 : x > last ? last : x;
-        const int at = (int)(inside < last - 1 ? inside : last - 1);
-        part[a] = inside - at;
-        node += (size_t)at * stride[a];
-        beyond += (x - inside) * (x - inside);
-    }
+    const size_t node = (size_t)at[0] + (size_t)at[1] * stride[1] + (size_t)at[2] * stride[2];
     double along[4];
     for (int k = 0; k < 4; k++) { /* the edges along x */
         const size_t from = node + (size_t)(k & 1) * stride[1] + (size_t)(k >> 1) * stride[2];
@@ -120,6 +161,20 @@ double ms_signed_distance_at(const ms_signed_distance *field, const double place
         along[k] = low + part[0] * (high - low);
     }
     const double front = along[0] + part[1] * (along[1] - along[0]), back = along[2] + part[1] * (along[3] - along[2]);
-    const double phi = front + part[2] * (back - front);
+    return front + part[2] * (back - front);
+}
+
+double ms_signed_distance_at(const ms_signed_distance *field, const double place[3])
+{
+    int at[3];
+    double part[3], beyond = 0;
+    for (int a = 0; a < 3; a++) {
+        const double x = place[a] / field->step, last = field->n[a] - 1;
+        const double inside = x < 0 ? 0 : x > last ? last : x;
+        at[a] = (int)(inside < last - 1 ? inside : last - 1);
+        part[a] = inside - at[a];
+        beyond += (x - inside) * (x - inside);
+    }
+    const double phi = field->cubic ? look_up_cubic(field, at, part) : look_up_linear(field, at, part);
     return beyond > 0 ? phi + sqrt(beyond) * field->step : phi;
 }

@@ -10,6 +10,7 @@ MS_C_BEGIN
 typedef struct ms_signed_distance {
     const ms_target *target; /* borrowed */
     int step;                /* between nodes */
+    int cubic;               /* nonzero: looked up by cubic polynomials, else linearly */
     int n[3];                /* nodes: node i lies on voxel i * step */
     float *phi;              /* at the nodes; NAN: not asked for yet */
 } ms_signed_distance;
@@ -33,6 +34,9 @@ ms_status ms_signed_distance_alloc(ms_signed_distance *field, const ms_target *t
  * Threads may share a field. Cost: 8 loads, and once per node ms_closest_signed_distance.
  */
 double ms_signed_distance_at(const ms_signed_distance *field, const double place[3]);
+
+/** Nonzero if it knows the surface better than voxels do: that of a closed mesh. */
+int ms_signed_distance_is_exact(const ms_signed_distance *field);
 
 void ms_signed_distance_free(ms_signed_distance *field);
 

@@ -5,16 +5,17 @@
 #include <stdint.h>
 
 #include "ms_bounds.h"
+#include "ms_lattice.h"
 #include "ms_mirror.h"
 
 /** A fit in progress. */
 typedef struct ms_surface_fit {
     const ms_signed_distance *field; /* borrowed */
     ms_bounds bounds;
-    ms_mirror mirror; /* each sphere stands for its images, too; zero: for itself */
-    int points;       /* per sphere */
-    uint64_t seed;    /* of the turns of the points */
-    uint64_t turns;   /* made so far */
+    ms_mirror mirror;    /* each sphere stands for its images, too; zero: for itself */
+    ms_lattice *lattice; /* borrowed; of the points on each sphere */
+    uint64_t seed;       /* of the turns of the points */
+    uint64_t turns;      /* made so far */
 } ms_surface_fit;
 
 /**

@@ -181,6 +181,7 @@ const ms_generator ms_generator_variational = {
     .summary = "spheres fitted to the surface where they are exposed, so that the mismatch itself is least",
     .source = "mskit (2026); objective: Buchele et al., MSS eq. 2",
     .nested = 0,
+    .bytes_per_voxel = 7,
     .options = OPTIONS,
     .generate = generate_by_variational,
 };

@@ -10,18 +10,19 @@
 #include "ms_coverage_count.h"
 #include "ms_pattern_search.h"
 #include "ms_prune.h"
+#include "ms_surface_tally.h"
 #include "ms_variational_start.h"
 
-/* What was measured at the numbers below: one of them changed at a time, mean D over five seeds of a femur with 70
- * spheres and a bunny with 30, at 100 cells, one thread; 0.0212 in 0.68 s and 0.0450 in 0.35 s as they are. */
+/* What was measured at the numbers below: mean D over four or five seeds of a femur with 70 spheres and a bunny with
+ * 30, at 100 cells, one thread. 0.0212 and 0.0417 as they are. */
 
-/* Spheres at the start: so many times those asked for, and some more. Without: 0.0217, 0.0487; 1.5: 0.0212, 0.0436;
- * 2: 0.0225, 0.0432: which is best depends on the shape. 2 more: 0.0462 to 0.0450 for the bunny. */
+/* Spheres at the start: so many times those asked for, and some more, with a cover to start from that is a quarter
+ * finer than it was: 1.25 and 2 more: 0.0212, 0.0450; 1.15 and 12: 0.0213, 0.0418; 1.15 and 20: 0.0215, 0.0421; 1.25
+ * and 8: 0.0214, 0.0432. Which is best depends on the shape. */
 static const double SURPLUS = 1.25;
-enum { MORE = 2 };
+enum { MORE = 12 };
 
-/* Part of the surplus that is dropped at a time. All at once: 0.0219 in 0.50 s, 0.0490; half of it: no better, 0.77
- * s. */
+/* Part of the surplus that is dropped at a time. 0.13: 0.0216, 0.0432. */
 static const double DROP = 0.1;
 
 /* Part of the spheres that a round adds, one round after the other: what one cannot better, another may.
@@ -37,15 +38,13 @@ static const double LEAST_RADIUS = 0.5;
  * 0.8 of it. */
 enum { FIELD_STEP = 2 };
 
-/* Mean distance between the surfaces of spheres and shape, in voxels, below which the field's own error matters.
- * Ellipsoid, 40 spheres, 150 cells: 0.00054 with 0 as with 0.03, 0.00056 where it is always sharpened: no gain was
- * seen. */
-static const double SHARP = 0.03;
+/* Mean distance between the surfaces of spheres and shape, in voxels, below which voxels are too coarse: the field is
+ * looked up by cubic polynomials, and the mismatch is the one by the exposed surface. */
+static const double FINE = 0.1;
 
-/* Of the fits, and of the search within bounds. Half or twice as many: D within 0.5 %, below what the seed changes;
- * 10 rounds of the search with protrusion 0: D 0.0507 and not 0.0502, 40: the same as 20. The damping of the first
- * three fits changed by 0.2 or 0.3 at its start, or not falling at all in the first: within 0.6 %. */
-enum { START_STEPS = 40, DROP_STEPS = 20, LONG_STEPS = 100, LAST_STEPS = 60, SEARCH_ROUNDS = 20 };
+/* Of the fits, and of the search within bounds. Twice as many in the first two: 0.0211; 100 and 60 in the last two: D
+ * within 0.5 %. 10 rounds of the search with protrusion 0: D 0.0507 and not 0.0502, 40: the same as 20. */
+enum { START_STEPS = 40, DROP_STEPS = 15, LONG_STEPS = 80, LAST_STEPS = 50, SEARCH_ROUNDS = 20 };
 
 /* Of idle spheres. Ellipsoid with 100 spheres at 60 cells: none 0.00049 in 0.71 s, three 0.00048 in 0.95 s. */
 enum { REPAIRS = 3 };
@@ -62,6 +61,7 @@ typedef struct solver {
     float *walled; /* the target's distances, cut down to those to planes; NULL without planes */
     ms_coarse_view coarse;
     ms_signed_distance field;
+    ms_lattice lattice;
     ms_surface_fit fit;
     double steps, planned; /* of the fit, done and in all: for who watches */
     size_t count, wanted;  /* spheres that are fitted; asked for, mirror images among them */
@@ -74,6 +74,7 @@ static void free_solver(solver *s)
 {
     ms_coarse_view_free(&s->coarse);
     ms_signed_distance_free(&s->field);
+    ms_lattice_free(&s->lattice);
     free(s->walled);
     free(s->ball);
     free(s->best);
@@ -126,50 +127,68 @@ static ms_status fit_spheres(solver *s, int steps, double from, double to, ms_er
     return ms_surface_fit_steps(&s->fit, s->ball, s->count, steps, damping, err);
 }
 
-static ms_status count_mismatch(int64_t *out, solver *s, ms_error *err)
+/* |S xor U| in voxels, by their count and by the exposed surface. */
+typedef struct mismatch {
+    double count, surface;
+} mismatch;
+
+static ms_status find_mismatch(mismatch *out, solver *s, ms_error *err)
 {
     ms_coverage_count o;
-    const ms_status status = ms_coverage_count_open(&o, &s->run->target->grid, s->all, expand_images(s), err);
-    *out = o.mismatch;
+    ms_status status = ms_coverage_count_open(&o, &s->run->target->grid, s->all, expand_images(s), err);
+    *out = (mismatch){.count = (double)o.mismatch};
     ms_coverage_count_close(&o);
+    if (status == MS_OK && ms_signed_distance_is_exact(&s->field)) {
+        status = ms_surface_tally(NULL, &out->surface, &s->fit, s->ball, s->count, err);
+    }
     return status;
+}
+
+/* Is it so small that the count of voxels is chance? */
+static int is_fine(const solver *s, const mismatch *m)
+{
+    const ms_target *target = s->run->target;
+    const double h = target->grid.h;
+    return ms_signed_distance_is_exact(&s->field) && m->count < FINE * ms_mesh_area(target->mesh) / (h * h);
+}
+
+static int is_improved(const solver *s, const mismatch *after, const mismatch *before)
+{
+    return is_fine(s, before) ? is_fine(s, after) && after->surface < before->surface : after->count < before->count;
 }
 
 /* A fit that is taken back where it makes the mismatch larger. Of spheres that may not stick out, the
  * mismatch says nothing before they are confined. */
 static ms_status improve_fit(solver *s, int steps, double from, double to, ms_error *err)
 {
-    int64_t before = 0, after = 0;
+    mismatch before = {0}, after = {0};
     if (ms_bounds_are_set(&s->fit.bounds)) {
         return fit_spheres(s, steps, from, to, err);
     }
     memcpy(s->best, s->ball, s->count * sizeof *s->ball);
-    ms_status status = count_mismatch(&before, s, err);
+    ms_status status = find_mismatch(&before, s, err);
     if (status == MS_OK) {
         status = fit_spheres(s, steps, from, to, err);
     }
     if (status == MS_OK) {
-        status = count_mismatch(&after, s, err);
+        status = find_mismatch(&after, s, err);
     }
-    if (status == MS_OK && after >= before) {
+    if (status == MS_OK && !is_improved(s, &after, &before)) {
         memcpy(s->ball, s->best, s->count * sizeof *s->ball);
     }
     return status;
 }
 
-/* For spheres that fit so well that the look-up's error would show: nodes at every voxel. */
+/* For spheres that fit so well that the error of a linear look-up would show. */
 static ms_status sharpen_field(solver *s, ms_error *err)
 {
-    const ms_target *target = s->run->target;
-    int64_t left = 0;
-    if (s->field.step == 1 || !target->mesh || !target->closed) {
+    mismatch left = {0};
+    if (s->field.cubic || !ms_signed_distance_is_exact(&s->field)) {
         return MS_OK;
     }
-    ms_status status = count_mismatch(&left, s, err);
-    const double h = target->grid.h, area = ms_mesh_area(target->mesh) / (h * h);
-    if (status == MS_OK && (double)left < SHARP * area) {
-        ms_signed_distance_free(&s->field);
-        status = ms_signed_distance_alloc(&s->field, target, 1, err);
+    ms_status status = find_mismatch(&left, s, err);
+    if (status == MS_OK && is_fine(s, &left)) {
+        s->field.cubic = 1;
     }
     return status;
 }
@@ -197,11 +216,14 @@ static size_t all_to_coarse(solver *s)
 static ms_status prune_surplus(solver *s, ms_error *err)
 {
     size_t count = count_with_images(s);
-    const size_t surplus = count > s->wanted ? count - s->wanted : 0, most = (size_t)ceil(DROP * (double)surplus);
+    const size_t surplus = count > s->wanted ? count - s->wanted : 0, part = (size_t)ceil(DROP * (double)surplus);
+    /* Whole sets of images, or all that can go lie on planes. */
+    const int *across = s->settings->mirror.across;
+    const size_t set = (size_t)1 << (across[0] + across[1] + across[2]), most = part > set ? part : set;
     ms_status status = MS_OK;
     while (status == MS_OK && count > s->wanted) {
         const size_t gone = count - s->wanted < most ? count - s->wanted : most;
-        status = ms_prune_cheapest(s->ball, &s->count, gone, &s->coarse, &s->settings->mirror, err);
+        status = ms_prune_cheapest(s->ball, &s->count, gone, &s->coarse, &s->fit, err);
         if (status == MS_OK) {
             status = fit_spheres(s, DROP_STEPS, 0.5, 0.3, err);
         }
@@ -321,10 +343,13 @@ static ms_status begin_solver(solver *s, const ms_run *run, const ms_variational
         status = ms_signed_distance_alloc(&s->field, run->target,
                                           s->coarse.step < FIELD_STEP ? s->coarse.step : FIELD_STEP, err);
     }
+    if (status == MS_OK) {
+        status = ms_lattice_alloc(&s->lattice, settings->points, err);
+    }
     s->fit = (ms_surface_fit){.field = &s->field,
                               .bounds = settings->bounds,
                               .mirror = settings->mirror,
-                              .points = settings->points,
+                              .lattice = &s->lattice,
                               .seed = run->seed};
     s->fit.bounds.least = fmax(find_least_radius(run), LEAST_RADIUS);
     return status;
@@ -333,11 +358,11 @@ static ms_status begin_solver(solver *s, const ms_run *run, const ms_variational
 /* Adds spheres, drops those above the number that is wanted; taken back where it makes the mismatch no smaller. */
 static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
 {
-    int64_t before = 0, after = 0;
+    mismatch before = {0}, after = {0};
     const size_t count = s->count;
     ms_ball *kept = malloc((count + 1) * sizeof *kept);
     ms_status status =
-        kept ? count_mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
+        kept ? find_mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     if (status == MS_OK) {
         memcpy(kept, s->ball, count * sizeof *kept);
         status = add_to_cover(s, more, err);
@@ -355,9 +380,9 @@ static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
         status = search_within_bounds(s, err);
     }
     if (status == MS_OK) {
-        status = count_mismatch(&after, s, err);
+        status = find_mismatch(&after, s, err);
     }
-    if (status == MS_OK && after >= before) {
+    if (status == MS_OK && !is_improved(s, &after, &before)) {
         memcpy(s->ball, kept, count * sizeof *kept);
         s->count = count;
     }
@@ -368,12 +393,11 @@ static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
 /* Puts idle spheres where the union leaves most, and drops those that are idle there, too. */
 static ms_status replace_idle(solver *s, ms_error *err)
 {
-    const ms_grid *grid = &s->run->target->grid;
-    ms_status status = ms_prune_idle(s->ball, &s->count, grid, &s->settings->mirror, err);
+    ms_status status = ms_prune_idle(s->ball, &s->count, &s->fit, err);
     for (int round = 0; round < REPAIRS && status == MS_OK && count_with_images(s) < s->wanted; round++) {
         status = add_and_prune(s, s->wanted - count_with_images(s), err);
         if (status == MS_OK) {
-            status = ms_prune_idle(s->ball, &s->count, grid, &s->settings->mirror, err);
+            status = ms_prune_idle(s->ball, &s->count, &s->fit, err);
         }
     }
     return status;
@@ -387,6 +411,9 @@ static ms_status run_stages(solver *s, ms_error *err)
     s->planned = count_steps(s, surplus);
     if (surplus > 0) {
         status = fit_spheres(s, START_STEPS, 0.8, 0.2, err);
+    }
+    if (status == MS_OK) {
+        status = sharpen_field(s, err);
     }
     if (status == MS_OK) {
         status = prune_surplus(s, err);

@@ -116,7 +116,7 @@ class Voxels(Case):
         """3.9 voxels across a side."""
         self.write("bar.obj", box_obj((0, 0, 0), (4, 1, 1.3)))
         grid = ("--cells", 3)
-        methods = ("-g", "mss", "-g", "mss:order=gain")
+        methods = ("-g", "mss", "-g", "mss:variant=paper")
         for command in (("generate", "bar.obj", "-g", "mss", "-n", 2, *grid, "-o", "a.csv"),
                         ("compare", "bar.obj", *methods, "-n", "2,3", *grid, "-o", "b.csv"),
                         ("scene", "bar.obj", "-g", "mss", "--knee", 0.9, "--max-spheres", 4, *grid),
@@ -128,7 +128,7 @@ class Voxels(Case):
 
     def test_stability_says_it_once_for_each_resolution(self):
         self.write("bar.obj", box_obj((0, 0, 0), (4, 1, 1.25)))
-        result = self.mskit("stability", "bar.obj", "-g", "mss", "-g", "mss:order=gain", "-n", 2, "--cells", 4, "--runs", 2,
+        result = self.mskit("stability", "bar.obj", "-g", "mss", "-g", "mss:variant=paper", "-n", 2, "--cells", 4, "--runs", 2,
                             "--perturb", "resolution", "-o", "c.csv")
         said = re.findall(r"bar.obj: the voxels hold .*now ([0-9.]+)", result.err)
         self.assertGreater(len(said), 0, str(result))

@@ -13,7 +13,7 @@ MASSES = ("epsilon products_epsilon centre_epsilon optimal least most error_mass
           "error_products seconds")
 PARTICLE = "scale density mass centre inertia principal_moments principal_axes"
 SECONDS = "read voxelize distance generate score cpu"
-RECORD = ("generator options.spacing options.boost options.radius-offset options.order options.confine options.plane "
+RECORD = ("generator options.variant options.spacing options.boost options.polish options.radius-offset options.order options.confine options.plane "
           "seed until.spheres stopped_by")
 
 
@@ -62,7 +62,8 @@ class Columns(Case):
         self.assertEqual(self.header("compare.csv"),
                          "shape,checksum,label,generator,options,seed,cells,n_asked,n,stopped_by,eta,dice,coverage,"
                          "overshoot,off_volume,protrusion_max,protrusion_rms,gap_max,gap_rms,smallest_radius_ratio,"
-                         "pieces,inertia_union,inertia_corrected,epsilon,products_epsilon,centre_epsilon,voxel_size,"
+                         "pieces,inertia_union,expected,inertia_corrected,epsilon,products_epsilon,centre_epsilon,"
+                         "voxel_size,"
                          "seconds_read,seconds_voxelize,seconds_distance,seconds_generate,seconds_score,"
                          "seconds_correct,repeats,peak_memory_kb,threads,beside,version,cause")
 
@@ -77,12 +78,13 @@ class Columns(Case):
         run = self.generate("grain.stl", "-g", "mss", "-n", 5, "--cells", 15, "-o", "c.json")
         record = (RECORD.split() + under("input", TARGET) + under("scores", SCORES) + under("seconds", SECONDS) +
                   ["threads", "peak_memory_kb"])
-        self.assertEqual(keys(run), record)
+        expected = under("expected", "dice factor")
+        self.assertEqual(keys(run), record + expected)
         written = json.loads(self.read("c.json"))
         self.assertEqual(keys(written), ["mskit"] + record + ["columns", "spheres"])
         self.assertEqual(written["columns"], ["x", "y", "z", "r"])
         run = self.generate("grain.stl", "-g", "mss", "-n", 5, "--cells", 15, "--correct", "--density", 1000)
-        self.assertEqual(keys(run), record + under("particle", PARTICLE) + under("masses", MASSES))
+        self.assertEqual(keys(run), record + under("particle", PARTICLE) + under("masses", MASSES) + expected)
 
     def test_json_of_score(self):
         self.clump()
@@ -155,7 +157,7 @@ class Columns(Case):
     def test_json_of_scene(self):
         run = self.mskit("scene", "grain.stl", "-g", "mss", "--knee", 0.3, "--max-spheres", 4, "--cells", 10,
                          "--json").json
-        options = "spacing boost radius-offset order confine plane"
+        options = "variant spacing boost polish radius-offset order confine plane"
         self.assertEqual(keys(run), ["generator"] + under("options", options) +
                          "seed max_spheres min_radius goal.knee particles spheres mean_dice least_gain slack".split() +
                          under("even", "each spheres mean_dice") + under("smallest", "radius shape") +

@@ -218,7 +218,7 @@ class Stop(Generate):
 class Options(Generate):
     def test_set_is_the_same_as_the_flag(self):
         plain = self.clump("-n", "12")
-        for name, value in (("spacing", "4"), ("radius-offset", "-0.5"), ("order", "gain"), ("plane", "0,0,1,0.2"),
+        for name, value in (("spacing", "9"), ("boost", "1"), ("variant", "paper"), ("plane", "0,0,1,0.2"),
                             ("plane", "-1,0,0,-0.1")):
             with self.subTest(option=name, value=value):
                 by_set = self.clump("-n", "12", "--set", f"{name}={value}")

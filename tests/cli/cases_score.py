@@ -171,7 +171,8 @@ class Judge(Score):
         judge = self.judge()
         for kind, longest, n in (("ellipsoid", 4, 8), ("torus", 8, 16)):
             name = self.shape(kind)
-            self.mskit("generate", name, "-g", "mss", "--cells", "50", "-n", n, "--radius-offset", "0.6", "-o", "c.csv")
+            self.mskit("generate", name, "-g", "mss", "--cells", "50", "-n", n, "--variant", "paper", "--radius-offset",
+                       "0.6", "-o", "c.csv")
             ours = self.score("c.csv", "--voxel-size", longest / 200, target=name)
             printed = subprocess.run([judge, name, "c.csv", "200"], cwd=self.dir, check=True, timeout=TIMEOUT,
                                      stdout=subprocess.PIPE).stdout

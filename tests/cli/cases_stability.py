@@ -213,7 +213,7 @@ class Stability(Case):
         """Every run stands in the chart of all; the lines over the noise are ratios of D, from the least level up."""
         if not shutil.which("gnuplot"):
             self.skipTest("gnuplot is not installed here")
-        rows = self.rows("speck", "cube", "-g", "mss:order=gain", "-n", "3", "--cells", "8", "--runs", "3", "--perturb",
+        rows = self.rows("speck", "cube", "-g", "mss:variant=paper", "-n", "3", "--cells", "8", "--runs", "3", "--perturb",
                          "noise", "--perturb", "seed", "--charts", "charts")
         stems = ("1-mss-order-gain-all", "1-mss-order-gain-noise")
         self.assertEqual(sorted(os.listdir(self.path("charts"))),
@@ -233,7 +233,7 @@ class Stability(Case):
                 self.assert_close(x, float(row["level"]), 1e-8, "level")
                 self.assert_close(y, float(row["dice"]) / unchanged[name], 1e-8, "ratio")
         svg = self.read("charts/1-mss-order-gain-noise.svg").decode()
-        for word in ("mss:order=gain", "speck", "cube", "amplitude of the noise / d_eq",
+        for word in ("mss:variant=paper", "speck", "cube", "amplitude of the noise / d_eq",
                      "D / D of the unchanged shape"):
             self.assertIn(word, svg)
 
@@ -257,7 +257,7 @@ class Stability(Case):
         for args, says in (
             (("-g", "nonsense"), ("'nonsense'", "mss", "fcm")),
             (("-g", "mss:nonsense=1"), ("'nonsense'", "spacing")),
-            (("-g", "mss:boost=9"), ("boost", "1 to 5")),
+            (("-g", "mss:boost=10"), ("boost", "0 to 9")),
             (("-g", "mss:plane"), ("a,b,c,d",)),
             (("-g", "mss:plane=0,0,1,0"), ("mss", "planes")),
             (("-g", "mss", "-g", "mss"), ("mss is there twice",)),

@@ -101,7 +101,9 @@ static void check_problem(const problem *p, int connected)
     ms_ball taken[MAX_BALLS];
     size_t n_taken = 0, expected, which = 0, wanted = 0;
     memcpy(left, p->grid.inside, ms_grid_voxels(&p->grid));
-    assert_int_equal(ms_cover_build(&cover, &p->grid, p->ball, p->count, connected, &err), MS_OK);
+    assert_int_equal(
+        ms_cover_build(&cover, &p->grid, p->ball, p->count, connected ? MS_COVER_CONNECTED : MS_COVER_ANY, &err),
+        MS_OK);
     do {
         expected = brute_next(&wanted, p, left, taken, n_taken, connected);
         assert_int_equal(ms_cover_next(&which, cover), expected);
@@ -127,6 +129,45 @@ static void every_choice_is_the_greedy_one(void **state)
         check_problem(&p, 1);
         ms_grid_free(&p.grid);
     }
+}
+
+/* With many balls in a group none is taken twice, nothing that any holds is left, and the first is nearly the best. */
+static void groups_lose_nothing(void **state)
+{
+    (void)state;
+    enum { COUNT = 300 };
+    static const double ORIGIN[3] = {0, 0, 0};
+    static const int N[3] = {70, 40, 40};
+    ms_ball ball[COUNT];
+    ms_grid grid;
+    ms_cover *cover[2];
+    ms_error err;
+    size_t total[2] = {0}, which, first[2], gain;
+    assert_int_equal(ms_grid_alloc(&grid, N, 1, ORIGIN, &err), MS_OK);
+    memset(grid.inside, 1, ms_grid_voxels(&grid));
+    srand(8);
+    for (int b = 0; b < COUNT; b++) { /* clusters of centres half a voxel wide */
+        for (int a = 0; a < 3; a++) {
+            ball[b].centre[a] = (a ? 12 : 15) + 9 * ((b >> a) & 1) + 0.5 * uniform();
+        }
+        ball[b].radius = 11 + 0.3 * uniform();
+    }
+    for (int grouped = 0; grouped < 2; grouped++) {
+        uint8_t taken[COUNT] = {0};
+        int n = 0;
+        assert_int_equal(
+            ms_cover_build(&cover[grouped], &grid, ball, COUNT, grouped ? MS_COVER_GROUPED : MS_COVER_ANY, &err),
+            MS_OK);
+        while ((gain = ms_cover_next(&which, cover[grouped])) > 0) {
+            first[grouped] = n++ ? first[grouped] : gain;
+            total[grouped] += gain;
+            assert_int_equal(taken[which]++, 0);
+        }
+        ms_cover_free(cover[grouped]);
+    }
+    assert_int_equal(total[0], total[1]);
+    assert_true(first[1] <= first[0] && (double)first[1] > 0.9 * (double)first[0]);
+    ms_grid_free(&grid);
 }
 
 /* By the rule of voxel centres the union on the grid grows by just what each ball is said to add. */
@@ -175,6 +216,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_choice_is_the_greedy_one),
+        cmocka_unit_test(groups_lose_nothing),
         cmocka_unit_test(gains_are_those_of_the_raster),
         cmocka_unit_test(nothing_to_cover),
     };

@@ -1,0 +1,144 @@
+#include "ms_expectation.h"
+
+#include <math.h>
+
+#include "ms_json_object.h"
+#include "ms_report.h"
+
+/* Numbers of spheres: those of a table, and those of JSON. */
+static const double NUMBERS[] = {5, 10, 20, 50, 100, 200, 500, 1000},
+                    ALL_NUMBERS[] = {5, 10, 15, 20, 30, 40, 50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800, 1000},
+                    MISMATCHES[] = {0.1, 0.05, 0.02, 0.01};
+enum { N_NUMBERS = sizeof NUMBERS / sizeof *NUMBERS, N_MISMATCHES = sizeof MISMATCHES / sizeof *MISMATCHES };
+static const char *const KINDS[] = {[MS_EXPECT_FREE] = "free", [MS_EXPECT_INSCRIBED] = "inscribed"};
+
+/* A clump of this mismatch holds too little of its shape to stand for it. */
+static const double HOPELESS = 0.2;
+
+ms_status ms_expectation_find(ms_expect *expect, const ms_input *input, ms_error *err)
+{
+    *expect = (ms_expect){0};
+    if (input->mesh.n_triangles == 0) {
+        return ms_expect_grid(expect, &input->target.grid, err);
+    }
+    if (!input->report.closed || input->solid.overlapping) {
+        return ms_fail(err, MS_ERR_SHAPE, "%s: of a mesh that %s nothing can be expected", input->path,
+                       input->report.closed ? "passes through itself" : "is open");
+    }
+    return ms_expect_mesh(expect, &input->mesh, err);
+}
+
+ms_status ms_expectation_try(ms_expect *expect, const ms_input *input, ms_error *err)
+{
+    const ms_status status = ms_expectation_find(expect, input, err);
+    return status == MS_ERR_SHAPE ? MS_OK : status;
+}
+
+double ms_expectation_dice(const ms_expect *expect, size_t spheres)
+{
+    return expect->curve[MS_EXPECT_FREE].count > 0 ? ms_expect_dice(expect, MS_EXPECT_FREE, (double)spheres)
+                                                   : (double)NAN;
+}
+
+void ms_expectation_say(FILE *stream, const ms_expect *expect, const ms_metrics *metrics)
+{
+    const double dice = ms_expectation_dice(expect, metrics->spheres);
+    if (dice > 0) {
+        fprintf(stream,
+                "  D is %.2f times the least D expected of %zu spheres, %.2g (an estimate: mskit info --expect)\n",
+                metrics->score.dice / dice, metrics->spheres, dice);
+    }
+}
+
+json_t *ms_expectation_factor_json(const ms_expect *expect, const ms_metrics *metrics)
+{
+    const double dice = ms_expectation_dice(expect, metrics->spheres);
+    return isnan(dice) ? json_null()
+                       : json_pack("{s:o,s:o}", "dice", ms_report_number(dice), "factor",
+                                   ms_report_number(metrics->score.dice / dice));
+}
+
+/* A number of spheres is whole, and no better known than to three digits. */
+static double round_number(double spheres)
+{
+    const double unit = pow(10, fmax(0, floor(log10(spheres)) - 2));
+    return isfinite(spheres) ? ceil(spheres / unit - 1e-9) * unit : spheres;
+}
+
+static double find_number(const ms_expect *expect, int kind, double dice)
+{
+    return round_number(ms_expect_spheres(expect, (ms_expect_kind)kind, dice));
+}
+
+void ms_expectation_print(FILE *stream, const ms_expect *expect)
+{
+    fprintf(stream,
+            "  expected least D by number of spheres (an estimate, not a bound: from 10 spheres on the least\n"
+            "  D known of measured shapes was 1/%g to %g times it)\n  %-22s",
+            MS_EXPECT_RANGE, MS_EXPECT_RANGE, "    spheres");
+    for (int i = 0; i < N_NUMBERS; i++) {
+        fprintf(stream, " %7g", NUMBERS[i]);
+    }
+    for (int kind = 0; kind < MS_EXPECT_KINDS; kind++) {
+        fprintf(stream, "\n      %-18s", KINDS[kind]);
+        for (int i = 0; i < N_NUMBERS; i++) {
+            fprintf(stream, " %7.2g", ms_expect_dice(expect, (ms_expect_kind)kind, NUMBERS[i]));
+        }
+    }
+    fprintf(stream, "\n  spheres expected by D\n  %-22s", "    D");
+    for (int i = 0; i < N_MISMATCHES; i++) {
+        fprintf(stream, " %7g", MISMATCHES[i]);
+    }
+    fprintf(stream, " least sensible");
+    for (int kind = 0; kind < MS_EXPECT_KINDS; kind++) {
+        fprintf(stream, "\n      %-18s", KINDS[kind]);
+        for (int i = 0; i < N_MISMATCHES; i++) {
+            fprintf(stream, " %7g", find_number(expect, kind, MISMATCHES[i]));
+        }
+        fprintf(stream, " %14g", round_number(ms_expect_least_spheres(expect, (ms_expect_kind)kind)));
+    }
+    putc('\n', stream);
+}
+
+/* A pair of figures, for free spheres and for inscribed ones, beside what it belongs to. */
+static json_t *pair_json(const char *name, double value, double free, double inscribed)
+{
+    json_t *pair = json_pack("{s:o,s:o}", KINDS[0], ms_report_number(free), KINDS[1], ms_report_number(inscribed));
+    if (name) {
+        ms_json_object_set(&pair, name, ms_report_number(value));
+    }
+    return pair;
+}
+
+json_t *ms_expectation_json(const ms_expect *expect)
+{
+    json_t *dice = json_array(), *spheres = json_array();
+    for (size_t i = 0; i < sizeof ALL_NUMBERS / sizeof *ALL_NUMBERS; i++) {
+        const double n = ALL_NUMBERS[i];
+        ms_json_object_append(&dice, pair_json("spheres", n, ms_expect_dice(expect, MS_EXPECT_FREE, n),
+                                               ms_expect_dice(expect, MS_EXPECT_INSCRIBED, n)));
+    }
+    for (int i = 0; i < N_MISMATCHES; i++) {
+        ms_json_object_append(&spheres, pair_json("dice", MISMATCHES[i], find_number(expect, 0, MISMATCHES[i]),
+                                                  find_number(expect, 1, MISMATCHES[i])));
+    }
+    return json_pack("{s:o,s:o,s:o,s:[f,f]}", "dice", dice, "spheres", spheres, "least_spheres",
+                     pair_json(NULL, 0, round_number(ms_expect_least_spheres(expect, MS_EXPECT_FREE)),
+                               round_number(ms_expect_least_spheres(expect, MS_EXPECT_INSCRIBED))),
+                     "range", 1 / MS_EXPECT_RANGE, MS_EXPECT_RANGE);
+}
+
+void ms_expectation_warn(const ms_expect *expect, const char *name, size_t n)
+{
+    const double dice = ms_expectation_dice(expect, n);
+    if (isnan(dice)) {
+        return;
+    }
+    const double least = ms_expect_least_spheres(expect, MS_EXPECT_FREE);
+    if ((double)n < least && dice / MS_EXPECT_RANGE > HOPELESS) {
+        fprintf(stderr,
+                "%s: for %zu spheres the least D to be expected is about %.2g: most of the shape is too thin for so "
+                "few; %g would bring it to about %.2g\n",
+                name, n, dice, round_number(least), ms_expect_dice(expect, MS_EXPECT_FREE, least));
+    }
+}

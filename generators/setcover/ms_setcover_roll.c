@@ -1,0 +1,161 @@
+#include "ms_setcover_roll.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "base/ms_vector.h"
+
+/* All in voxels of the lattice. */
+static const double SLACK = 1;    /* by as much the field may rise too little before the rolling ends: its own error */
+static const double CLOSE = 0.25; /* the end of the way is found within this */
+static const double SHORT = 1.2;  /* and by this much it is left out: what the field sees too late */
+static const double CELL = 0.25;  /* spheres whose centres are in a cell of this side are as good as one */
+static const double BORDER = 0.5; /* the field counts from the voxels outside, the surface is this much nearer */
+
+/* The field between its points. */
+static double read_depth(const ms_setcover_field *f, const double q[3])
+{
+    double part[3], sum = 0;
+    size_t low[3];
+    for (int a = 0; a < 3; a++) {
+        const double inside = fmin(fmax(q[a], 0), f->n[a] - 1.0);
+        low[a] = (size_t)fmin(inside, f->n[a] - 2.0);
+        part[a] = inside - (double)low[a];
+    }
+    const size_t row = (size_t)f->n[0], plane = row * (size_t)f->n[1];
+    const float *at = f->depth + low[0] + row * low[1] + plane * low[2];
+    for (size_t c = 0; c < 4; c++) {
+        const float *x = at + (c & 1) * row + (c >> 1) * plane;
+        const double weight = (c & 1 ? part[1] : 1 - part[1]) * (c >> 1 ? part[2] : 1 - part[2]);
+        sum += weight * ((double)x[0] + part[0] * ((double)x[1] - (double)x[0]));
+    }
+    return sum;
+}
+
+static double depth_along(const ms_setcover_field *f, const double q[3], const double u[3], double s)
+{
+    const double at[3] = {q[0] + s * u[0], q[1] + s * u[1], q[2] + s * u[2]};
+    return read_depth(f, at);
+}
+
+/* How far the field rises along u as a distance does that it grows from there: by as much as the way, but for SLACK.
+ * What is missing never falls along the way, so that it is halved. */
+static double find_end(const ms_setcover_field *f, const double q[3], const double u[3], double depth)
+{
+    double sure = 0, beyond = 1;
+    while (depth + beyond - depth_along(f, q, u, beyond) < SLACK) {
+        sure = beyond;
+        beyond *= 2;
+    }
+    while (beyond - sure > CLOSE) {
+        const double middle = (sure + beyond) / 2;
+        *(depth + middle - depth_along(f, q, u, middle) < SLACK ? &sure : &beyond) = middle;
+    }
+    return sure;
+}
+
+/* The way in, away from the nearest face: a unit vector on the lattice. @return the distance to that face */
+static double choose_way(double u[3], const ms_setcover_field *f, const ms_setcover_start *start,
+                         const ms_closest *closest)
+{
+    double nearest[3], away[3];
+    const double distance = ms_closest_distance(nearest, closest, start->from, HUGE_VAL);
+    for (int a = 0; a < 3; a++) {
+        away[a] = (start->from[a] - nearest[a]) / distance;
+    }
+    for (int a = 0; a < 3; a++) {
+        u[a] = ms_dot(away, f->axis[a]);
+    }
+    return distance;
+}
+
+static void roll_in(ms_setcover_start *start, const ms_setcover_field *f, const ms_closest *closest)
+{
+    double q[3], from[3], u[3], s = 0;
+    for (int a = 0; a < 3; a++) {
+        from[a] = start->from[a] - f->origin[a];
+    }
+    for (int a = 0; a < 3; a++) {
+        q[a] = ms_dot(from, f->axis[a]) / f->h;
+    }
+    const double distance = choose_way(u, f, start, closest);
+    if (distance > 0) {
+        s = fmax(0, find_end(f, q, u, distance / f->h + BORDER) - SHORT);
+    }
+    start->radius = distance + s * f->h;
+    for (int a = 0; a < 3; a++) {
+        start->centre[a] = start->from[a];
+        for (int b = 0; b < 3; b++) {
+            start->centre[a] += s > 0 ? s * f->h * u[b] * f->axis[b][a] : 0;
+        }
+    }
+}
+
+/* A sphere and the cell of its centre. */
+typedef struct cell_entry {
+    uint64_t cell;
+    double radius;
+    size_t index;
+} cell_entry;
+
+/* By cell, in it the largest first. */
+static int compare_rolled(const void *one, const void *other)
+{
+    const cell_entry *a = one, *b = other;
+    if (a->cell != b->cell) {
+        return a->cell < b->cell ? -1 : 1;
+    }
+    if (a->radius != b->radius) {
+        return a->radius > b->radius ? -1 : 1;
+    }
+    return a->index < b->index ? -1 : 1;
+}
+
+static uint64_t find_end_cell(const ms_setcover_field *f, const double centre[3])
+{
+    uint64_t cell = 0;
+    const double from[3] = {centre[0] - f->origin[0], centre[1] - f->origin[1], centre[2] - f->origin[2]};
+    for (int a = 0; a < 3; a++) {
+        const double at = floor(ms_dot(from, f->axis[a]) / (f->h * CELL) + 0.5);
+        cell = cell << 21 | (uint64_t)fmin(fmax(at, 0), 0x1fffff);
+    }
+    return cell;
+}
+
+static void keep_largest(ms_setcover_start *start, size_t *count, cell_entry *entry, const ms_setcover_field *f)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < *count; i++) {
+        entry[i] = (cell_entry){find_end_cell(f, start[i].centre), start[i].radius, i};
+    }
+    qsort(entry, *count, sizeof *entry, compare_rolled);
+    for (size_t i = 1; i < *count; i++) {
+        if (entry[i].cell == entry[i - 1].cell) {
+            start[entry[i].index].radius = 0;
+        }
+    }
+    for (size_t i = 0; i < *count; i++) {
+        if (start[i].radius > 0) {
+            start[kept++] = start[i];
+        }
+    }
+    *count = kept;
+}
+
+ms_status ms_setcover_roll(ms_setcover_start *start, size_t *count, const ms_setcover_field *field,
+                           const ms_closest *closest, ms_error *err)
+{
+    const ptrdiff_t all = (ptrdiff_t)*count;
+    cell_entry *entry = malloc((*count + 1) * sizeof *entry);
+    if (!entry) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu candidate spheres; use a smaller skeleton-deq", *count);
+    }
+#pragma omp parallel for schedule(dynamic, 64)
+    for (ptrdiff_t i = 0; i < all; i++) {
+        roll_in(&start[i], field, closest);
+    }
+    keep_largest(start, count, entry, field);
+    free(entry);
+    return MS_OK;
+}

@@ -1,0 +1,285 @@
+/* The parts of the variational generator: signed distances, losses, fits, bounds. */
+#include "support/variational_samples.h"
+
+#include <string.h>
+
+#include "variational/ms_coverage_count.h"
+#include "variational/ms_exposed.h"
+#include "variational/ms_pattern_search.h"
+#include "variational/ms_prune.h"
+#include "variational/ms_surface_fit.h"
+#include "variational/ms_surface_tally.h"
+
+/* Exact at the nodes, linear between them, and beyond the lattice never too small. */
+static void field_is_the_distance(void **state)
+{
+    (void)state;
+    ms_mesh mesh;
+    ms_target target;
+    ms_signed_distance field;
+    ms_error err;
+    make_shape(&mesh, "ball", "r=1 fineness=60");
+    make_target(&target, &mesh, 30, MS_VOXEL_HALF);
+    const ms_sphere unit = {.radius = 1};
+    const ms_ball ball = ms_grid_ball(&target.grid, &unit);
+    const double *middle = ball.centre, radius = ball.radius;
+    for (int step = 1; step <= 3; step++) {
+        assert_int_equal(ms_signed_distance_alloc(&field, &target, step, &err), MS_OK);
+        for (int t = 0; t < 300; t++) {
+            const double p[3] = {uniform(-3, 37), uniform(-3, 37), uniform(-3, 37)};
+            const double truth = sqrt(ms_squared_distance(p, middle)) - radius;
+            const double away = fmax(2, sqrt(ms_squared_distance(p, middle)));
+            /* Linear: off by up to 3/8 step^2 times the curvature; beyond the lattice by the corner's way. */
+            const int beyond = p[0] < 0 || p[1] < 0 || p[2] < 0 || p[0] > 33 || p[1] > 33 || p[2] > 33;
+            const double phi = ms_signed_distance_at(&field, p);
+            assert_true(phi > truth - 0.4 * step * step / away - 0.05);
+            assert_true(phi < truth + 0.8 * step * step / away + 0.05 + 3 * beyond);
+        }
+        ms_signed_distance_free(&field);
+    }
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
+static void losses_are_those_of_brute_force(void **state)
+{
+    (void)state;
+    ms_grid grid;
+    ms_error err;
+    const int n[3] = {13, 11, 9};
+    const double origin[3] = {0, 0, 0};
+    assert_int_equal(ms_grid_alloc(&grid, n, 1, origin, &err), MS_OK);
+    for (int t = 0; t < 100; t++) {
+        ms_ball ball[6];
+        ms_coverage_count o;
+        for (size_t v = 0; v < ms_grid_voxels(&grid); v++) {
+            grid.inside[v] = rand() % 2 != 0;
+        }
+        for (int b = 0; b < 6; b++) {
+            ball[b] = (ms_ball){{uniform(-3, 16), uniform(-3, 14), uniform(-3, 12)}, uniform(0, 6)};
+        }
+        assert_int_equal(ms_coverage_count_open(&o, &grid, ball, 5, &err), MS_OK);
+        const int64_t all = brute_mismatch(&grid, ball, 5);
+        assert_int_equal(o.mismatch, all);
+        assert_int_equal(ms_coverage_count_loss(&o, &ball[4]), brute_mismatch(&grid, ball, 4) - all);
+        assert_int_equal(ms_coverage_count_gain(&o, &ball[5]), all - brute_mismatch(&grid, ball, 6));
+        ms_coverage_count_add(&o, &ball[5]);
+        assert_int_equal(o.mismatch, brute_mismatch(&grid, ball, 6));
+        ms_coverage_count_remove(&o, &ball[5]);
+        ms_coverage_count_remove(&o, &ball[4]);
+        assert_int_equal(o.mismatch, brute_mismatch(&grid, ball, 4));
+        ms_coverage_count_clear(&grid, ball, 4);
+        assert_int_equal(brute_mismatch(&grid, ball, 0), (int64_t)ms_grid_count(&grid));
+        for (int b = 0; b < 4; b++) {
+            ms_ball alone = ball[b];
+            ms_coverage_count empty;
+            assert_int_equal(ms_coverage_count_open(&empty, &grid, NULL, 0, &err), MS_OK);
+            assert_true(ms_coverage_count_gain(&empty, &alone) <= 0); /* nothing of it is left */
+            ms_coverage_count_close(&empty);
+        }
+        ms_coverage_count_close(&o);
+    }
+    ms_grid_free(&grid);
+}
+
+/* What is left is no worse, and all of it is needed; the cheapest sphere goes first. */
+static void spheres_are_dropped_by_their_loss(void **state)
+{
+    (void)state;
+    ms_target target = {.mesh = NULL};
+    ms_grid grid;
+    ms_error err;
+    const int n[3] = {13, 11, 9};
+    const double origin[3] = {0, 0, 0};
+    assert_int_equal(ms_grid_alloc(&grid, n, 1, origin, &err), MS_OK);
+    target.grid = grid;
+    const ms_signed_distance field = {.target = &target}; /* of voxels: only counts matter */
+    const ms_surface_fit fit = {.field = &field};
+    for (int t = 0; t < 100; t++) {
+        ms_ball ball[8], few[8];
+        size_t count = 8;
+        for (size_t v = 0; v < ms_grid_voxels(&grid); v++) {
+            grid.inside[v] = rand() % 3 != 0;
+        }
+        for (int b = 0; b < 8; b++) {
+            ball[b] = (ms_ball){{uniform(0, 12), uniform(0, 10), uniform(0, 8)}, uniform(0, 5)};
+        }
+        const int64_t before = brute_mismatch(&grid, ball, 8);
+        assert_int_equal(ms_prune_idle(ball, &count, &fit, &err), MS_OK);
+        const int64_t after = brute_mismatch(&grid, ball, count);
+        assert_true(after <= before);
+        int64_t least = INT64_MAX;
+        for (size_t gone = 0; gone < count; gone++) {
+            memcpy(few, ball, sizeof few);
+            few[gone] = ball[count - 1];
+            const int64_t without = brute_mismatch(&grid, few, count - 1);
+            assert_true(without > after);
+            least = without < least ? without : least;
+        }
+        if (count > 0) {
+            const ms_coarse_view whole = {.step = 1, .grid = grid};
+            assert_int_equal(ms_prune_cheapest(ball, &count, 1, &whole, &fit, &err), MS_OK);
+            assert_int_equal(brute_mismatch(&grid, ball, count), least);
+        }
+    }
+    ms_grid_free(&grid);
+}
+
+/* The mismatch falls along the step of a fit: finite differences of the voxels' count. */
+static void step_lowers_the_mismatch(void **state)
+{
+    const ms_target *target = *state;
+    ms_signed_distance field;
+    ms_error err;
+    ms_lattice lattice;
+    int fell = 0, tried = 0;
+    assert_int_equal(ms_lattice_alloc(&lattice, 256, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_alloc(&field, target, 1, &err), MS_OK);
+    for (int t = 0; t < 40; t++) {
+        ms_ball ball[3], before[3];
+        const double damping[2] = {0.3, 0.3};
+        for (int b = 0; b < 3; b++) {
+            do {
+                for (int a = 0; a < 3; a++) {
+                    ball[b].centre[a] = uniform(0, target->grid.n[a]);
+                }
+            } while (ms_signed_distance_at(&field, ball[b].centre) > -3);
+            ball[b].radius = uniform(0.5, 1.5) * -ms_signed_distance_at(&field, ball[b].centre);
+        }
+        memcpy(before, ball, sizeof ball);
+        ms_surface_fit fit = {
+            .field = &field, .bounds = {.least = 0.5, .protrusion = HUGE_VAL}, .lattice = &lattice, .seed = 1};
+        assert_int_equal(ms_surface_fit_steps(&fit, ball, 3, 1, damping, &err), MS_OK);
+        if (memcmp(before, ball, sizeof ball) != 0) {
+            tried++;
+            fell += brute_mismatch(&target->grid, ball, 3) < brute_mismatch(&target->grid, before, 3);
+        }
+    }
+    assert_true(tried > 30);
+    ms_lattice_free(&lattice);
+    assert_true(fell >= tried - 2); /* a sphere and its neighbour may both fill the same gap */
+    ms_signed_distance_free(&field);
+}
+
+static void search_never_raises_the_mismatch(void **state)
+{
+    const ms_target *target = *state;
+    ms_signed_distance field;
+    ms_error err;
+    ms_ball ball[8];
+    assert_int_equal(ms_signed_distance_alloc(&field, target, 1, &err), MS_OK);
+    ms_surface_fit fit = {.field = &field, .bounds = {.least = 0.5, .protrusion = 1.5}};
+    for (int b = 0; b < 8; b++) {
+        do {
+            for (int a = 0; a < 3; a++) {
+                ball[b].centre[a] = uniform(0, target->grid.n[a]);
+            }
+        } while (ms_signed_distance_at(&field, ball[b].centre) > -2);
+        ball[b].radius = 50;
+    }
+    ms_bounds_confine(&fit.bounds, &field, ball, 8);
+    int64_t before = brute_mismatch(&target->grid, ball, 8);
+    const int64_t first = before;
+    for (int round = 0; round < 6; round++) {
+        assert_int_equal(ms_pattern_search(ball, 8, &target->grid, &fit, 1, &err), MS_OK);
+        const int64_t after = brute_mismatch(&target->grid, ball, 8);
+        assert_true(after <= before);
+        before = after;
+        for (int b = 0; b < 8; b++) {
+            assert_true(ball[b].radius <= ms_bounds_most_radius(&fit.bounds, &field, ball[b].centre) + 1e-9);
+        }
+    }
+    assert_true(before < first);
+    ms_signed_distance_free(&field);
+}
+
+/* Places of each level that lie in no other sphere, and no others. */
+static void exposed_places_are_those_of_brute_force(void **state)
+{
+    (void)state;
+    enum { BALLS = 40 };
+    ms_lattice lattice;
+    ms_exposed exposed;
+    ms_error err;
+    ms_caps_end end[BALLS];
+    ms_ball ball[BALLS];
+    ms_caps_window window = {.count = BALLS, .ball = ball, .end = end};
+    assert_int_equal(ms_lattice_alloc(&lattice, 192, &err), MS_OK);
+    assert_true(ms_exposed_alloc(&exposed, &lattice, BALLS));
+    for (int t = 0; t < 60; t++) {
+        const int level = t % MS_LATTICE_LEVELS;
+        for (int b = 0; b < BALLS; b++) {
+            ball[b] = (ms_ball){{uniform(0, 6), uniform(0, 6), uniform(0, 6)}, uniform(0.1, 3)};
+        }
+        ms_caps_sort(&window);
+        ms_lattice_turn(&lattice, (unsigned long)t);
+        for (uint32_t self = 0; self < BALLS; self++) {
+            assert_int_equal(ms_exposed_find(&exposed, &lattice, &window, self, level, 0), level);
+            int count = 0, near = 0;
+            for (int p = 0; p < lattice.level[level].points; p++) {
+                double u[3], place[3], least = HUGE_VAL;
+                ms_lattice_normal(u, &lattice, lattice.level[level].direction[p]);
+                for (int c = 0; c < 3; c++) {
+                    place[c] = ball[self].centre[c] + ball[self].radius * u[c];
+                }
+                for (uint32_t b = 0; b < BALLS; b++) {
+                    const double away = sqrt(ms_squared_distance(place, ball[b].centre)) - ball[b].radius;
+                    least = b == self ? least : fmin(least, away);
+                }
+                count += least > 0;
+                near += fabs(least) < 1e-5; /* floats may say either */
+            }
+            assert_true(abs(exposed.count - count) <= near);
+        }
+    }
+    ms_exposed_free(&exposed);
+    ms_lattice_free(&lattice);
+}
+
+/* Of balls about as large as the shape, against the volumes of caps and shells. */
+static void tally_is_the_volume(void **state)
+{
+    (void)state;
+    ms_mesh mesh;
+    ms_target target;
+    ms_signed_distance field;
+    ms_lattice lattice;
+    ms_error err;
+    make_shape(&mesh, "ball", "r=1 fineness=120");
+    make_target(&target, &mesh, 30, MS_VOXEL_HALF);
+    assert_int_equal(ms_signed_distance_alloc(&field, &target, 1, &err), MS_OK);
+    assert_int_equal(ms_lattice_alloc(&lattice, 512, &err), MS_OK);
+    field.cubic = 1;
+    const ms_surface_fit fit = {.field = &field, .lattice = &lattice};
+    const double h = target.grid.h, cell = h * h * h, pi = acos(-1.0);
+    double loss[2], mismatch;
+    const ms_sphere smaller = {.radius = 0.99}, beside = {.centre = {0.05, 0, 0}, .radius = 0.99};
+    ms_ball ball[2] = {ms_grid_ball(&target.grid, &smaller), ms_grid_ball(&target.grid, &beside)};
+    assert_int_equal(ms_surface_tally(loss, &mismatch, &fit, ball, 1, &err), MS_OK);
+    assert_true(fabs(mismatch * cell / (4 * pi * 0.99 * 0.99 * 0.01) - 1) < 0.03);
+    assert_true(fabs(loss[0] * cell / (4 * pi / 3 * 0.99 * 0.99 * 0.99) - 1) < 0.01);
+    /* Moved by d, a lune of pi r^2 d - pi d^3 / 12 is added: what lies outside of the shape, all but the shell between,
+     * counts against it. */
+    assert_int_equal(ms_surface_tally(loss, &mismatch, &fit, ball, 2, &err), MS_OK);
+    const double lune = pi * (0.99 * 0.99 * 0.05 - 0.05 * 0.05 * 0.05 / 12);
+    assert_true(-loss[1] * cell < lune && -loss[1] * cell > lune - 2 * 2 * pi * 0.01);
+    assert_true(loss[0] * cell > 0.95 * lune && loss[0] * cell < 1.01 * lune);
+    ms_lattice_free(&lattice);
+    ms_signed_distance_free(&field);
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(exposed_places_are_those_of_brute_force),
+        cmocka_unit_test(tally_is_the_volume),
+        cmocka_unit_test(field_is_the_distance),
+        cmocka_unit_test(losses_are_those_of_brute_force),
+        cmocka_unit_test(spheres_are_dropped_by_their_loss),
+        cmocka_unit_test(step_lowers_the_mismatch),
+        cmocka_unit_test(search_never_raises_the_mismatch),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
