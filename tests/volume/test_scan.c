@@ -174,7 +174,7 @@ static void labels_of_unequal_spacings_are_the_nearest(void **state)
     }
 }
 
-/* Of values that are linear in space, the voxels above a number are those of the formula, up to the outermost centres. */
+/* Of values that are linear in space, voxels above a number are those of the formula, up to the outermost centres. */
 static void grey_values_of_unequal_spacings_are_linear(void **state)
 {
     ms_scan_options options = ms_scan_defaults();
