@@ -147,7 +147,7 @@ static ms_status make_labels(ms_scan *scan, const grey_range *range, int connect
 
 ms_status ms_scan_store_segment(ms_scan *scan, const ms_scan_options *options, size_t max_voxels, ms_error *err)
 {
-    grey_pass pass = {.range = {INFINITY, -INFINITY}};
+    grey_pass pass = {.range = {HUGE_VAL, -HUGE_VAL}};
     ms_status status = ms_scan_store_check_count(scan, max_voxels, err);
     if (status == MS_OK) {
         status = walk_values(&pass, scan->store, err);
