@@ -121,9 +121,8 @@ static ms_status read_shape(shape *s, const char *path, const ms_generate_reques
         status = ms_mesh_read(&s->mesh, path, err);
     } else {
         return ms_fail(err, MS_ERR_FORMAT,
-                       "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
-                       ".npy, .mhd, .mha, .nrrd and .nhdr",
-                       path);
+                       "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from %s",
+                       path, ms_volume_endings());
     }
     if (status != MS_OK) {
         return status;

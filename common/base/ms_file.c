@@ -1,3 +1,5 @@
+/* madvise and MAP_ANONYMOUS are not in POSIX. */
+#define _DEFAULT_SOURCE
 #include "ms_file.h"
 
 #include <ctype.h>
@@ -6,6 +8,7 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -46,37 +49,55 @@ static ms_status read_all(ms_bytes *bytes, int fd, size_t size, const char *path
     return MS_OK;
 }
 
-ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err)
+/* Opens a regular file. */
+static ms_status open_regular(int *fd, size_t *size, const char *path, ms_error *err)
 {
-    return ms_file_read_start(bytes, path, SIZE_MAX, err);
-}
-
-ms_status ms_file_read_start(ms_bytes *bytes, const char *path, size_t most, ms_error *err)
-{
-    ms_status status = MS_OK;
     struct stat info;
-    *bytes = (ms_bytes){0};
     /* Not to wait here for the writer of a pipe: it is refused below. */
-    int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-    if (fd < 0 || fstat(fd, &info) != 0) {
-        status = ms_file_fail_open(err, path, errno);
-        goto cleanup;
+    *fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (*fd < 0 || fstat(*fd, &info) != 0) {
+        return ms_file_fail_open(err, path, errno);
     }
     if (S_ISDIR(info.st_mode)) {
-        status = ms_fail(err, MS_ERR_IO, "%s: is a folder; name a file in it", path);
-        goto cleanup;
+        return ms_fail(err, MS_ERR_IO, "%s: is a folder; name a file in it", path);
     }
     if (!S_ISREG(info.st_mode)) {
-        status =
-            ms_fail(err, MS_ERR_IO, "%s: is a device or a pipe; name a regular file, or - for standard input", path);
-        goto cleanup;
+        return ms_fail(err, MS_ERR_IO, "%s: is a device or a pipe; name a regular file, or - for standard input", path);
     }
     if ((uintmax_t)info.st_size > SIZE_MAX - 1) {
-        status = ms_fail(err, MS_ERR_NOMEM, "%s: is larger than the memory of this machine", path);
-        goto cleanup;
+        return ms_fail(err, MS_ERR_NOMEM, "%s: is larger than the memory of this machine", path);
     }
-    status = read_all(bytes, fd, (size_t)info.st_size < most ? (size_t)info.st_size : most, path, err);
-cleanup:
+    *size = (size_t)info.st_size;
+    return MS_OK;
+}
+
+/* The file lies over the first pages of anonymous memory, of which one more byte than it has is 0. */
+static ms_status map_all(ms_bytes *bytes, int fd, size_t size, const char *path, ms_error *err)
+{
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    const size_t room = size < SIZE_MAX - page ? (size / page + 1) * page : SIZE_MAX;
+    void *at = mmap(NULL, room, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (at == MAP_FAILED) {
+        return ms_fail(err, MS_ERR_NOMEM, "%s: no room to map its %zu bytes", path, size);
+    }
+    *bytes = (ms_bytes){.data = at, .size = size, .mapped = room};
+    if (size > 0 && mmap(at, size, PROT_READ, MAP_PRIVATE | MAP_FIXED, fd, 0) == MAP_FAILED) {
+        return ms_fail(err, MS_ERR_IO, "%s: cannot be mapped: %s", path, strerror(errno));
+    }
+    return MS_OK;
+}
+
+/* The first `most` bytes, or the whole mapped. */
+static ms_status load_bytes(ms_bytes *bytes, const char *path, size_t most, int is_mapped, ms_error *err)
+{
+    size_t size = 0;
+    int fd;
+    *bytes = (ms_bytes){0};
+    ms_status status = open_regular(&fd, &size, path, err);
+    if (status == MS_OK) {
+        status =
+            is_mapped ? map_all(bytes, fd, size, path, err) : read_all(bytes, fd, size < most ? size : most, path, err);
+    }
     if (fd >= 0) {
         close(fd);
     }
@@ -84,6 +105,33 @@ cleanup:
         ms_file_free(bytes);
     }
     return status;
+}
+
+ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err)
+{
+    return load_bytes(bytes, path, SIZE_MAX, 0, err);
+}
+
+ms_status ms_file_read_start(ms_bytes *bytes, const char *path, size_t most, ms_error *err)
+{
+    return load_bytes(bytes, path, most, 0, err);
+}
+
+ms_status ms_file_map(ms_bytes *bytes, const char *path, ms_error *err)
+{
+    return load_bytes(bytes, path, SIZE_MAX, 1, err);
+}
+
+void ms_file_unneeded(const ms_bytes *bytes, size_t from, size_t size)
+{
+    enum { BESIDE = 1 << 16 }; /* what Linux maps together with a page that is touched (fault_around_bytes) */
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    const size_t first = from > BESIDE ? (from - BESIDE) / page * page : 0;
+    const size_t end = bytes->mapped - from > size + BESIDE ? from + size + BESIDE : bytes->mapped;
+    if (bytes->mapped && from < bytes->mapped) {
+        /* Advice: no harm where it is not taken; what is touched again is fetched again. */
+        (void)madvise(bytes->data + first, end - first, MADV_DONTNEED);
+    }
 }
 
 int ms_file_is_standard(const char *path)
@@ -154,19 +202,31 @@ ms_status ms_file_read_standard(ms_bytes *bytes, size_t most, ms_error *err)
 
 void ms_file_free(ms_bytes *bytes)
 {
-    if (bytes) {
+    if (bytes && bytes->mapped) {
+        munmap(bytes->data, bytes->mapped);
+    } else if (bytes) {
         free(bytes->data);
+    }
+    if (bytes) {
         *bytes = (ms_bytes){0};
     }
 }
 
-uint64_t ms_file_checksum(const ms_bytes *bytes)
+uint64_t ms_file_checksum_add(uint64_t hash, const ms_bytes *bytes)
 {
-    uint64_t hash = UINT64_C(14695981039346656037);
+    enum { STEP = 1 << 24 }; /* what a mapped file has in memory meanwhile */
     for (size_t i = 0; i < bytes->size; i++) {
         hash = (hash ^ bytes->data[i]) * UINT64_C(1099511628211);
+        if (i % STEP == STEP - 1) {
+            ms_file_unneeded(bytes, i + 1 - STEP, STEP);
+        }
     }
     return hash;
+}
+
+uint64_t ms_file_checksum(const ms_bytes *bytes)
+{
+    return ms_file_checksum_add(MS_FILE_CHECKSUM, bytes);
 }
 
 static void free_output(ms_output *output)

@@ -12,7 +12,8 @@ MS_C_BEGIN
 /** The bytes of a file, with a 0 byte behind the last so that text can be scanned. */
 typedef struct ms_bytes {
     uint8_t *data;
-    size_t size; /* without the 0 byte */
+    size_t size;   /* without the 0 byte */
+    size_t mapped; /* bytes of address space that show the file; 0: they are in memory of their own */
 } ms_bytes;
 
 /**
@@ -25,6 +26,15 @@ MS_API ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err);
 
 /** The same of the first `most` bytes, or of all if there are fewer. */
 MS_API ms_status ms_file_read_start(ms_bytes *bytes, const char *path, size_t most, ms_error *err);
+
+/**
+ * The same without reading: its pages are fetched when they are touched and may be dropped again, so that a file can be
+ * larger than the memory. Nobody may shorten it meanwhile: a byte that is no longer there ends the program (SIGBUS).
+ */
+MS_API ms_status ms_file_map(ms_bytes *bytes, const char *path, ms_error *err);
+
+/** Bytes of a mapped file that are not needed soon: their pages leave the memory of this process. */
+MS_API void ms_file_unneeded(const ms_bytes *bytes, size_t from, size_t size);
 
 /** Nonzero for "-", which is standard input where a command reads and standard output where it writes. */
 MS_API int ms_file_is_standard(const char *path);
@@ -46,8 +56,14 @@ MS_API ms_status ms_file_fail_open(ms_error *err, const char *path, int why);
 
 MS_API void ms_file_free(ms_bytes *bytes);
 
+/** FNV-1a of no byte. */
+#define MS_FILE_CHECKSUM UINT64_C(14695981039346656037)
+
 /** FNV-1a, 64 bits: names an input in a result so that a run can be repeated. */
 MS_API uint64_t ms_file_checksum(const ms_bytes *bytes);
+
+/** The same of several pieces one after the other. @param hash what the piece before gave; of none MS_FILE_CHECKSUM */
+MS_API uint64_t ms_file_checksum_add(uint64_t hash, const ms_bytes *bytes);
 
 /** A file being written. "-" is standard output. */
 typedef struct ms_output {

@@ -133,6 +133,41 @@ ms_status ms_labels_find(ms_labels *labels, const ms_volume *volume, ms_error *e
     return status;
 }
 
+static ms_status add_slices(ms_labels *labels, const ms_scan *scan, uint32_t *slice, ms_error *err)
+{
+    for (int z = 0; z < scan->n[2]; z++) {
+        const int lo[3] = {0, 0, z}, hi[3] = {scan->n[0], scan->n[1], z + 1};
+        ms_status status = ms_scan_take(slice, scan, lo, hi, err);
+        if (status == MS_OK) {
+            status = ms_labels_add_slice(labels, slice, z, err);
+        }
+        if (status != MS_OK) {
+            return status;
+        }
+    }
+    ms_labels_end(labels);
+    return labels->count ? MS_OK
+                         : ms_fail(err, MS_ERR_SHAPE,
+                                   "%s: has no label: all %d x %d x %d voxels are 0, background; label the grains",
+                                   scan->path, scan->n[0], scan->n[1], scan->n[2]);
+}
+
+ms_status ms_labels_find_in_scan(ms_labels *labels, const ms_scan *scan, ms_error *err)
+{
+    ms_status status = ms_labels_begin(labels, scan->n, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    uint32_t *slice = malloc((size_t)scan->n[0] * (size_t)scan->n[1] * sizeof *slice);
+    status = slice ? add_slices(labels, scan, slice, err)
+                   : ms_fail(err, MS_ERR_NOMEM, "%s: no memory for a slice", scan->path);
+    free(slice);
+    if (status != MS_OK) {
+        ms_labels_free(labels);
+    }
+    return status;
+}
+
 const ms_label_entry *ms_labels_entry(const ms_labels *labels, uint32_t label)
 {
     const ms_label_entry key = {.label = label};
@@ -146,20 +181,30 @@ void ms_labels_free(ms_labels *labels)
     *labels = (ms_labels){0};
 }
 
-ms_status ms_labels_crop(ms_volume *crop, const ms_volume *volume, const ms_label_entry *entry, ms_error *err)
+/* Room for the box of a label. */
+static ms_status make_crop(ms_volume *crop, const ms_label_entry *entry, double spacing, const double origin[3],
+                           ms_error *err)
 {
-    *crop = (ms_volume){.spacing = volume->spacing};
+    *crop = (ms_volume){.spacing = spacing, .origin = {origin[0], origin[1], origin[2]}};
+    size_t count = 1;
     for (int a = 0; a < 3; a++) {
         crop->n[a] = entry->hi[a] - entry->lo[a];
-        crop->origin[a] = volume->origin[a] + volume->spacing * entry->lo[a];
+        crop->first[a] = entry->lo[a];
+        count *= (size_t)crop->n[a];
     }
-    const size_t nx = (size_t)crop->n[0], rows = (size_t)crop->n[1] * (size_t)crop->n[2];
-    crop->label = malloc(nx * rows * sizeof *crop->label);
+    crop->label = malloc(count * sizeof *crop->label);
     if (!crop->label) {
         *crop = (ms_volume){0};
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the box of label %lu", (unsigned long)entry->label);
     }
-    for (size_t r = 0; r < rows; r++) {
+    return MS_OK;
+}
+
+ms_status ms_labels_crop(ms_volume *crop, const ms_volume *volume, const ms_label_entry *entry, ms_error *err)
+{
+    const ms_status status = make_crop(crop, entry, volume->spacing, volume->origin, err);
+    const size_t nx = (size_t)crop->n[0], rows = (size_t)crop->n[1] * (size_t)crop->n[2];
+    for (size_t r = 0; r < rows && status == MS_OK; r++) {
         const size_t y = (size_t)entry->lo[1] + r % (size_t)crop->n[1],
                      z = (size_t)entry->lo[2] + r / (size_t)crop->n[1];
         const uint32_t *from =
@@ -168,5 +213,21 @@ ms_status ms_labels_crop(ms_volume *crop, const ms_volume *volume, const ms_labe
             crop->label[r * nx + x] = from[x] == entry->label ? entry->label : 0;
         }
     }
-    return MS_OK;
+    return status;
+}
+
+ms_status ms_labels_crop_scan(ms_volume *crop, const ms_scan *scan, const ms_label_entry *entry, ms_error *err)
+{
+    ms_status status = make_crop(crop, entry, scan->spacing, scan->origin, err);
+    if (status == MS_OK) {
+        status = ms_scan_take(crop->label, scan, entry->lo, entry->hi, err);
+    }
+    const size_t count = (size_t)crop->n[0] * (size_t)crop->n[1] * (size_t)crop->n[2];
+    for (size_t i = 0; i < count && status == MS_OK; i++) {
+        crop->label[i] = crop->label[i] == entry->label ? entry->label : 0;
+    }
+    if (status != MS_OK) {
+        ms_volume_free(crop);
+    }
+    return status;
 }

@@ -2,7 +2,7 @@
 #ifndef MS_LABELS_H
 #define MS_LABELS_H
 
-#include "ms_volume.h"
+#include "ms_scan.h"
 
 MS_C_BEGIN
 
@@ -39,6 +39,10 @@ MS_API ms_status ms_labels_begin(ms_labels *labels, const int n[3], ms_error *er
 MS_API ms_status ms_labels_add_slice(ms_labels *labels, const uint32_t *slice, int z, ms_error *err);
 MS_API void ms_labels_end(ms_labels *labels);
 
+/** The same of a volume that is on the disk; a slice at a time is in memory. @return also as ms_scan_take; MS_ERR_SHAPE
+ * without a label */
+MS_API ms_status ms_labels_find_in_scan(ms_labels *labels, const ms_scan *scan, ms_error *err);
+
 /** The entry of a label; NULL if the volume has no voxel of it. Cost: O(log labels). */
 MS_API const ms_label_entry *ms_labels_entry(const ms_labels *labels, uint32_t label);
 
@@ -47,10 +51,13 @@ MS_API void ms_labels_free(ms_labels *labels);
 /**
  * The voxels of a label alone, all others 0, as a volume of the size of its box.
  *
- * @param[out] crop the caller frees it; its origin is where the box lies; empty on failure
+ * @param[out] crop the caller frees it; its `first` is where the box lies; empty on failure
  * @return MS_OK; MS_ERR_NOMEM
  */
 MS_API ms_status ms_labels_crop(ms_volume *crop, const ms_volume *volume, const ms_label_entry *entry, ms_error *err);
+
+/** The same of a volume that is on the disk, of which that box alone is read. @return also as ms_scan_take */
+MS_API ms_status ms_labels_crop_scan(ms_volume *crop, const ms_scan *scan, const ms_label_entry *entry, ms_error *err);
 
 MS_C_END
 

@@ -1,5 +1,6 @@
 /* What the headers of volume files share. */
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,7 +8,28 @@
 
 ms_volume_header ms_volume_header_start(size_t max_voxels)
 {
-    return (ms_volume_header){.spacing = {1.0, 1.0, 1.0}, .max_voxels = max_voxels};
+    return (ms_volume_header){.spacing = {1.0, 1.0, 1.0}, .axis = {0, 1, 2}, .slope = 1.0, .max_voxels = max_voxels};
+}
+
+int ms_volume_header_set_axes(ms_volume_header *header, const double direction[3][3])
+{
+    /* Turned by as much, the last of 1000 voxels is a tenth of a voxel aside. */
+    static const double OBLIQUE = 1e-4;
+    int taken = 0;
+    for (int f = 0; f < 3; f++) {
+        const double *d = direction[f];
+        int a = fabs(d[1]) > fabs(d[0]) ? 1 : 0;
+        a = fabs(d[2]) > fabs(d[a]) ? 2 : a;
+        const double aside = fabs(d[(a + 1) % 3]) + fabs(d[(a + 2) % 3]);
+        /* The negation also catches nan. */
+        if (!(fabs(d[a]) > 0.0 && aside <= OBLIQUE * fabs(d[a]))) {
+            return 0;
+        }
+        header->axis[f] = a;
+        header->mirrored[f] = d[a] < 0;
+        taken |= 1 << a;
+    }
+    return taken == 7;
 }
 
 ms_status ms_volume_data_file(ms_word *file, ms_text *value, ms_error *err)
@@ -103,7 +125,7 @@ ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_t
         free(path);
         return status;
     }
-    status = ms_file_read(bytes, path, &inner);
+    status = ms_file_map(bytes, path, &inner);
     if (status) {
         ms_fail(err, status, "%s: line %zu: names a data file that cannot be used: %s", header->name, header->line,
                 inner.text);

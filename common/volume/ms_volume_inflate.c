@@ -20,7 +20,7 @@ static ms_status grow_output(ms_bytes *out, size_t *room, size_t expected, const
     wanted = wanted < expected + 1 ? wanted : expected + 1;
     uint8_t *larger = realloc(out->data, wanted);
     if (!larger) {
-        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to unpack its %zu bytes; crop it", path, expected);
+        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to unpack %zu bytes of it; crop it", path, wanted);
     }
     out->data = larger;
     *room = wanted;
@@ -66,49 +66,85 @@ static int next_member(z_stream *stream, const uint8_t *data, size_t size, size_
            inflateReset(stream) == Z_OK;
 }
 
-static ms_status inflate_all(ms_bytes *out, z_stream *stream, const uint8_t *data, size_t size, size_t expected,
-                             const char *path, ms_error *err)
+/* Until the stream ends or more comes out than `most`; all of the bytes must have been used. */
+static ms_status inflate_all(ms_bytes *out, size_t *used, z_stream *stream, const uint8_t *data, size_t size,
+                             size_t most, const char *path, ms_error *err)
 {
     size_t room = 0;
-    size_t used = 0;
     int code = Z_OK;
-    while (code != Z_STREAM_END && out->size <= expected) {
-        ms_status status = out->size == room ? grow_output(out, &room, expected, path, err) : MS_OK;
+    while (code != Z_STREAM_END && out->size <= most) {
+        ms_status status = out->size == room ? grow_output(out, &room, most, path, err) : MS_OK;
         if (status) {
             return status;
         }
-        code = inflate_step(stream, out, room, data, size, &used);
+        code = inflate_step(stream, out, room, data, size, used);
         if (code != Z_OK && code != Z_STREAM_END) {
-            return fail_inflate(code, stream, used, size, path, err);
+            return fail_inflate(code, stream, *used, size, path, err);
         }
-        if (code == Z_STREAM_END && next_member(stream, data, size, used)) {
+        if (code == Z_STREAM_END && next_member(stream, data, size, *used)) {
             code = Z_OK;
         }
     }
-    if (out->size != expected || used != size) {
-        return ms_fail(err, MS_ERR_FORMAT,
-                       "%s: its packed data hold %s bytes than the %zu that its header claims; fetch or save it again",
-                       path, out->size < expected ? "fewer" : "more", expected);
-    }
     return MS_OK;
+}
+
+static ms_status run_inflate(ms_bytes *out, size_t *used, const uint8_t *data, size_t size, size_t most,
+                             const char *path, ms_error *err)
+{
+    z_stream stream = {0};
+    *out = (ms_bytes){0};
+    *used = 0;
+    /* 32 lets zlib tell its own header from that of gzip. */
+    if (inflateInit2(&stream, 32 + MAX_WBITS) != Z_OK) {
+        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to unpack it", path);
+    }
+    const ms_status status = inflate_all(out, used, &stream, data, size, most, path, err);
+    inflateEnd(&stream);
+    return status;
 }
 
 ms_status ms_volume_inflate(ms_bytes *out, const uint8_t *data, size_t size, size_t expected, const char *path,
                             ms_error *err)
 {
-    z_stream stream = {0};
+    size_t used;
     *out = (ms_bytes){0};
     if (expected / DEFLATE_MAX_RATIO > size) {
         return ms_fail(err, MS_ERR_FORMAT,
                        "%s: its %zu packed bytes cannot hold the %zu that its header claims; fetch or save it again",
                        path, size, expected);
     }
-    /* 32 lets zlib tell its own header from that of gzip. */
-    if (inflateInit2(&stream, 32 + MAX_WBITS) != Z_OK) {
-        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to unpack it", path);
+    ms_status status = run_inflate(out, &used, data, size, expected, path, err);
+    if (status == MS_OK && (out->size != expected || used != size)) {
+        status =
+            ms_fail(err, MS_ERR_FORMAT,
+                    "%s: its packed data hold %s bytes than the %zu that its header claims; fetch or save it again",
+                    path, out->size < expected ? "fewer" : "more", expected);
     }
-    ms_status status = inflate_all(out, &stream, data, size, expected, path, err);
-    inflateEnd(&stream);
+    if (status) {
+        ms_file_free(out);
+    }
+    return status;
+}
+
+ms_status ms_volume_gunzip(ms_bytes *out, const ms_bytes *packed, size_t most, const char *path, ms_error *err)
+{
+    size_t used;
+    ms_status status = run_inflate(out, &used, packed->data, packed->size, most, path, err);
+    if (status == MS_OK && out->size > most) {
+        status =
+            ms_fail(err, MS_ERR_LIMIT,
+                    "%s: unpacked it has more than the %zu bytes allowed; crop it, or allow more memory", path, most);
+    } else if (status == MS_OK && used != packed->size) {
+        status = ms_fail(err, MS_ERR_FORMAT, "%s: %zu bytes follow behind its packed data; fetch or save it again",
+                         path, packed->size - used);
+    }
+    uint8_t *larger = status == MS_OK ? realloc(out->data, out->size + 1) : NULL;
+    if (larger) {
+        out->data = larger;
+        out->data[out->size] = 0;
+    } else if (status == MS_OK) {
+        status = ms_fail(err, MS_ERR_NOMEM, "%s: no memory to unpack it", path);
+    }
     if (status) {
         ms_file_free(out);
     }

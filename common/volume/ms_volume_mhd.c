@@ -67,17 +67,23 @@ static ms_status parse_mhd_origin(mhd *image, ms_text *value, ms_error *err)
     return parse_three(image->header.origin, "the origin", value, err);
 }
 
+/* A row for each axis of the file: where it leads, of length 1. */
 static ms_status parse_matrix(mhd *image, ms_text *value, ms_error *err)
 {
-    double matrix[9];
-    (void)image;
-    ms_status status = ms_text_doubles(matrix, 9, value, "the matrix", err);
-    for (int i = 0; i < 9 && !status; i++) {
-        if (!(fabs(matrix[i] - (i % 4 == 0 ? 1.0 : 0.0)) <= 1e-6)) {
-            return ms_text_fail(err, value, "the axes are turned or mirrored; resample the image to aligned axes");
+    double direction[3][3];
+    ms_status status = ms_text_doubles(direction[0], 9, value, "the matrix", err);
+    if (status) {
+        return status;
+    }
+    for (int f = 0; f < 3; f++) {
+        const double *d = direction[f];
+        if (!(fabs(sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) - 1) <= 1e-4)) {
+            return ms_text_fail(err, value, "the rows of the matrix are not of length 1; save the image again");
         }
     }
-    return status;
+    return ms_volume_header_set_axes(&image->header, (const double(*)[3])direction)
+               ? MS_OK
+               : ms_text_fail(err, value, "the axes are oblique; resample the image to axes along x, y and z");
 }
 
 static ms_status parse_mhd_type(mhd *image, ms_text *value, ms_error *err)
@@ -235,8 +241,8 @@ static ms_status parse_mhd_header(mhd *image, ms_text *text, ms_error *err)
 }
 
 /* `data` begins with what the header may tell to skip. */
-static ms_status fill_mhd(ms_volume *volume, const mhd *image, const uint8_t *data, size_t size, const char *path,
-                          ms_error *err)
+static ms_status store_mhd(ms_stored *stored, const mhd *image, const uint8_t *data, size_t size, const char *path,
+                           ms_error *err)
 {
     size_t voxels = 0;
     ms_status status = ms_volume_data_size(&voxels, &image->header, path, err);
@@ -253,16 +259,16 @@ static ms_status fill_mhd(ms_volume *volume, const mhd *image, const uint8_t *da
             "%s: its header claims %zu bytes of data behind %zu others but there are %zu; fetch or save it again", path,
             packed, skip, size);
     }
-    return ms_volume_fill(volume, &image->header, data + skip, packed, path, err);
+    return ms_volume_store(stored, &image->header, data + skip, packed, path, err);
 }
 
-ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+ms_status ms_volume_parse_mhd(ms_stored *stored, const ms_bytes *bytes, const char *path, size_t max_voxels,
                               ms_error *err)
 {
     ms_text text;
     ms_bytes beside = {0};
     mhd image = {.header = ms_volume_header_start(max_voxels), .packed_size = -1};
-    *volume = (ms_volume){0};
+    *stored = (ms_stored){0};
     ms_text_start(&text, bytes, path);
     ms_status status = parse_mhd_header(&image, &text, err);
     if (status) {
@@ -270,14 +276,13 @@ ms_status ms_volume_parse_mhd(ms_volume *volume, const ms_bytes *bytes, const ch
     }
     if (ms_text_word_is(&image.data_file, "local")) {
         text.at += text.at < text.end;
-        return fill_mhd(volume, &image, (const uint8_t *)text.at, (size_t)(text.end - text.at), path, err);
+        return store_mhd(stored, &image, (const uint8_t *)text.at, (size_t)(text.end - text.at), path, err);
     }
     status = ms_volume_read_beside(&beside, &image.data_file, &text, err);
     if (!status) {
-        status = fill_mhd(volume, &image, beside.data, beside.size, path, err);
+        status = store_mhd(stored, &image, beside.data, beside.size, path, err);
     }
-    ms_file_free(&beside);
-    return status;
+    return ms_volume_keep_beside(stored, &beside, status);
 }
 
 ms_status ms_volume_find_data_mhd(ms_word *file, const ms_bytes *bytes, const char *path, ms_error *err)

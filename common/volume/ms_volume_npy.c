@@ -226,12 +226,12 @@ static ms_status find_header(size_t *start, size_t *end, const ms_bytes *bytes, 
     return MS_OK;
 }
 
-ms_status ms_volume_parse_npy(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+ms_status ms_volume_parse_npy(ms_stored *stored, const ms_bytes *bytes, const char *path, size_t max_voxels,
                               ms_error *err)
 {
     size_t start = 0;
     size_t end = 0;
-    *volume = (ms_volume){0};
+    *stored = (ms_stored){0};
     ms_status status = find_header(&start, &end, bytes, path, err);
     if (status) {
         return status;
@@ -243,5 +243,5 @@ ms_status ms_volume_parse_npy(ms_volume *volume, const ms_bytes *bytes, const ch
     if (status) {
         return status;
     }
-    return ms_volume_fill(volume, &dict.header, bytes->data + end, bytes->size - end, path, err);
+    return ms_volume_store(stored, &dict.header, bytes->data + end, bytes->size - end, path, err);
 }

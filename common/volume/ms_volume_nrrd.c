@@ -11,6 +11,7 @@ typedef struct nrrd {
     int has_encoding;
     int has_endian;
     int has_directions;
+    int is_left_handed;
     int64_t skip_lines;
     int64_t skip_bytes; /* -1: the voxels are the last bytes of the file */
     ms_word data_file;  /* empty: the voxels follow the header */
@@ -144,22 +145,44 @@ static ms_status parse_vector(double vector[3], ms_text *value, ms_error *err)
 
 static ms_status parse_directions(nrrd *image, ms_text *value, ms_error *err)
 {
+    double direction[3][3];
     image->has_directions = 1;
-    for (int axis = 0; axis < 3; axis++) {
-        double vector[3];
-        ms_status status = parse_vector(vector, value, err);
+    for (int f = 0; f < 3; f++) {
+        ms_status status = parse_vector(direction[f], value, err);
         if (status) {
             return status;
         }
-        double spacing = vector[axis];
-        double aside = fabs(vector[(axis + 1) % 3]) + fabs(vector[(axis + 2) % 3]);
-        /* The negation also catches nan. */
-        if (!(spacing > 0.0 && aside <= 1e-6 * spacing)) {
-            return ms_text_fail(err, value, "the axes are turned or mirrored; resample the volume to aligned axes");
-        }
-        image->header.spacing[axis] = spacing;
+    }
+    if (!ms_volume_header_set_axes(&image->header, (const double(*)[3])direction)) {
+        return ms_text_fail(err, value, "the axes are oblique; resample the volume to axes along x, y and z");
+    }
+    for (int f = 0; f < 3; f++) {
+        image->header.spacing[f] = fabs(direction[f][image->header.axis[f]]);
     }
     return ms_text_end_line(value, err);
+}
+
+/* Of the named spaces two are left-handed; a grain read as if they were not would be its own mirror image. */
+static ms_status parse_space(nrrd *image, ms_text *value, ms_error *err)
+{
+    static const char *const LEFT_HANDED[] = {"left-anterior-superior", "las", "3d-left-handed"};
+    const ms_word word = ms_text_rest(value);
+    (void)err;
+    for (size_t i = 0; i < sizeof LEFT_HANDED / sizeof *LEFT_HANDED; i++) {
+        image->is_left_handed |= ms_text_word_is(&word, LEFT_HANDED[i]);
+    }
+    return MS_OK;
+}
+
+/* x is turned round, so that left-anterior-superior becomes right-anterior-superior. */
+static void make_right_handed(nrrd *image)
+{
+    image->header.origin[0] = 0.0 - image->header.origin[0];
+    for (int f = 0; f < 3; f++) {
+        if (image->header.axis[f] == 0) {
+            image->header.mirrored[f] = !image->header.mirrored[f];
+        }
+    }
 }
 
 static ms_status parse_nrrd_origin(nrrd *image, ms_text *value, ms_error *err)
@@ -218,6 +241,7 @@ static nrrd_field_parser *find_nrrd_field(const ms_word *name)
         {"endian", parse_endian},
         {"spacings", parse_spacings},
         {"space directions", parse_directions},
+        {"space", parse_space},
         {"space origin", parse_nrrd_origin},
         {"kinds", parse_kinds},
         {"data file", parse_nrrd_data_file},
@@ -299,11 +323,14 @@ static ms_status parse_nrrd_header(nrrd *image, ms_text *text, ms_error *err)
     } else if (image->data_file.length == 0) {
         return ms_text_fail(err, text, "the file ends before the empty line that ends the header");
     }
+    if (image->is_left_handed) {
+        make_right_handed(image);
+    }
     return check_header(image, text, err);
 }
 
-static ms_status fill_nrrd(ms_volume *volume, const nrrd *image, const uint8_t *data, size_t size, const char *path,
-                           ms_error *err)
+static ms_status store_nrrd(ms_stored *stored, const nrrd *image, const uint8_t *data, size_t size, const char *path,
+                            ms_error *err)
 {
     size_t voxels = 0;
     size_t skip = 0;
@@ -323,31 +350,30 @@ static ms_status fill_nrrd(ms_volume *volume, const nrrd *image, const uint8_t *
     } else {
         skip += (size_t)image->skip_bytes;
     }
-    return ms_volume_fill(volume, &image->header, data + skip, size - skip, path, err);
+    return ms_volume_store(stored, &image->header, data + skip, size - skip, path, err);
 }
 
-ms_status ms_volume_parse_nrrd(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
+ms_status ms_volume_parse_nrrd(ms_stored *stored, const ms_bytes *bytes, const char *path, size_t max_voxels,
                                ms_error *err)
 {
     ms_text text;
     ms_bytes beside = {0};
     nrrd image = {.header = ms_volume_header_start(max_voxels)};
-    *volume = (ms_volume){0};
+    *stored = (ms_stored){0};
     ms_text_start(&text, bytes, path);
     ms_status status = parse_nrrd_header(&image, &text, err);
     if (status) {
         return status;
     }
     if (image.data_file.length == 0) {
-        return fill_nrrd(volume, &image, (const uint8_t *)text.at, (size_t)(text.end - text.at), path, err);
+        return store_nrrd(stored, &image, (const uint8_t *)text.at, (size_t)(text.end - text.at), path, err);
     }
     text.line = image.data_line;
     status = ms_volume_read_beside(&beside, &image.data_file, &text, err);
     if (!status) {
-        status = fill_nrrd(volume, &image, beside.data, beside.size, path, err);
+        status = store_nrrd(stored, &image, beside.data, beside.size, path, err);
     }
-    ms_file_free(&beside);
-    return status;
+    return ms_volume_keep_beside(stored, &beside, status);
 }
 
 ms_status ms_volume_find_data_nrrd(ms_word *file, const ms_bytes *bytes, const char *path, ms_error *err)

@@ -181,7 +181,7 @@ ms_status ms_target_voxels_from_volume(ms_target *target, const ms_volume *volum
     }
     for (int a = 0; a < 3; a++) {
         n[a] = hi[a] - lo[a] + 2 * MS_GRID_HULL;
-        origin[a] = volume->origin[a] + volume->spacing * (lo[a] - MS_GRID_HULL);
+        origin[a] = volume->origin[a] + volume->spacing * (volume->first[a] + lo[a] - MS_GRID_HULL);
     }
     ms_status status = ms_grid_alloc(&target->grid, n, volume->spacing, origin, err);
     if (status == MS_OK) {

@@ -1,118 +1,14 @@
 #include "ms_input.h"
 
-#include <limits.h>
 #include <math.h>
 #include <omp.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "base/ms_choice.h"
 #include "base/ms_file.h"
-#include "base/ms_text.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "ms_progress.h"
-
-void ms_input_defaults(ms_input_flags *flags)
-{
-    memset(flags, 0, sizeof *flags);
-    flags->max_memory = ms_target_default_bytes();
-    flags->mending.weld = MS_MESH_WELD;
-}
-
-static ms_status parse_size(double *size, const char *name, const char *text, const char *of, ms_error *err)
-{
-    static const char UNITS[] = "kMGT";
-    const size_t length = strlen(text);
-    const char *unit = length ? strchr(UNITS, text[length - 1]) : NULL;
-    const ms_word number = {text, length - (unit != NULL)};
-    double factor = 1, value;
-    for (const char *u = UNITS; unit && u <= unit; u++) {
-        factor *= 1000;
-    }
-    if (number.length == 0 || !ms_text_to_double(&value, &number) || !(value * factor <= 1e18) || value < 0) {
-        return ms_fail(err, MS_ERR_ARG, "--%s '%s' is not a size like 500M or 8G (k, M, G or T %s)", name, text, of);
-    }
-    *size = value * factor;
-    return MS_OK;
-}
-
-static ms_status parse_max_voxels(double *voxels, const char *text, ms_error *err)
-{
-    const ms_status status = parse_size(voxels, "max-voxels", text, "voxels", err);
-    return status == MS_OK && *voxels < 1 ? ms_fail(err, MS_ERR_ARG, "--max-voxels %s is below 1", text) : status;
-}
-
-static ms_status parse_rule(ms_voxel_rule *rule, const char *text, ms_error *err)
-{
-    ms_choice choice = {.typed = text};
-    *rule = MS_VOXEL_HALF;
-    if (ms_choice_offer(&choice, "half")) {
-        return MS_OK;
-    }
-    *rule = MS_VOXEL_CENTRE;
-    return ms_choice_offer(&choice, "centre") ? MS_OK : ms_choice_fail(&choice, err, "there is no --rule '%s'", text);
-}
-
-/* Takes a flag if it is one of MS_INPUT_MENDING_FLAGS. */
-static ms_status take_mending_flag(int *taken, ms_mesh_mending *mending, const char *name, const char *value,
-                                   ms_error *err)
-{
-    double number = 0;
-    *taken = 1;
-    if (strcmp(name, "weld") == 0) {
-        return ms_flags_number(&mending->weld, name, value, 0, MS_MESH_MOST_WELD, err);
-    }
-    if (strcmp(name, "drop-bodies") == 0) {
-        return ms_flags_number(&mending->drop_bodies, name, value, 0, 1, err);
-    }
-    *taken = strcmp(name, "fill-holes") == 0;
-    const ms_status status = *taken ? ms_flags_whole(&number, name, value, 0, UINT32_MAX, err) : MS_OK;
-    mending->fill_holes = *taken && status == MS_OK ? (size_t)number : mending->fill_holes;
-    return status;
-}
-
-ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, const char *value, ms_error *err)
-{
-    double number;
-    ms_status status = take_mending_flag(taken, &flags->mending, name, value, err);
-    if (*taken) {
-        return status;
-    }
-    *taken = 1;
-    if (strcmp(name, "cells") == 0) {
-        return ms_flags_whole(&flags->cells, name, value, 1, MS_GRID_MAX_EXTENT, err);
-    }
-    if (strcmp(name, "deq") == 0) {
-        return ms_flags_number(&flags->deq, name, value, 1, MS_GRID_MAX_EXTENT, err);
-    }
-    if (strcmp(name, "voxel-size") == 0) {
-        return ms_flags_number(&flags->voxel_size, name, value, 1e-300, 1e300, err);
-    }
-    if (strcmp(name, "max-voxels") == 0) {
-        return parse_max_voxels(&flags->max_voxels, value, err);
-    }
-    if (strcmp(name, "rule") == 0) {
-        return parse_rule(&flags->rule, value, err);
-    }
-    if (strcmp(name, "allow-open") == 0) {
-        flags->allow_open = 1;
-        return MS_OK;
-    }
-    if (strcmp(name, "max-memory") == 0) {
-        return parse_size(&flags->max_memory, name, value, "bytes", err);
-    }
-    if (strcmp(name, "label") == 0) {
-        status = ms_flags_whole(&number, name, value, 1, UINT32_MAX, err);
-        flags->label = status == MS_OK ? (uint32_t)number : 0;
-    } else if (strcmp(name, "threads") == 0) {
-        status = ms_flags_whole(&number, name, value, 1, MS_INPUT_MAX_THREADS, err);
-        flags->threads = status == MS_OK ? (int)number : 0;
-    } else {
-        *taken = 0;
-    }
-    return status;
-}
 
 static void open_line(const ms_input *input, const char *stage)
 {
@@ -209,6 +105,25 @@ static ms_status parse_mesh(ms_input *input, const ms_bytes *bytes, const char *
     return status;
 }
 
+/* The label that was asked for, or the only one; without it, or of several, the box stays empty. */
+static ms_status read_volume(ms_input *input, const ms_input_flags *flags, ms_error *err)
+{
+    ms_error cause;
+    ms_status status = ms_input_volume_open(&input->scan, &input->labels, &input->origin, input->path, &flags->scan,
+                                            ms_input_max_voxels(flags), err);
+    input->is_volume = 1;
+    input->checksum = input->scan.checksum;
+    if (status != MS_OK) {
+        return status;
+    }
+    const ms_labels *labels = &input->labels;
+    const ms_label_entry *entry = flags->label         ? ms_labels_entry(labels, flags->label)
+                                  : labels->count == 1 ? labels->entry
+                                                       : NULL;
+    status = entry ? ms_labels_crop_scan(&input->volume, &input->scan, entry, &cause) : MS_OK;
+    return name_file(err, status, input, &cause);
+}
+
 /* What never ends is given up where it is longer than the memory that is allowed. */
 static ms_status read_standard_input(ms_bytes *bytes, const ms_input_flags *flags, ms_error *err)
 {
@@ -216,9 +131,29 @@ static ms_status read_standard_input(ms_bytes *bytes, const ms_input_flags *flag
     return ms_file_read_standard(bytes, (size_t)most, err);
 }
 
-ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err)
+/* A mesh by its ending, or from standard input by its content. */
+static ms_status read_mesh(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err)
 {
     ms_bytes bytes;
+    const int is_standard = ms_file_is_standard(path);
+    ms_status status = is_standard ? read_standard_input(&bytes, flags, err) : ms_file_read(&bytes, path, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    input->checksum = ms_file_checksum(&bytes);
+    status =
+        is_standard || ms_mesh_read_is_mesh_path(path)
+            ? parse_mesh(input, &bytes, path, &flags->mending, err)
+            : ms_fail(err, MS_ERR_FORMAT,
+                      "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
+                      "%s",
+                      path, ms_volume_endings());
+    ms_file_free(&bytes);
+    return status;
+}
+
+ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags *flags, ms_error *err)
+{
     const double start = omp_get_wtime();
     memset(input, 0, sizeof *input);
     input->path = ms_file_name(path);
@@ -229,24 +164,8 @@ ms_status ms_input_read(ms_input *input, const char *path, const ms_input_flags 
         return ms_fail(err, MS_ERR_IO, "the name of the shape is empty; name a mesh or a volume");
     }
     open_line(input, "reading");
-    const int is_standard = ms_file_is_standard(path);
-    ms_status status = is_standard ? read_standard_input(&bytes, flags, err) : ms_file_read(&bytes, path, err);
-    if (status != MS_OK) {
-        ms_progress_close();
-        return status;
-    }
-    input->checksum = ms_file_checksum(&bytes);
-    if (ms_volume_is_volume_path(path)) {
-        status = ms_volume_parse(&input->volume, &bytes, path, ms_input_max_voxels(flags), err);
-    } else if (is_standard || ms_mesh_read_is_mesh_path(path)) {
-        status = parse_mesh(input, &bytes, path, &flags->mending, err);
-    } else {
-        status = ms_fail(err, MS_ERR_FORMAT,
-                         "%s: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, volumes from "
-                         ".npy, .mhd, .mha, .nrrd and .nhdr",
-                         path);
-    }
-    ms_file_free(&bytes);
+    const ms_status status =
+        ms_volume_is_volume_path(path) ? read_volume(input, flags, err) : read_mesh(input, path, flags, err);
     ms_progress_close();
     input->read_seconds = omp_get_wtime() - start;
     if (status != MS_OK) {
@@ -426,6 +345,10 @@ static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags
     double n[3];
     ms_error cause;
     ms_status status = MS_OK;
+    if (!flags->label && input->labels.count > 1) {
+        return ms_fail(err, MS_ERR_SHAPE, "%s: the volume has several labels (%lu among them); choose one with --label",
+                       input->path, (unsigned long)input->labels.entry[1].label);
+    }
     if (measure_label(n, input, flags)) { /* without voxels the target says why */
         status = check_memory(n, flags, err);
     }
@@ -442,32 +365,11 @@ static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags
     return status;
 }
 
-ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flags, ms_error *err)
-{
-    const int given = (flags->cells > 0) + (flags->deq > 0) + (flags->voxel_size > 0);
-    if (given > 1) {
-        return ms_fail(err, MS_ERR_ARG, "--cells, --deq and --voxel-size exclude one another");
-    }
-    if (input->volume.label && (given > 0 || flags->max_voxels > 0)) {
-        return ms_fail(
-            err, MS_ERR_ARG,
-            "%s is a volume with voxels of its own; --cells, --deq, --voxel-size and --max-voxels do not apply",
-            input->path);
-    }
-    if (input->volume.label && (flags->mending.fill_holes > 0 || flags->mending.drop_bodies > 0)) {
-        return ms_fail(err, MS_ERR_ARG, "%s is a volume; --fill-holes and --drop-bodies are for meshes", input->path);
-    }
-    if (!input->volume.label && flags->label) {
-        return ms_fail(err, MS_ERR_ARG, "%s is a mesh; --label is for volumes", input->path);
-    }
-    return MS_OK;
-}
-
 double ms_input_bytes(const ms_input *input, const ms_input_flags *flags)
 {
     double h, n[3];
     ms_error ignored;
-    if (input->volume.label) {
+    if (input->is_volume) {
         return measure_label(n, input, flags) ? ms_target_bytes(n, flags->method_bytes) : 0;
     }
     if (choose_voxel_size(&h, input, flags, &ignored) != MS_OK) {
@@ -487,7 +389,7 @@ ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error
     if (status != MS_OK) {
         return status;
     }
-    return input->volume.label ? target_from_volume(input, flags, err) : target_from_mesh(input, flags, err);
+    return input->is_volume ? target_from_volume(input, flags, err) : target_from_mesh(input, flags, err);
 }
 
 size_t ms_input_max_voxels(const ms_input_flags *flags)
@@ -501,4 +403,6 @@ void ms_input_free(ms_input *input)
     ms_target_free(&input->target);
     ms_mesh_free(&input->mesh);
     ms_volume_free(&input->volume);
+    ms_labels_free(&input->labels);
+    ms_scan_close(&input->scan);
 }

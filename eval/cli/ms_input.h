@@ -4,7 +4,7 @@
 
 #include "mesh/ms_mesh.h"
 #include "ms_flags.h"
-#include "volume/ms_volume.h"
+#include "ms_input_volume.h"
 #include "voxel/ms_solid.h"
 #include "voxel/ms_target.h"
 
@@ -20,6 +20,7 @@ typedef struct ms_input_flags {
     ms_mesh_mending mending;
     ms_voxel_rule rule;
     int allow_open;
+    ms_scan_options scan; /* of a volume */
     uint32_t label;
     double max_memory;   /* bytes */
     double method_bytes; /* a voxel: what the method takes beyond the target (ms_generator); 0: as ms_target_bytes */
@@ -41,7 +42,7 @@ typedef struct ms_input_flags {
     {"rule", 0, "half|centre", "a voxel is inside if more than half of it is, or if its centre is (half)"}, \
     {"allow-open", 0, NULL, "take a mesh with holes: majority of the parities along three axes"}, \
     MS_INPUT_MENDING_FLAGS, \
-    {"label", 0, "L", "the label of a volume to take"}, \
+    MS_INPUT_VOLUME_FLAGS, \
     {"max-memory", 0, "SIZE", "refuse grids beyond this, as 500M or 8G (3/4 of the machine's)"}, \
     {"threads", 'j', "T", "threads (all cores)"}
 /* clang-format on */
@@ -57,8 +58,12 @@ typedef struct ms_input {
     uint64_t checksum; /* FNV-1a of the file */
     ms_mesh mesh;      /* empty for a volume */
     ms_mesh_report report;
-    ms_solid solid;   /* of a closed mesh */
-    ms_volume volume; /* empty for a mesh */
+    ms_solid solid; /* of a closed mesh */
+    int is_volume;
+    ms_scan scan; /* of a volume */
+    ms_labels labels;
+    ms_input_origin origin;
+    ms_volume volume; /* the box of the label that was asked for, or of the only one; empty if there is no such one */
     ms_target target; /* after ms_input_target */
     uint32_t label;   /* that was asked for; 0: none */
     double read_seconds, voxelize_seconds, distance_seconds, describe_seconds;

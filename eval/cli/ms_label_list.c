@@ -5,11 +5,11 @@
 #include "ms_json_object.h"
 #include "voxel/ms_target.h"
 
-static ms_status count_pieces(ms_label_row *row, const ms_volume *volume, ms_error *err)
+static ms_status count_pieces(ms_label_row *row, const ms_scan *scan, ms_error *err)
 {
     ms_volume crop;
     ms_target target;
-    ms_status status = ms_labels_crop(&crop, volume, row->entry, err);
+    ms_status status = ms_labels_crop_scan(&crop, scan, row->entry, err);
     if (status == MS_OK) {
         status = ms_target_voxels_from_volume(&target, &crop, row->entry->label, err);
         ms_volume_free(&crop);
@@ -22,13 +22,13 @@ static ms_status count_pieces(ms_label_row *row, const ms_volume *volume, ms_err
     return status;
 }
 
-ms_status ms_label_list_make(ms_label_row **row, const ms_labels *labels, const ms_volume *volume, ms_error *err)
+ms_status ms_label_list_make(ms_label_row **row, const ms_labels *labels, const ms_scan *scan, ms_error *err)
 {
     *row = calloc(labels->count + 1, sizeof **row);
     ms_status status = *row ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu labels", labels->count);
     for (size_t l = 0; l < labels->count && status == MS_OK; l++) {
         (*row)[l].entry = &labels->entry[l];
-        status = count_pieces(&(*row)[l], volume, err);
+        status = count_pieces(&(*row)[l], scan, err);
     }
     if (status != MS_OK) {
         free(*row);

@@ -20,7 +20,7 @@ typedef struct ms_label_row {
  * @return MS_OK; MS_ERR_NOMEM
  * Cost: the boxes of all labels together.
  */
-ms_status ms_label_list_make(ms_label_row **row, const ms_labels *labels, const ms_volume *volume, ms_error *err);
+ms_status ms_label_list_make(ms_label_row **row, const ms_labels *labels, const ms_scan *scan, ms_error *err);
 
 /** A line each: label, voxels, box in voxels, pieces, whether the border cuts it. */
 void ms_label_list_print(FILE *stream, const ms_label_row *row, size_t count);

@@ -187,6 +187,7 @@ json_t *ms_report_input_json(const ms_input *input)
         ms_json_object_merge(&json, ms_report_mending_json(&input->report));
     } else {
         ms_json_object_set(&json, "label", input->label ? json_integer(input->label) : json_null());
+        ms_json_object_merge(&json, ms_input_volume_json(&input->origin));
     }
     return json;
 }

@@ -27,7 +27,7 @@ static const ms_flag FLAGS[] = {
     {"charts", 0, "DIR", "draw charts of all results into this folder, by gnuplot"},
     {"allow-open", 0, NULL, "take a mesh with holes: majority of the parities along three axes"},
     MS_INPUT_MENDING_FLAGS,
-    {"label", 0, "L", "the label of a volume to take"},
+    MS_INPUT_VOLUME_FLAGS,
     {"max-memory", 0, "SIZE", "refuse grids beyond this, as 500M or 8G (3/4 of the machine's)"},
     {"threads", 'j', "T", "threads (all cores)"},
     {0},

@@ -19,6 +19,7 @@ static const ms_flag FLAGS[] = {
     MS_MASS_FLAGS,
     {"skip-border", 0, NULL, "leave out grains that the border of their volume cuts"},
     {"least-voxels", 0, "N", "leave out labels of fewer voxels"},
+    {"largest-piece", 0, NULL, "of a label in several pieces (--connectivity) take the largest alone"},
     {"resume", 0, NULL, "go on with the table that is in DIR"},
     {"part", 0, "K/N", "make the K-th of N parts alone, of about the same work, with a table of its own"},
     {"merge", 0, NULL, "join the tables of all parts in the folders DIR..., which stand in the place of sources"},
@@ -72,6 +73,7 @@ static ms_status take_grains_flag(void *context, const char *name, const char *v
         const char *name;
         int *is_set;
     } words[] = {{"skip-border", &a->grains.skip_border},
+                 {"largest-piece", &a->grains.largest_piece},
                  {"resume", &a->resume},
                  {"merge", &a->merge},
                  {"dry-run", &a->dry_run},

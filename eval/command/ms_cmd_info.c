@@ -15,7 +15,7 @@
 static const ms_flag FLAGS[] = {
     {"expect", 0, NULL, "also the least D to be expected by number of spheres, and the numbers for D"},
     {"json", 0, NULL, "as JSON"},
-    {"label", 0, "L", "the label of a volume to take"},
+    MS_INPUT_VOLUME_FLAGS,
     MS_INPUT_MENDING_FLAGS,
     {"max-memory", 0, "SIZE",
      "refuse volumes, and a standard input, beyond this, as 500M or 8G (3/4 of the machine's)"},
@@ -70,7 +70,7 @@ static ms_status gather(info_facts *f, ms_input *input, const ms_input_flags *fl
     if (status != MS_OK) {
         return status;
     }
-    if (input->volume.label) {
+    if (input->is_volume) {
         status = ms_target_voxels_from_volume(&input->target, &input->volume, flags->label, err);
         f->body = input->target.body;
         f->has_body = 1;
@@ -211,6 +211,7 @@ static json_t *facts_json(const info_facts *f)
         ms_json_object_set(&json, "voxels", json_integer((json_int_t)f->input->target.voxels));
         ms_json_object_set(&json, "pieces", json_integer((json_int_t)f->input->target.pieces));
         ms_json_object_set(&json, "largest_piece", json_integer((json_int_t)f->input->target.largest_piece));
+        ms_json_object_merge(&json, ms_input_volume_json(&f->input->origin));
         json_decref(mesh);
     }
     if (f->has_body) {
@@ -222,23 +223,29 @@ static json_t *facts_json(const info_facts *f)
     return json;
 }
 
-/* Of a volume of several labels, of which none was chosen. */
-static ms_status list_labels(const ms_input *input, const ms_labels *labels, int as_json, ms_error *err)
+static json_t *labels_json(const ms_input *input, const ms_label_row *row)
 {
-    const ms_volume *v = &input->volume;
+    const ms_scan *v = &input->scan;
+    json_t *json = json_pack("{s:o,s:[i,i,i],s:f,s:[f,f,f],s:o}", "path", ms_report_text(input->path), "n", v->n[0],
+                             v->n[1], v->n[2], "spacing", v->spacing, "origin", v->origin[0], v->origin[1],
+                             v->origin[2], "labels", ms_label_list_json(row, input->labels.count));
+    ms_json_object_merge(&json, ms_input_volume_json(&input->origin));
+    return json;
+}
+
+/* Of a volume of several labels, of which none was chosen. */
+static ms_status list_labels(const ms_input *input, int as_json, ms_error *err)
+{
+    const ms_scan *v = &input->scan;
+    const size_t count = input->labels.count;
     ms_label_row *row;
-    ms_status status = ms_label_list_make(&row, labels, v, err);
+    ms_status status = ms_label_list_make(&row, &input->labels, v, err);
     if (status == MS_OK && as_json) {
-        status =
-            ms_report_print(stdout,
-                            json_pack("{s:o,s:[i,i,i],s:f,s:[f,f,f],s:o}", "path", ms_report_text(input->path), "n",
-                                      v->n[0], v->n[1], v->n[2], "spacing", v->spacing, "origin", v->origin[0],
-                                      v->origin[1], v->origin[2], "labels", ms_label_list_json(row, labels->count)),
-                            err);
+        status = ms_report_print(stdout, labels_json(input, row), err);
     } else if (status == MS_OK) {
         printf("%s: %dx%dx%d voxels of %.9g, %zu labels; --label L tells more of one\n", input->path, v->n[0], v->n[1],
-               v->n[2], v->spacing, labels->count);
-        ms_label_list_print(stdout, row, labels->count);
+               v->n[2], v->spacing, count);
+        ms_label_list_print(stdout, row, count);
     }
     free(row);
     return status;
@@ -256,17 +263,6 @@ static ms_status tell_shape(ms_input *input, const info_arguments *a, ms_error *
     }
     if (status == MS_OK) {
         print_facts(&f);
-    }
-    return status;
-}
-
-static ms_status tell_volume(ms_input *input, const info_arguments *a, ms_error *err)
-{
-    ms_labels labels;
-    ms_status status = ms_labels_find(&labels, &input->volume, err);
-    if (status == MS_OK) {
-        status = labels.count > 1 ? list_labels(input, &labels, a->json, err) : tell_shape(input, a, err);
-        ms_labels_free(&labels);
     }
     return status;
 }
@@ -289,7 +285,8 @@ static int run_info(const ms_command *command, int argc, char **argv)
     if (status != MS_OK) {
         return ms_flags_fail(command, &err);
     }
-    status = (input.volume.label && !a.input.label ? tell_volume : tell_shape)(&input, &a, &err);
+    status =
+        input.labels.count > 1 && !a.input.label ? list_labels(&input, a.json, &err) : tell_shape(&input, &a, &err);
     ms_input_free(&input);
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }

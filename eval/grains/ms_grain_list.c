@@ -18,11 +18,36 @@ static const double KEPT_PART = 0.25;
 
 enum { LONGEST_NAME = 200 };
 
+/* How many characters of a name are not its ending, .gz and what is before that included. */
+static size_t measure_stem(const char *base, size_t length)
+{
+    for (int packed = 0; packed < 2; packed++) {
+        size_t dot = length > 0 ? length - 1 : 0;
+        while (dot > 0 && base[dot] != '.') {
+            dot--;
+        }
+        const int is_packed = length - dot == 3 && strncmp(base + dot, ".gz", 3) == 0;
+        length = dot > 0 ? dot : length;
+        if (!is_packed) {
+            break;
+        }
+    }
+    return length;
+}
+
 /* The name of a grain's files: that of its source without folder and ending, and the label. */
 static char *make_name(const char *path, uint32_t label)
 {
-    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
-    const int length = dot && dot > base ? (int)(dot - base) : (int)strlen(base);
+    size_t end_of_path = strlen(path);
+    while (end_of_path > 1 && path[end_of_path - 1] == '/') { /* a folder of slices */
+        end_of_path--;
+    }
+    size_t begin = end_of_path;
+    while (begin > 0 && path[begin - 1] != '/') {
+        begin--;
+    }
+    const char *base = path + begin;
+    const int length = (int)measure_stem(base, end_of_path - begin);
     char *name = malloc(LONGEST_NAME + 16);
     if (name) {
         const int used = snprintf(name, LONGEST_NAME + 1, "%.*s", length, base);
@@ -63,8 +88,7 @@ static double kept_bytes(const ms_grain_list *list)
 {
     double bytes = 0;
     for (size_t s = 0; s < list->n_sources; s++) {
-        const ms_volume *v = &list->source[s]->volume;
-        bytes += list->source[s]->is_kept ? 4.0 * v->n[0] * v->n[1] * v->n[2] : 0;
+        bytes += (double)list->source[s]->scan.held;
     }
     return bytes;
 }
@@ -94,7 +118,7 @@ static ms_status need_source(ms_grain_source **source, ms_grain_list *list, cons
     }
     list->source[list->n_sources++] = *source;
     if ((*source)->is_volume) {
-        ms_grain_source_list(*source, &how->input, kept_bytes(list) < KEPT_PART * how->input.max_memory);
+        ms_grain_source_list(*source, &how->input, KEPT_PART * how->input.max_memory - kept_bytes(list));
     }
     return MS_OK;
 }
@@ -120,9 +144,10 @@ static int is_shape_path(const char *path)
     return ms_volume_is_volume_path(path) || ms_mesh_read_is_mesh_path(path);
 }
 
+/* A raw file is most often the data of a header beside it; one that is not is named itself. */
 static int select_shape(const struct dirent *entry)
 {
-    return is_shape_path(entry->d_name);
+    return ms_mesh_read_is_mesh_path(entry->d_name) || ms_scan_has_header(entry->d_name);
 }
 
 /* The meshes and volumes of a folder in the order of their names, byte by byte. */
@@ -225,7 +250,7 @@ static ms_status add_word(ms_grain_list *list, const char *word, const ms_grain_
     if (stat(word, &info) != 0) {
         return add_pattern(list, word, how, err);
     }
-    if (S_ISDIR(info.st_mode)) {
+    if (S_ISDIR(info.st_mode) && !ms_volume_is_volume_path(word)) { /* of slices, it is a volume */
         return add_folder(list, word, how, err);
     }
     return strcmp(ending, "csv") == 0 ? add_manifest(list, word, how, err) : add_file(list, word, 0, how, err);

@@ -105,7 +105,8 @@ static void print_results(FILE *stream, const ms_grain_row *row)
     put_number(stream, row->seconds);
     fprintf(stream, ",%d,", row->beside);
     if (r) {
-        const ms_bytes bytes = {(uint8_t *)r->clump.sphere, r->clump.n_spheres * sizeof *r->clump.sphere};
+        const ms_bytes bytes = {.data = (uint8_t *)r->clump.sphere,
+                                .size = r->clump.n_spheres * sizeof *r->clump.sphere};
         fprintf(stream, "%016" PRIx64, ms_file_checksum(&bytes));
     }
     fputc(',', stream);

@@ -19,37 +19,24 @@ ms_status ms_grain_source_begin(ms_grain_source *source, const char *path, ms_er
     return MS_OK;
 }
 
-/* Reads the volume. */
-static ms_status read_volume(ms_grain_source *source, const ms_input_flags *flags, ms_error *err)
+static void close_volume(ms_grain_source *source)
 {
-    ms_input input;
-    const ms_status status = ms_input_read(&input, source->path, flags, err);
-    source->checksum = input.checksum;
-    if (status == MS_OK) {
-        source->volume = input.volume; /* the one thing it holds */
-        source->is_kept = 1;
-    }
-    return status;
-}
-
-static void drop_volume(ms_grain_source *source)
-{
-    ms_volume_free(&source->volume);
+    ms_scan_close(&source->scan);
     source->is_kept = 0;
 }
 
-void ms_grain_source_list(ms_grain_source *source, const ms_input_flags *flags, int keep)
+void ms_grain_source_list(ms_grain_source *source, const ms_input_flags *flags, double most)
 {
-    source->status = read_volume(source, flags, &source->cause);
-    if (source->status == MS_OK) {
-        source->status = ms_labels_find(&source->labels, &source->volume, &source->cause);
-    }
-    if (source->is_kept && (!keep || source->status != MS_OK)) {
-        drop_volume(source);
+    source->status = ms_input_volume_open(&source->scan, &source->labels, &source->origin, source->path, &flags->scan,
+                                          ms_input_max_voxels(flags), &source->cause);
+    source->checksum = source->scan.checksum;
+    source->is_kept = source->status == MS_OK;
+    if (source->is_kept && (double)source->scan.held > most) {
+        close_volume(source);
     }
 }
 
-/* Has the volume in memory. */
+/* Has the volume open. */
 static ms_status need_volume(ms_grain_source *source, const ms_input_flags *flags, ms_queue_place *place, ms_error *err)
 {
     while (pthread_mutex_trylock(&source->lock) != 0) { /* another grain reads it */
@@ -59,7 +46,9 @@ static ms_status need_volume(ms_grain_source *source, const ms_input_flags *flag
         ms_queue_resume(place); /* not under the lock, which a grain that is alone may need */
     }
     if (source->status == MS_OK && !source->is_kept) {
-        source->status = read_volume(source, flags, &source->cause);
+        source->status =
+            ms_scan_open(&source->scan, source->path, &flags->scan, ms_input_max_voxels(flags), &source->cause);
+        source->is_kept = source->status == MS_OK;
     }
     const ms_status status = source->status;
     if (status != MS_OK) {
@@ -79,12 +68,14 @@ ms_status ms_grain_source_read(ms_grain_source *source, ms_input *input, uint32_
     memset(input, 0, sizeof *input);
     input->path = source->path;
     input->checksum = source->checksum;
+    input->origin = source->origin;
+    input->is_volume = 1;
     ms_status status = need_volume(source, flags, place, err);
     if (status != MS_OK) {
         return status;
     }
     const ms_label_entry *entry = ms_labels_entry(&source->labels, label);
-    status = entry ? ms_labels_crop(&input->volume, &source->volume, entry, err)
+    status = entry ? ms_labels_crop_scan(&input->volume, &source->scan, entry, err)
                    : ms_fail(err, MS_ERR_SHAPE, "%s: no voxel has the label %lu", source->path, (unsigned long)label);
     input->read_seconds = omp_get_wtime() - start;
     return status;
@@ -96,7 +87,7 @@ void ms_grain_source_release(ms_grain_source *source)
     const int is_last = --source->users == 0;
     pthread_mutex_unlock(&source->lock);
     if (is_last) {
-        drop_volume(source);
+        close_volume(source);
     }
 }
 
@@ -107,6 +98,6 @@ void ms_grain_source_end(ms_grain_source *source)
     }
     free(source->path);
     ms_labels_free(&source->labels);
-    ms_volume_free(&source->volume);
+    ms_scan_close(&source->scan);
     memset(source, 0, sizeof *source);
 }

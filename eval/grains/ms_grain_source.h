@@ -13,14 +13,15 @@ typedef struct ms_grain_source {
     char *path;
     double bytes; /* of the file; of one that cannot be read 0 */
     int is_volume;
-    /* Of a volume: it is read when its labels are listed, and again by the first grain that needs it if it was not
-     * kept; the last one frees it. */
+    /* Of a volume: it is opened when its labels are listed, and again by the first grain that needs it if it was not
+     * kept; the last one closes it. Uncompressed voxels are mapped and take no memory but that of a grain's box. */
     uint64_t checksum; /* FNV-1a of the file */
     ms_labels labels;
-    ms_volume volume;
+    ms_input_origin origin;
+    ms_scan scan;
     ms_status status; /* of the last reading */
     ms_error cause;
-    int is_kept;  /* the volume is there */
+    int is_kept;  /* the scan is open */
     size_t users; /* grains that are still to need it */
     pthread_mutex_t lock;
 } ms_grain_source;
@@ -29,11 +30,11 @@ typedef struct ms_grain_source {
 ms_status ms_grain_source_begin(ms_grain_source *source, const char *path, ms_error *err);
 
 /**
- * Reads a volume and lists its labels; what cannot be read has none, and its status says why.
+ * Opens a volume and lists its labels; what cannot be read has none, and its status says why.
  *
- * @param keep nonzero: the volume stays in memory for the grains
+ * @param most bytes that the volume may hold for the grains; if it holds more it is closed again
  */
-void ms_grain_source_list(ms_grain_source *source, const ms_input_flags *flags, int keep);
+void ms_grain_source_list(ms_grain_source *source, const ms_input_flags *flags, double most);
 
 /**
  * The shape of a grain, as ms_input_read leaves it: the mesh, or the box of the label's voxels.

@@ -10,6 +10,7 @@
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
 #include "measure/ms_metrics.h"
+#include "volume/ms_components.h"
 
 /* The work of a part. */
 typedef struct grains_work {
@@ -187,6 +188,20 @@ static ms_status make_clump(ms_result *r, const ms_input *input, const ms_grain_
                                    : status;
 }
 
+/* Leaves the largest piece of a label alone, if that is wanted. */
+static ms_status drop_pieces(ms_grain_row *row, ms_input *input, const ms_grains *g, int connectivity)
+{
+    size_t pieces;
+    if (!g->largest_piece || !input->is_volume) {
+        return MS_OK;
+    }
+    const ms_status status = ms_components_keep_largest(&input->volume, &pieces, connectivity, &row->cause);
+    input->origin.largest_piece = 1;
+    input->origin.connectivity = connectivity;
+    row->pieces = (double)pieces;
+    return status;
+}
+
 /* The grain from its shape to its files. */
 static ms_status make_grain(ms_grain_row *row, ms_result *r, const grains_work *w, ms_queue_place *place)
 {
@@ -198,16 +213,24 @@ static ms_status make_grain(ms_grain_row *row, ms_result *r, const grains_work *
     flags.label = grain->label;
     if (grain->source->is_volume) { /* has voxels of its own */
         flags.cells = flags.deq = flags.voxel_size = 0;
+    } else {
+        flags.scan = ms_scan_defaults();
     }
     ms_status status = ms_grain_source_read(grain->source, &input, grain->label, &flags, place, &row->cause);
     row->checksum = input.checksum;
+    if (status == MS_OK) {
+        status = drop_pieces(row, &input, w->g, flags.scan.connectivity);
+    }
     if (status != MS_OK) {
+        ms_input_free(&input);
         return status;
     }
     ms_queue_need_memory(place, ms_input_bytes(&input, &flags), flags.max_memory);
     status = ms_input_target(&input, &flags, &row->cause);
     if (status == MS_OK) {
-        row->pieces = input.target.pieces ? (double)input.target.pieces : (double)NAN;
+        row->pieces = input.origin.largest_piece ? row->pieces
+                      : input.target.pieces      ? (double)input.target.pieces
+                                                 : (double)NAN;
         row->voxel_size = input.target.grid.h;
         row->volume = input.target.body.volume;
         status = make_clump(r, &input, grain->how, w->g->mass, &row->cause);

@@ -17,6 +17,7 @@ typedef struct ms_grains {
     size_t n_formats;
     int skip_border;     /* grains that the border of their volume cuts are left out */
     double least_voxels; /* labels of fewer voxels are left out */
+    int largest_piece;   /* of a label in several pieces the largest alone is taken */
     size_t part, parts;  /* 1 of 1: all grains */
     int threads;         /* 0: all */
 } ms_grains;

@@ -62,7 +62,8 @@ ms_status ms_hard_shapes_read(ms_input *input, const ms_hard_shape *shape, ms_in
         status = ms_mesh_repair(&input->mesh, &input->report, err);
     }
     if (status == MS_OK) {
-        const ms_bytes bytes = {(uint8_t *)input->mesh.vertex, input->mesh.n_vertices * sizeof *input->mesh.vertex};
+        const ms_bytes bytes = {.data = (uint8_t *)input->mesh.vertex,
+                                .size = input->mesh.n_vertices * sizeof *input->mesh.vertex};
         input->checksum = ms_file_checksum(&bytes);
     }
     if (status != MS_OK) {

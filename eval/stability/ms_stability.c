@@ -53,7 +53,7 @@ static ms_status make_target(ms_target *target, const ms_changed *c, const ms_st
 
 static uint64_t sum_spheres(const ms_clump *clump)
 {
-    const ms_bytes bytes = {(uint8_t *)clump->sphere, clump->n_spheres * sizeof *clump->sphere};
+    const ms_bytes bytes = {.data = (uint8_t *)clump->sphere, .size = clump->n_spheres * sizeof *clump->sphere};
     return ms_file_checksum(&bytes);
 }
 

@@ -46,7 +46,7 @@ static ms_status read_shape(ms_input *input, const char *name, ms_input_flags *f
         return ms_choice_fail(&choice, err, "there is no file and no built-in shape '%s'", name);
     }
     const ms_status status = ms_input_read(input, name, flags, err);
-    if (status == MS_OK && input->volume.label) {
+    if (status == MS_OK && input->is_volume) {
         ms_input_free(input);
         return ms_fail(err, MS_ERR_ARG, "%s is a volume; perturbations are of meshes", name);
     }

@@ -21,7 +21,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 /* A copy of exactly the size that a file would have, so that the sanitizer sees every byte read behind it. */
 static inline ms_bytes fuzz_bytes(const uint8_t *data, size_t size)
 {
-    ms_bytes bytes = {malloc(size + 1), size};
+    ms_bytes bytes = {.data = malloc(size + 1), .size = size};
     FUZZ_REQUIRE(bytes.data);
     if (size > 0) {
         memcpy(bytes.data, data, size);

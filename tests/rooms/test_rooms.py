@@ -37,7 +37,7 @@ ROOMS = {
     "eval/cli": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure",
                  "common/mesh", "common/mesh/formats", "common/volume", "common/voxel", "generators"],
     "eval/command": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
-                     "common/mesh/formats", "common/shape", "common/volume", "common/voxel", "generators",
+                     "common/mesh/formats", "common/shape", "common/voxel", "generators",
                      "eval/chart", "eval/cli", "eval/compare", "eval/grains", "eval/scene", "eval/stability"],
     "eval/compare": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure",
                      "common/mesh",
@@ -45,7 +45,7 @@ ROOMS = {
     "eval/grains": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh/formats",
                     "common/volume", "generators", "eval/chart", "eval/cli", "eval/queue"],
     "eval/queue": ["common/base", "eval/cli"],
-    "eval/scene": ["common/base", "common/clump", "common/measure", "generators", "eval/cli", "eval/queue"],
+    "eval/scene": ["common/base", "common/clump", "common/expect", "common/measure", "generators", "eval/cli", "eval/queue"],
     "eval/stability": ["common/base", "common/clump", "common/measure", "common/mesh", "common/shape", "common/voxel",
                        "generators", "eval/chart", "eval/cli", "eval/queue"],
 }

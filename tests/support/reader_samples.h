@@ -59,7 +59,7 @@ static inline void put_float64(sample *to, double value, int big_endian)
 /** A copy of just its size, so that a sanitizer sees what is read behind it. */
 static inline ms_bytes copy_bytes(const void *data, size_t size)
 {
-    ms_bytes bytes = {malloc(size + 1), size};
+    ms_bytes bytes = {.data = malloc(size + 1), .size = size};
     assert_non_null(bytes.data);
     memcpy(bytes.data, data, size);
     bytes.data[size] = 0;

@@ -3,12 +3,11 @@
 #define VOLUME_SAMPLES_H
 
 #include "reader_samples.h"
-#include "volume/ms_volume_formats.h"
+#include "volume/ms_scan_store.h"
 
 enum { NX = 2, NY = 3, NZ = 4, N_VOXELS = NX * NY * NZ };
 
-typedef ms_status volume_parser(ms_volume *volume, const ms_bytes *bytes, const char *path, size_t max_voxels,
-                                ms_error *err);
+typedef ms_volume_parser volume_parser;
 
 /* No symmetry that would hide two axes in the wrong order; fits into a bool where asked. */
 static inline uint32_t known_label(int i, uint32_t largest)
@@ -31,11 +30,33 @@ static inline void put_voxels(sample *to, char kind, size_t size, int big_endian
     }
 }
 
+/* The labels of what the parser finds. */
+static inline ms_status volume_of(ms_volume *volume, volume_parser *parse, const ms_bytes *bytes, const char *path,
+                                  const ms_scan_options *options, ms_error *err)
+{
+    ms_stored stored;
+    ms_scan scan = {0};
+    *volume = (ms_volume){0};
+    ms_status status = parse(&stored, bytes, path, SIZE_MAX, err);
+    if (status == MS_OK) {
+        status = ms_scan_store_open(&scan, &stored, bytes, path, options, SIZE_MAX, err);
+    } else {
+        assert_null(stored.data);
+        assert_null(stored.owned.data);
+    }
+    if (status == MS_OK) {
+        status = ms_scan_volume(volume, &scan, SIZE_MAX, err);
+    }
+    ms_scan_close(&scan);
+    return status;
+}
+
 static inline ms_status parse_volume(ms_volume *volume, volume_parser *parse, const sample *from, const char *path,
                                      ms_error *err)
 {
     ms_bytes bytes = copy_bytes(from->data, from->size);
-    ms_status status = parse(volume, &bytes, path, SIZE_MAX, err);
+    const ms_scan_options options = ms_scan_defaults();
+    const ms_status status = volume_of(volume, parse, &bytes, path, &options, err);
     ms_file_free(&bytes);
     return status;
 }

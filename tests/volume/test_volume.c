@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include "support/volume_samples.h"
-#include "volume/ms_volume.h"
+#include "volume/ms_scan.h"
 
 static void expect_refused(const char *path, ms_status status, const char *message)
 {
@@ -21,7 +21,7 @@ static void what_is_no_volume_file_is_refused(void **state)
     char path[128];
     (void)state;
     make_folder(folder);
-    expect_refused("a.tif", MS_ERR_FORMAT, "volumes are read from .npy, .mhd, .mha, .nrrd and .nhdr");
+    expect_refused("a.vox", MS_ERR_FORMAT, "volumes are read from .npy, .mhd, .mha, .nrrd, .nhdr, .tif,");
     expect_refused("none/a.npy", MS_ERR_IO, "cannot be opened: No such file or directory");
     write_file(path, folder, "empty.nrrd", "", 0);
     expect_refused(path, MS_ERR_FORMAT, "is empty (0 bytes)");
@@ -29,7 +29,11 @@ static void what_is_no_volume_file_is_refused(void **state)
     rmdir(folder);
     assert_true(ms_volume_is_volume_path("a.NPY") && ms_volume_is_volume_path("b/a.mha"));
     assert_true(ms_volume_is_volume_path("a.mhd") && ms_volume_is_volume_path("a.nhdr"));
-    assert_false(ms_volume_is_volume_path("a.raw") || ms_volume_is_volume_path("a.stl"));
+    assert_true(ms_volume_is_volume_path("a.nii.GZ") && ms_volume_is_volume_path("a.b.tiff"));
+    assert_true(ms_volume_is_volume_path("a.raw") && !ms_scan_has_header("a.raw") && !ms_scan_has_header("a.raw.gz"));
+    assert_true(ms_scan_has_header("a.npy.gz") && ms_scan_has_header("a.nrrd"));
+    assert_false(ms_volume_is_volume_path("a.gz") || ms_volume_is_volume_path("a.stl") ||
+                 ms_volume_is_volume_path("a.mhd.gz") || ms_volume_is_volume_path("a.vol"));
     ms_volume_free(NULL);
 }
 

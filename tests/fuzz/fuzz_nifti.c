@@ -1,0 +1,6 @@
+#include "fuzz_volume.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    return fuzz_volume(ms_volume_parse_nifti, data, size);
+}
