@@ -243,7 +243,7 @@ class Correct(Case):
                 ((*whole, "--density", "0", "-o", "d.csv"), "--density '0'"),
                 ((*whole, "--unit", "ft", "-o", "d.csv"), "'ft'"),
                 ((*whole, "--unit", "m", "--scale", "1", "-o", "d.csv"), "exclude"),
-                ((*whole, "--axes", "x", "-o", "d.csv"), "principal or input"),
+                ((*whole, "--axes", "x", "-o", "d.csv"), "principal, input"),
                 ((*whole, "--format", "csv", "--format", "csv"), "twice"),
                 (("convert", "c.csv"), "-o FILE"),
                 (("convert", "c.csv", "-o", "a.xyz"), "names no format"),
