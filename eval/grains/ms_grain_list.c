@@ -33,7 +33,8 @@ static char *make_name(const char *path, uint32_t label)
         }
         ms_escape_script_name(name);
     }
-    return name;
+    char *fit = name ? realloc(name, strlen(name) + 1) : NULL; /* there may be a million */
+    return fit ? fit : name;
 }
 
 static ms_status add_grain(ms_grain_list *list, ms_grain_source *source, uint32_t label, const ms_grain_how *how,

@@ -10,11 +10,14 @@ ms_status ms_grain_source_begin(ms_grain_source *source, const char *path, ms_er
     struct stat info;
     memset(source, 0, sizeof *source);
     source->path = strdup(path);
-    if (!source->path) {
+    source->is_volume = ms_volume_is_volume_path(path);
+    source->cause = source->is_volume ? malloc(sizeof *source->cause) : NULL;
+    if (!source->path || (source->is_volume && !source->cause)) {
+        free(source->path);
+        free(source->cause);
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the name of a grain");
     }
     source->bytes = stat(path, &info) == 0 ? (double)info.st_size : 0;
-    source->is_volume = ms_volume_is_volume_path(path);
     pthread_mutex_init(&source->lock, NULL);
     return MS_OK;
 }
@@ -40,9 +43,9 @@ static void drop_volume(ms_grain_source *source)
 
 void ms_grain_source_list(ms_grain_source *source, const ms_input_flags *flags, int keep)
 {
-    source->status = read_volume(source, flags, &source->cause);
+    source->status = read_volume(source, flags, source->cause);
     if (source->status == MS_OK) {
-        source->status = ms_labels_find(&source->labels, &source->volume, &source->cause);
+        source->status = ms_labels_find(&source->labels, &source->volume, source->cause);
     }
     if (source->is_kept && (!keep || source->status != MS_OK)) {
         drop_volume(source);
@@ -59,11 +62,11 @@ static ms_status need_volume(ms_grain_source *source, const ms_input_flags *flag
         ms_queue_resume(place); /* not under the lock, which a grain that is alone may need */
     }
     if (source->status == MS_OK && !source->is_kept) {
-        source->status = read_volume(source, flags, &source->cause);
+        source->status = read_volume(source, flags, source->cause);
     }
     const ms_status status = source->status;
     if (status != MS_OK) {
-        *err = source->cause;
+        *err = *source->cause;
     }
     pthread_mutex_unlock(&source->lock);
     return status;
@@ -106,6 +109,7 @@ void ms_grain_source_end(ms_grain_source *source)
         pthread_mutex_destroy(&source->lock);
     }
     free(source->path);
+    free(source->cause);
     ms_labels_free(&source->labels);
     ms_volume_free(&source->volume);
     memset(source, 0, sizeof *source);

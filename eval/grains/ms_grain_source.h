@@ -19,9 +19,9 @@ typedef struct ms_grain_source {
     ms_labels labels;
     ms_volume volume;
     ms_status status; /* of the last reading */
-    ms_error cause;
-    int is_kept;  /* the volume is there */
-    size_t users; /* grains that are still to need it */
+    ms_error *cause;  /* NULL: a mesh, of which there may be a million */
+    int is_kept;      /* the volume is there */
+    size_t users;     /* grains that are still to need it */
     pthread_mutex_t lock;
 } ms_grain_source;
 
