@@ -196,6 +196,23 @@ static ms_status place_row(merge_parts *m, const merge_part *part, char *row, ms
     return MS_OK;
 }
 
+/* Which grain lacks its row is known, of which part it is only roughly: all have about as many. */
+static ms_status refuse_gaps(const merge_parts *m, size_t rows, ms_error *err)
+{
+    size_t missing = 0, least = 0;
+    while (m->row[missing]) {
+        missing++;
+    }
+    for (size_t p = 1; p < m->count; p++) {
+        least = m->part[p].csv.n_rows < m->part[least].csv.n_rows ? p : least;
+    }
+    return ms_fail(
+        err, MS_ERR_ARG,
+        "%zu of %zu grains have no row, grain %zu the first of them: a part is not at its end, as %s with the "
+        "fewest, %zu; go on with it by --resume",
+        m->grains - rows, m->grains, missing + 1, m->part[least].path, m->part[least].csv.n_rows);
+}
+
 static ms_status place_rows(merge_parts *m, ms_error *err)
 {
     ms_status status = MS_OK;
@@ -206,14 +223,7 @@ static ms_status place_rows(merge_parts *m, ms_error *err)
         }
     }
     if (status == MS_OK && rows < m->grains) {
-        size_t missing = 0;
-        while (m->row[missing]) {
-            missing++;
-        }
-        status = ms_fail(err, MS_ERR_ARG,
-                         "%zu of %zu grains have no row, grain %zu the first of them: a part is not at its end; go on "
-                         "with it by --resume",
-                         m->grains - rows, m->grains, missing + 1);
+        status = refuse_gaps(m, rows, err);
     }
     return status == MS_OK && m->grains == 0 ? ms_fail(err, MS_ERR_ARG, "the tables of the parts have no rows")
                                              : status;

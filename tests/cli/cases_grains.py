@@ -308,6 +308,21 @@ class Parts(Grains):
                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (20, 20)))
         self.assertEqual(self.known(), self.known("whole/grains.csv"))
 
+    def test_tables_that_are_none(self):
+        merge = ("grains", "--merge", "out", "-o", "out")
+        self.run_parts(1, 2, of=2)
+        text = self.read("out/grains-2-of-2.csv").decode()
+        head, rows = text.split("\n", 1)
+        for broken, says in ((text.replace("grain,", "Grain,", 1), "not the header"), ("", "no row"), (head[:30], "no row"),
+                             (head + "\nx" + rows, "number of a grain"), (head + "\n" + rows.replace(",", ";", 3), "fields"),
+                             (head + "\n9" + rows, "number of a grain")):
+            self.write("out/grains-2-of-2.csv", broken)
+            self.assert_says(self.mskit(*merge, code=1), "out/", says)
+            self.assertEqual(self.read("out/grains-2-of-2.csv").decode(), broken)
+        self.assert_says(self.mskit("grains", "--merge", "nowhere", "-o", "out", code=1), "nowhere")
+        self.assert_says(self.mskit("grains", "--merge", "stones", "-o", "out", code=1), "no table of a part")
+        self.assertFalse(os.path.exists(self.path("out/grains.csv")))
+
     def test_parts_by_other_flags(self):
         """Where the rows themselves do not show it: flags of grid, masses, formats and filters, and the list."""
         self.run_parts(1, of=2)
