@@ -25,7 +25,8 @@ typedef struct ms_csv {
  * @param      path   a regular file; borrowed
  * @param      header first line; columns separated by commas, none quoted
  * @param      resume nonzero: the file may exist already
- * @return MS_OK; MS_ERR_IO, also where its file system knows no locks; MS_ERR_FORMAT if the file has another header, or rows of other lengths; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_IO, also where its file system knows no locks; MS_ERR_FORMAT if the file has another header, or
+ *         rows of other lengths; MS_ERR_NOMEM
  */
 ms_status ms_csv_open(ms_csv *csv, const char *path, const char *header, int resume, ms_error *err);
 

@@ -42,8 +42,8 @@ static int read_name(size_t *part, size_t *parts, const char *name)
            *part <= *parts;
 }
 
-/* The way from one folder to another, both without links and from the root on. It ends with a slash, or is empty. The caller
- * frees it; NULL without memory. */
+/* The way from one folder to another, both without links and from the root on. It ends with a slash, or is empty. The
+ * caller frees it; NULL without memory. */
 static char *find_way(const char *from, const char *to)
 {
     size_t same = 0, up = 0, k = 0;

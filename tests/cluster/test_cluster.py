@@ -168,4 +168,5 @@ if __name__ == "__main__":
     if missing:
         print("skipped:", missing)
         sys.exit(77)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that what was started is ended
     unittest.main()
