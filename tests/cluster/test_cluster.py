@@ -169,4 +169,4 @@ if __name__ == "__main__":
         print("skipped:", missing)
         sys.exit(77)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that what was started is ended
-    unittest.main()
+    unittest.main(failfast=True)
