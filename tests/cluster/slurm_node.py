@@ -130,14 +130,19 @@ class Node:
     def stop(self):
         """No job and no program of it is left. slurmd tells slurmctld, and both need munged to stop."""
         if self.pid("slurmctld"):
-            for job in set(self.call("squeue", "-h", "-o", "%A", check=False).split()):
-                self.call("scancel", job, check=False)
-            until("jobs do not end", lambda: not self.call("squeue", "-h", "-t", "PD,R,CG,S", check=False))
+            until("jobs do not end", self.cancel_jobs)
         for program in ("slurmd", "slurmctld", "munged"):
             pid = self.pid(program)
             if pid:
                 os.kill(pid, signal.SIGTERM)
                 until(f"{program} does not end", lambda: not is_running(pid))
+
+    def cancel_jobs(self):
+        """Again and again: a task may be on its way back into the queue. @return whether none is left"""
+        jobs = set(self.call("squeue", "-h", "-t", "PD,R,CG,S", "-o", "%A", check=False).split())
+        for job in jobs:
+            self.call("scancel", job, check=False)
+        return not jobs
 
     def pid(self, program):
         """Of a program that runs still, else 0."""
