@@ -145,6 +145,20 @@ static ms_status read_rows(ms_csv *csv, const char *header, ms_error *err)
     return status;
 }
 
+/* Keeps others away, without waiting for them. */
+static ms_status lock(const ms_csv *csv, int kind, ms_error *err)
+{
+    if (flock(csv->fd, kind | LOCK_NB) == 0) {
+        return MS_OK;
+    }
+    return errno == EWOULDBLOCK
+               ? ms_fail(err, MS_ERR_IO, "%s: another run is writing it; wait for its end, or name another file",
+                         csv->path)
+               : ms_fail(err, MS_ERR_IO,
+                         "%s: cannot be locked against other runs: %s; name a file on a file system with locks",
+                         csv->path, strerror(errno));
+}
+
 /* Opens the file and keeps every other run away from it. */
 static ms_status open_locked(ms_csv *csv, int resume, ms_error *err)
 {
@@ -159,11 +173,7 @@ static ms_status open_locked(ms_csv *csv, int resume, ms_error *err)
         return ms_fail(err, MS_ERR_IO, "%s: cannot be written: %s; check that its folder exists and may be written to",
                        csv->path, strerror(errno));
     }
-    if (flock(csv->fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-        return ms_fail(err, MS_ERR_IO, "%s: another run is writing it; wait for its end, or name another file",
-                       csv->path);
-    }
-    return MS_OK;
+    return lock(csv, LOCK_EX, err);
 }
 
 ms_status ms_csv_open(ms_csv *csv, const char *path, const char *header, int resume, ms_error *err)
@@ -186,6 +196,21 @@ ms_status ms_csv_open(ms_csv *csv, const char *path, const char *header, int res
     if (status != MS_OK) {
         unlink(path); /* there was no row in it */
     }
+    return status;
+}
+
+ms_status ms_csv_read(ms_csv *csv, const char *path, const char *header, ms_error *err)
+{
+    *csv = (ms_csv){.path = path, .fd = open(path, O_RDONLY | O_CLOEXEC)};
+    if (csv->fd < 0) {
+        return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
+    }
+    ms_status status = lock(csv, LOCK_SH, err);
+    if (status == MS_OK) {
+        status = read_rows(csv, header, err);
+    }
+    close(csv->fd);
+    csv->fd = -1;
     return status;
 }
 

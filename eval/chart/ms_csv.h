@@ -25,9 +25,18 @@ typedef struct ms_csv {
  * @param      path   a regular file; borrowed
  * @param      header first line; columns separated by commas, none quoted
  * @param      resume nonzero: the file may exist already
- * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT if the file has another header, or rows of other lengths; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_IO, also where its file system knows no locks; MS_ERR_FORMAT if the file has another header, or
+ *         rows of other lengths; MS_ERR_NOMEM
  */
 ms_status ms_csv_open(ms_csv *csv, const char *path, const char *header, int resume, ms_error *err);
+
+/**
+ * Reads the rows of a file that is finished or at rest; it is not touched, and closed already.
+ *
+ * @param[out] csv its rows; ms_csv_close in any case
+ * @return as ms_csv_open; MS_ERR_IO for a file that another run is writing
+ */
+ms_status ms_csv_read(ms_csv *csv, const char *path, const char *header, ms_error *err);
 
 /** Adds a row; it is on the disk then. On failure the rows before it stand. @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM */
 ms_status ms_csv_add(ms_csv *csv, const char *row, ms_error *err);

@@ -79,6 +79,7 @@ static ms_status take_grains_flag(void *context, const char *name, const char *v
                  {"dry-run", &a->dry_run},
                  {"json", &a->json}};
     int taken;
+    ms_grain_how_note(&a->how, name, value);
     ms_status status = ms_mass_flag(&taken, &a->mass, name, value, err);
     if (taken) {
         return status;
@@ -207,6 +208,7 @@ static ms_status execute_grains(grains_arguments *a, char *const *words, size_t 
         return status;
     }
     a->grains.list = &list;
+    a->grains.run = ms_grain_list_checksum(&list);
     status = a->dry_run ? try_three(a, err) : make_all(a, err);
     ms_grain_list_free(&list);
     return status;

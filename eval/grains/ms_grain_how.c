@@ -1,5 +1,7 @@
 #include "ms_grain_how.h"
 
+#include <string.h>
+
 #include "cli/ms_until.h"
 
 ms_grain_how ms_grain_how_default(void)
@@ -17,6 +19,26 @@ ms_status ms_grain_how_flag(int *taken, ms_grain_how *how, const char *name, con
         status = ms_until_flag(taken, &how->stop, name, value, err);
     }
     return *taken ? status : ms_recipe_flag(taken, &how->recipe, name, value, err);
+}
+
+uint64_t ms_grain_how_add_text(uint64_t sum, const char *text)
+{
+    do { /* the 0 byte, too, so that texts stay apart */
+        sum = (sum ^ (unsigned char)*text) * UINT64_C(1099511628211);
+    } while (*text++);
+    return sum;
+}
+
+void ms_grain_how_note(ms_grain_how *how, const char *name, const char *value)
+{
+    static const char *const WITHOUT_EFFECT[] = {"output",  "resume", "part",    "merge",
+                                                 "dry-run", "json",   "threads", "max-memory"};
+    for (size_t w = 0; w < sizeof WITHOUT_EFFECT / sizeof *WITHOUT_EFFECT; w++) {
+        if (strcmp(name, WITHOUT_EFFECT[w]) == 0) {
+            return;
+        }
+    }
+    how->given += ms_grain_how_add_text(ms_grain_how_add_text(0, name), value ? value : "");
 }
 
 ms_status ms_grain_how_resolve(ms_grain_how *how, ms_error *err)

@@ -3,6 +3,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <glob.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,7 +58,8 @@ static char *make_name(const char *path, uint32_t label)
         }
         ms_escape_script_name(name);
     }
-    return name;
+    char *fit = name ? realloc(name, strlen(name) + 1) : NULL; /* there may be a million */
+    return fit ? fit : name;
 }
 
 static ms_status add_grain(ms_grain_list *list, ms_grain_source *source, uint32_t label, const ms_grain_how *how,
@@ -299,6 +301,18 @@ ms_status ms_grain_list_make(ms_grain_list *list, char *const *words, size_t cou
         ms_grain_list_free(list);
     }
     return status;
+}
+
+uint64_t ms_grain_list_checksum(const ms_grain_list *list)
+{
+    char text[80];
+    uint64_t sum = 0;
+    for (size_t g = 0; g < list->count; g++) {
+        const ms_grain *grain = &list->grain[g];
+        snprintf(text, sizeof text, "%" PRIu32 " %.17g %" PRIx64, grain->label, grain->size, grain->how->given);
+        sum = ms_grain_how_add_text(ms_grain_how_add_text(sum, grain->source->path), text);
+    }
+    return sum;
 }
 
 void ms_grain_list_free(ms_grain_list *list)

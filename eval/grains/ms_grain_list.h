@@ -44,6 +44,9 @@ typedef struct ms_grain_list {
 ms_status ms_grain_list_make(ms_grain_list *list, char *const *words, size_t count, const ms_grain_how *how,
                              ms_error *err);
 
+/** Names the list, and with it a run: a checksum of sources, labels, sizes and of the flags that were noted. */
+uint64_t ms_grain_list_checksum(const ms_grain_list *list);
+
 void ms_grain_list_free(ms_grain_list *list);
 
 #endif

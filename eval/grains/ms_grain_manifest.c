@@ -185,6 +185,7 @@ ms_status ms_grain_manifest_apply(ms_grain_how *how, const ms_grain_how *all, co
     for (size_t f = 0; f < row->n_flags && status == MS_OK; f++) {
         int taken = 0;
         status = ms_grain_how_flag(&taken, how, row->flag[f], row->value[f], &cause);
+        ms_grain_how_note(how, row->flag[f], row->value[f]);
         if (!taken) {
             status = ms_fail(&cause, MS_ERR_ARG, "there is no flag --%.40s for the column of that name", row->flag[f]);
         }

@@ -8,8 +8,9 @@
 
 /**
  * Joins the tables grains-K-of-N.csv of folders into FOLDER/grains.csv, with rows in the order of the grains. Parts
- * must be of one run and complete: 1 to N each once, and every grain once. Where a part is of another folder than the
- * table, its files get the folder in front.
+ * must be of one run (grains and flags: the column `run`) and complete: 1 to N each once, and every grain once. Files
+ * stay where they are; of parts in other folders the table names them from its own folder on. FOLDER is made if it is
+ * not there. Cost: the tables are held in memory; rows times log(parts).
  *
  * @return MS_OK; MS_ERR_ARG for parts that are missing, do not fit together or lack rows; MS_ERR_IO, also for a part
  *         that another process is still writing; MS_ERR_FORMAT; MS_ERR_NOMEM

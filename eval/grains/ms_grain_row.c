@@ -58,7 +58,7 @@ static void put_until(FILE *stream, const ms_stop *stop)
 static void print_key(FILE *stream, const ms_grain_row *row)
 {
     const ms_grain_how *how = row->grain->how;
-    fprintf(stream, "%zu,%zu,", row->number, row->count);
+    fprintf(stream, "%zu,%zu,%016" PRIx64 ",", row->number, row->count, row->run);
     ms_escape_csv_path(stream, row->grain->source->path);
     fprintf(stream, ",%016" PRIx64 ",", row->checksum);
     if (row->grain->label) {
@@ -115,7 +115,7 @@ static void print_results(FILE *stream, const ms_grain_row *row)
 
 static void print_header(FILE *stream)
 {
-    fputs("grain,grains,source,checksum,label,generator,options,seed,n_asked,until,status,file,n,stopped_by,voxels,"
+    fputs("grain,grains,run,source,checksum,label,generator,options,seed,n_asked,until,status,file,n,stopped_by,voxels,"
           "pieces,"
           "cut_by_border,voxel_size,volume,equivalent_diameter",
           stream);

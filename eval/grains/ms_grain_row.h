@@ -20,6 +20,7 @@ typedef enum ms_grain_status { MS_GRAIN_STATUS_LIST(MS_GRAIN_ENUM) MS_GRAIN_STAT
 /** What is told of a grain. What it did not get to is NAN, 0 or "". */
 typedef struct ms_grain_row {
     size_t number, count; /* from 1; of all grains */
+    uint64_t run;         /* ms_grain_list_checksum */
     const ms_grain *grain;
     uint64_t checksum; /* of its file */
     ms_grain_status status;

@@ -10,11 +10,14 @@ ms_status ms_grain_source_begin(ms_grain_source *source, const char *path, ms_er
     struct stat info;
     memset(source, 0, sizeof *source);
     source->path = strdup(path);
-    if (!source->path) {
+    source->is_volume = ms_volume_is_volume_path(path);
+    source->cause = source->is_volume ? malloc(sizeof *source->cause) : NULL;
+    if (!source->path || (source->is_volume && !source->cause)) {
+        free(source->path);
+        free(source->cause);
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the name of a grain");
     }
     source->bytes = stat(path, &info) == 0 ? (double)info.st_size : 0;
-    source->is_volume = ms_volume_is_volume_path(path);
     pthread_mutex_init(&source->lock, NULL);
     return MS_OK;
 }
@@ -28,7 +31,7 @@ static void close_volume(ms_grain_source *source)
 void ms_grain_source_list(ms_grain_source *source, const ms_input_flags *flags, double most)
 {
     source->status = ms_input_volume_open(&source->scan, &source->labels, &source->origin, source->path, &flags->scan,
-                                          ms_input_max_voxels(flags), &source->cause);
+                                          ms_input_max_voxels(flags), source->cause);
     source->checksum = source->scan.checksum;
     source->is_kept = source->status == MS_OK;
     if (source->is_kept && (double)source->scan.held > most) {
@@ -47,12 +50,12 @@ static ms_status need_volume(ms_grain_source *source, const ms_input_flags *flag
     }
     if (source->status == MS_OK && !source->is_kept) {
         source->status =
-            ms_scan_open(&source->scan, source->path, &flags->scan, ms_input_max_voxels(flags), &source->cause);
+            ms_scan_open(&source->scan, source->path, &flags->scan, ms_input_max_voxels(flags), source->cause);
         source->is_kept = source->status == MS_OK;
     }
     const ms_status status = source->status;
     if (status != MS_OK) {
-        *err = source->cause;
+        *err = *source->cause;
     }
     pthread_mutex_unlock(&source->lock);
     return status;
@@ -97,6 +100,7 @@ void ms_grain_source_end(ms_grain_source *source)
         pthread_mutex_destroy(&source->lock);
     }
     free(source->path);
+    free(source->cause);
     ms_labels_free(&source->labels);
     ms_scan_close(&source->scan);
     memset(source, 0, sizeof *source);

@@ -20,9 +20,9 @@ typedef struct ms_grain_source {
     ms_input_origin origin;
     ms_scan scan;
     ms_status status; /* of the last reading */
-    ms_error cause;
-    int is_kept;  /* the scan is open */
-    size_t users; /* grains that are still to need it */
+    ms_error *cause;  /* NULL: a mesh, of which there may be a million */
+    int is_kept;      /* the scan is open */
+    size_t users;     /* grains that are still to need it */
     pthread_mutex_t lock;
 } ms_grain_source;
 

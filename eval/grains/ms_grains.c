@@ -110,6 +110,7 @@ static ms_grain_row begin_row(const grains_work *w, size_t at)
     const ms_grain *grain = &w->g->list->grain[w->index[at]];
     return (ms_grain_row){.number = w->index[at] + 1,
                           .count = w->g->list->count,
+                          .run = w->g->run,
                           .grain = grain,
                           .checksum = grain->source->checksum,
                           .ending = w->g->format[0]->ending,

@@ -11,6 +11,7 @@ enum { MS_GRAINS_FORMATS = 16 };
 /** What is to be done. Everything is borrowed. */
 typedef struct ms_grains {
     const ms_grain_list *list;
+    uint64_t run;              /* its checksum */
     const char *folder;        /* of the table and of the clumps; exists */
     const ms_mass_flags *mass; /* resolved; NULL: no masses */
     const ms_format *format[MS_GRAINS_FORMATS];

@@ -284,19 +284,72 @@ class Parts(Grains):
         self.run_parts(1, of=2, out="one")
         self.run_parts(2, of=2, out="two")
         self.mskit("grains", "--merge", "one", "two/", "-o", "one")
-        for row in self.table("one/grains.csv"):
-            path = row["file"] if row["file"].startswith("two/") else "one/" + row["file"]
-            self.assertEqual(self.read(path), self.read("whole/" + row["file"].replace("two//", "").replace("two/", "")))
-        self.assertEqual(len(self.table("one/grains.csv")), 5)
+        rows = self.table("one/grains.csv")
+        for row, whole in zip(rows, self.table("whole/grains.csv")):
+            self.assertEqual(self.read("one/" + row["file"]), self.read("whole/" + whole["file"]))
+        self.assertEqual({row["file"].split("/0000")[0] for row in rows if row["file"][:2] == ".."}, {"../two"})
+        self.assertEqual(len(rows), 5)
+
+    def test_the_folder_of_the_whole_by_any_name(self):
+        self.run_parts(1, 2, of=2)
+        whole = [row["file"] for row in self.table("whole/grains.csv")]
+        os.symlink("out", self.path("link"))
+        for name in ("./out", "link", self.path("out"), "whole/../out/"):
+            self.mskit("grains", "--merge", name, "-o", "out")
+            self.assertEqual([row["file"] for row in self.table()], whole, name)
+        for name, way in (("new", "../out/"), ("out/new", "../"), (".", "out/")):
+            self.mskit("grains", "--merge", "out", "-o", name)
+            self.assertEqual([row["file"] for row in self.table(name + "/grains.csv")], [way + file for file in whole])
+
+    def test_more_parts_than_open_files(self):
+        import resource
+        self.run_parts(*range(1, 31), of=30)
+        self.mskit("grains", "--merge", "out", "-o", "out",
+                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (20, 20)))
+        self.assertEqual(self.known(), self.known("whole/grains.csv"))
+
+    def test_tables_that_are_none(self):
+        merge = ("grains", "--merge", "out", "-o", "out")
+        self.run_parts(1, 2, of=2)
+        text = self.read("out/grains-2-of-2.csv").decode()
+        head, rows = text.split("\n", 1)
+        for broken, says in ((text.replace("grain,", "Grain,", 1), "not the header"), ("", "no row"), (head[:30], "no row"),
+                             (head + "\nx" + rows, "number of a grain"), (head + "\n" + rows.replace(",", ";", 3), "fields"),
+                             (head + "\n9" + rows, "number of a grain")):
+            self.write("out/grains-2-of-2.csv", broken)
+            self.assert_says(self.mskit(*merge, code=1), "out/", says)
+            self.assertEqual(self.read("out/grains-2-of-2.csv").decode(), broken)
+        self.assert_says(self.mskit("grains", "--merge", "nowhere", "-o", "out", code=1), "nowhere")
+        self.assert_says(self.mskit("grains", "--merge", "stones", "-o", "out", code=1), "no table of a part")
+        self.assertFalse(os.path.exists(self.path("out/grains.csv")))
+
+    def test_parts_by_other_flags(self):
+        """Where the rows themselves do not show it: flags of grid, masses, formats and filters, and the list."""
+        self.run_parts(1, of=2)
+        for flag in (("--cells", "13"), ("--density", "2000"), ("--format", "json"), ("--skip-border",), ("--weld", "0")):
+            self.mskit("grains", *self.ARGS, *flag, "-o", "other", "--part", "2/2")
+            self.assert_says(self.mskit("grains", "--merge", "out", "other", "-o", "out", code=1), "another run")
+            self.assert_says(self.mskit("grains", *self.ARGS, "-o", "other", "--part", "2/2", "--resume", code=1),
+                             "another run")
+            os.unlink(self.path("other/grains-2-of-2.csv"))
+        self.mskit("grains", "-j", "1", "--cells", "12", "--max-memory", "1G", *self.ARGS[:-2], "-o", "other", "--part", "2/2")
+        self.mskit("grains", "--merge", "out", "other", "-o", "out")
+
+    def test_rows_of_a_manifest_tell_runs_apart(self):
+        self.write("a.csv", "shape,cells\nstones/a.obj,\nstones/b.obj,9\n")
+        self.write("b.csv", "shape,cells\nstones/a.obj,9\nstones/b.obj,\n")
+        runs = [self.grains(name, "-g", "mss", "-n", "2", "--cells", "8", out=name[0])[0]["run"] for name in ("a.csv", "b.csv")]
+        self.assertNotEqual(*runs)
 
     def test_parts_that_do_not_fit(self):
         merge = ("grains", "--merge", "out", "-o", "out")
         self.run_parts(1, 2, of=3)
-        self.assert_says(self.mskit(*merge, code=1), "2 of 3 parts")
+        self.assert_says(self.mskit(*merge, code=1), "2 of 3 parts", "part 3")
         self.run_parts(3, of=3)
         text = self.read("out/grains-3-of-3.csv")
         self.write("out/grains-3-of-3.csv", text[:-20])
         self.assert_says(self.mskit(*merge, code=1), "no row", "--resume")
+        self.assertEqual(self.read("out/grains-3-of-3.csv"), text[:-20], "merging touches no part")
         self.write("out/grains-3-of-3.csv", text)
         with open(self.path("out/grains-2-of-3.csv"), "rb+") as table:
             fcntl.flock(table, fcntl.LOCK_EX)
@@ -305,7 +358,7 @@ class Parts(Grains):
         self.assert_says(self.mskit(*merge, code=1), "different runs")
         os.unlink(self.path("out/grains-3-of-4.csv"))
         self.write("out/grains-3-of-3.csv", self.read("out/grains-1-of-3.csv"))
-        self.assert_says(self.mskit(*merge, code=1), "in another part, too")
+        self.assert_says(self.mskit(*merge, code=1), "in out/grains-1-of-3.csv, too")
         self.assertNotIn("grains.csv", os.listdir(self.path("out")))
 
     def test_work_is_dealt_out_evenly(self):
