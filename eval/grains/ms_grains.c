@@ -7,8 +7,10 @@
 #include <string.h>
 
 #include "base/ms_file.h"
+#include "base/ms_quaternion.h"
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
+#include "clump/ms_template.h"
 #include "measure/ms_metrics.h"
 
 /* The work of a part. */
@@ -114,7 +116,31 @@ static ms_grain_row begin_row(const grains_work *w, size_t at)
                           .ending = w->g->format[0]->ending,
                           .pieces = (double)NAN,
                           .voxel_size = (double)NAN,
-                          .volume = (double)NAN};
+                          .volume = (double)NAN,
+                          .place = {NAN, {NAN, NAN, NAN}, {NAN, NAN, NAN}, {NAN, NAN, NAN, NAN}}};
+}
+
+/* Where it is: the template's frame is that of any density. */
+static ms_status find_place(ms_grain_place *place, const ms_mass *mass, const ms_body *body, ms_error *err)
+{
+    const ms_clump none = {0};
+    const int has_mass = mass->particle.mass > 0;
+    ms_particle particle = mass->particle;
+    ms_template frame;
+    ms_status status = has_mass ? MS_OK : ms_particle_from_body(&particle, body, 1, 1, err);
+    if (status == MS_OK) {
+        status = ms_template_make(&frame, &none, &particle, err);
+    }
+    if (status == MS_OK) {
+        memcpy(place->centre, frame.centre, sizeof place->centre);
+        ms_quaternion_from_axes(place->turn, frame.axis);
+        place->mass = has_mass ? particle.mass : (double)NAN;
+        for (int m = 0; m < 3; m++) {
+            place->moment[m] = has_mass ? frame.particle.inertia[m][m] : (double)NAN;
+        }
+        ms_template_free(&frame);
+    }
+    return status;
 }
 
 /* Nonzero if a filter leaves the grain out; the row says which. */
@@ -211,6 +237,9 @@ static ms_status make_grain(ms_grain_row *row, ms_result *r, const grains_work *
         row->voxel_size = input.target.grid.h;
         row->volume = input.target.body.volume;
         status = make_clump(r, &input, grain->how, w->g->mass, &row->cause);
+    }
+    if (status == MS_OK) {
+        status = find_place(&row->place, &r->mass, &input.target.body, &row->cause);
     }
     if (status == MS_OK) {
         row->result = r;
