@@ -262,7 +262,7 @@ static ms_status execute_grains(grains_arguments *a, char *const *words, size_t 
         return status;
     }
     a->grains.list = &list;
-    status = a->assembly ? ms_grain_assembly_check(&a->grains, err) : MS_OK;
+    status = a->assembly ? ms_grain_assembly_check(&a->grains, words, count, err) : MS_OK;
     if (status == MS_OK) {
         status = a->dry_run ? try_three(a, err) : make_all(a, err);
     }

@@ -8,6 +8,7 @@
 #include "base/ms_file.h"
 #include "base/ms_quaternion.h"
 #include "base/ms_text.h"
+#include "cli/ms_files.h"
 #include "cli/ms_mass.h"
 #include "clump/formats/ms_read.h"
 #include "clump/formats/ms_write_packing.h"
@@ -30,7 +31,40 @@ static const ms_format *readable_format(const ms_grains *g, ms_error *err)
     return NULL;
 }
 
-ms_status ms_grain_assembly_check(const ms_grains *g, ms_error *err)
+/* Lists what is written: assembly.csv and the packings. */
+static ms_status list_outputs(ms_files *files, const ms_grains *g, ms_error *err)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/assembly.csv", g->folder);
+    ms_status status = ms_files_add(files, path, MS_FILE_LATER, err);
+    for (size_t f = 0; f < g->n_formats; f++) {
+        for (const ms_packing_part *part = g->format[f]->packing; part->suffix && status == MS_OK; part++) {
+            snprintf(path, sizeof path, "%s/assembly.%s%s", g->folder, g->format[f]->ending, part->suffix);
+            status = ms_files_add(files, path, MS_FILE_LATER, err);
+        }
+    }
+    return status;
+}
+
+/* No source, and no word that names one, is written over. */
+static ms_status check_files(const ms_grains *g, char *const *words, size_t count, ms_error *err)
+{
+    ms_files files = {0};
+    ms_status status = list_outputs(&files, g, err);
+    for (size_t w = 0; w < count && status == MS_OK; w++) {
+        status = ms_files_add(&files, words[w], MS_FILE_READ, err);
+    }
+    for (size_t s = 0; s < g->list->n_sources && status == MS_OK; s++) {
+        status = ms_files_add_shape(&files, g->list->source[s]->path, err);
+    }
+    if (status == MS_OK) {
+        status = ms_files_check(&files, err);
+    }
+    ms_files_free(&files);
+    return status;
+}
+
+ms_status ms_grain_assembly_check(const ms_grains *g, char *const *words, size_t count, ms_error *err)
 {
     const ms_grain_list *list = g->list;
     for (size_t s = 0; s < list->n_sources && list->n_sources > 1; s++) {
@@ -41,7 +75,7 @@ ms_status ms_grain_assembly_check(const ms_grains *g, ms_error *err)
                            list->source[s]->path);
         }
     }
-    return readable_format(g, err) ? MS_OK : MS_ERR_ARG;
+    return readable_format(g, err) ? check_files(g, words, count, err) : MS_ERR_ARG;
 }
 
 /* Without the ending of the run's first format: the name of the grain's files. */
@@ -91,22 +125,30 @@ static ms_status read_spheres(ms_placed *placed, const ms_grain_place *place, co
     return status;
 }
 
-/* Nonzero if the row says all that is asked of it. */
-static int has_place(const ms_grain_found *found, int with_mass)
+/* Rows that were there may be of other masses: their columns are no part of what --resume compares. */
+static ms_status check_masses(const ms_grain_found *found, const ms_mass_flags *mass, ms_error *err)
 {
-    const ms_grain_place *p = &found->place;
-    const double sum =
-        found->volume + p->centre[0] + p->centre[1] + p->centre[2] + p->turn[0] + p->turn[1] + p->turn[2] + p->turn[3];
-    return isfinite(sum) && (!with_mass || isfinite(p->mass + p->moment[0] + p->moment[1] + p->moment[2]));
+    const double asked = mass->density * pow(mass->scale, 3) * found->volume;
+    if (!isfinite(found->place.mass)) {
+        return ms_fail(err, MS_ERR_ARG, "grain %.0f was made without masses; make the table anew", found->number);
+    }
+    if (!mass->of_union && !(fabs(found->place.mass - asked) <= 1e-9 * asked)) {
+        return ms_fail(
+            err, MS_ERR_ARG,
+            "grain %.0f was made with another density or unit: its mass is %g kg and not %g kg; give those of "
+            "the table, or make it anew",
+            found->number, found->place.mass, asked);
+    }
+    return MS_OK;
 }
 
 static ms_status add_placed(ms_packing *packing, const ms_grain_found *found, const ms_grains *g, ms_error *err)
 {
     const double scale = g->mass ? g->mass->scale : 1;
     ms_placed *placed = &packing->placed[packing->count];
-    if (!has_place(found, g->mass != NULL)) {
-        return ms_fail(err, MS_ERR_ARG, "grain %.0f was made without %s; make the table anew", found->number,
-                       has_place(found, 0) ? "masses" : "a place");
+    const ms_status status = g->mass ? check_masses(found, g->mass, err) : MS_OK;
+    if (status != MS_OK) {
+        return status;
     }
     *placed = (ms_placed){.number = (size_t)found->number, .scale = 1, .name = make_stem(found->file, g)};
     if (!placed->name) {

@@ -12,8 +12,14 @@ typedef struct ms_grain_assembly {
     double volume;                  /* of all spheres' unions, over that before they were shrunk */
 } ms_grain_assembly;
 
-/** Can there be one of these grains, in these formats? @return MS_OK; MS_ERR_ARG: of several frames, or not read back */
-ms_status ms_grain_assembly_check(const ms_grains *grains, ms_error *err);
+/**
+ * Can there be one of these grains, in these formats?
+ *
+ * @param words count of them, which named the grains
+ * @return MS_OK; MS_ERR_ARG for grains of several frames, formats that are not read back, and an input that would be
+ *         written over; MS_ERR_NOMEM
+ */
+ms_status ms_grain_assembly_check(const ms_grains *grains, char *const *words, size_t count, ms_error *err);
 
 /**
  * Reads all clumps of a complete table back from their files and writes beside the table assembly.csv, a row for each
@@ -23,7 +29,7 @@ ms_status ms_grain_assembly_check(const ms_grains *grains, ms_error *err);
  * @param[out] sum
  * @param      csv          the table, with all its rows
  * @param      most_overlap clumps shrink until no depth is above it; 0: they stay
- * @return MS_OK; MS_ERR_ARG for a table without places or masses; MS_ERR_LIMIT as ms_packing_shrink; MS_ERR_SHAPE where
+ * @return MS_OK; MS_ERR_ARG for a table without masses or with other ones; MS_ERR_LIMIT as ms_packing_shrink; MS_ERR_SHAPE where
  *         no grain has a clump; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_NOMEM
  */
 ms_status ms_grain_assembly_write(ms_grain_assembly *sum, const ms_csv *csv, const ms_grains *grains,

@@ -392,7 +392,8 @@ ms_status ms_lammps_settle(FILE *stream, const ms_packing *packing, const char *
     fprintf(stream, "timestep %s\nfix gravity all gravity 0 vector 0 0 -1 disable\n\n", ms_script_number(s.step, &a));
     write_lammps_bodies_fix(stream, name);
     fprintf(stream,
-            "thermo_style custom step atoms\nthermo_modify lost error\n\n# Those that overlap come apart.\n"
+            "compute energy all ke/rigid move\nthermo_style custom step atoms c_energy\n"
+            "thermo_modify lost error\n\n# Those that overlap come apart.\n"
             "fix drag all viscous %s\nthermo 1000\nrun ${loosen}\nunfix drag\n\n",
             ms_script_number(s.drag, &a));
     fputs("# They settle. Walls lose their damping in a second run: new ones.\n"

@@ -174,7 +174,9 @@ ms_status ms_liggghts_settle(FILE *stream, const ms_packing *packing, const char
     write_liggghts_walls(stream, (const double[]){s.lo[2], s.lo[0], s.hi[0], s.lo[1], s.hi[1]});
     fprintf(stream, "timestep %s\n\n# A template and a place for each.\ninclude ", ms_script_number(s.step, &a));
     ms_escape_lammps(stream, name);
-    fputs("\nfix move all multisphere\n\n# Those that overlap come apart.\n", stream);
+    fputs("\nfix move all multisphere\ncompute energy all ke/multisphere\nthermo_style custom step atoms c_energy\n\n# "
+          "Those that overlap come apart.\n",
+          stream);
     fprintf(stream, "fix drag all viscous %s\nthermo 1000\nrun ${loosen}\nunfix drag\n\n",
             ms_script_number(s.drag, &a));
     fputs("# They settle.\nfix gravity all gravity 9.81 vector 0 0 -1\nthermo 10000\nrun ${steps}\n", stream);

@@ -5,7 +5,7 @@
 #include "base/ms_escape.h"
 
 static const double GRAVITY = 9.81, POISSON = 0.3;
-static const double LOOSEN_STEPS = 20000, SLOWING_STEPS = 20;
+static const double LOOSEN_STEPS = 20000, SLOWING_STEPS = 5;
 
 /* Stiff enough for what weighs on a particle below that height, and what LIGGGHTS demands. */
 static double young_below(double height, double density)

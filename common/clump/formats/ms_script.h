@@ -29,7 +29,7 @@ typedef struct ms_script_settle {
     double least;        /* radius */
     double young;        /* as in ms_script_drop, for the height of the packing */
     double step;         /* likewise */
-    double drag;         /* of each sphere, kg/s: slows the lightest body down within 20 steps */
+    double drag;         /* of each sphere, kg/s: slows the lightest body down within 5 steps */
     double loosen, end;  /* steps of both stages */
 } ms_script_settle;
 
