@@ -143,7 +143,9 @@ static void write_yade_placed(FILE *stream, const char *name)
         stream);
     fputs(CLUMPING, stream);
     fputs("    O.bodies[clump].state.inertia = inertia\n"
-          "    O.bodies[clump].state.ori = turn\n"
+          "    O.bodies[clump].state.ori = turn * O.bodies[clump].state.ori  # which may be a half turn\n"
+          "    for i in members:  # which would follow in the step after the first contacts\n"
+          "        O.bodies[i].state.pos = position + turn * (O.bodies[i].state.pos - position)\n"
           "    return clump\n\n\n"
           "clumps = []\n"
           "for line in open(",
@@ -154,8 +156,8 @@ static void write_yade_placed(FILE *stream, const char *name)
           "        continue\n"
           "    *row, file = line.rstrip('\\n').split(' ', 12)\n"
           "    scale, mass, *row = map(float, row)\n"
-          "    angle_axis = Quaternion(*row[6:])\n"
-          "    clumps.append(particle(file, scale, mass, Vector3(*row[:3]), Vector3(*row[3:6]), angle_axis))\n",
+          "    turn = Quaternion(*row[6:])\n"
+          "    clumps.append(particle(file, scale, mass, Vector3(*row[:3]), Vector3(*row[3:6]), turn))\n",
           stream);
 }
 
@@ -185,7 +187,7 @@ ms_status ms_yade_settle(FILE *stream, const ms_packing *packing, const char *na
           "# They settle.\n"
           "O.engines[-1].gravity = (0, 0, -9.81)\n"
           "for part in range(10):\n"
-          "    O.run(steps // 10, True)\n"
+          "    O.run(max(1, steps // 10), True)\n"
           "    print(O.time, max(O.bodies[clump].state.vel.norm() for clump in clumps))\n",
           stream);
     return MS_OK;
