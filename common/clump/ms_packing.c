@@ -23,14 +23,14 @@ typedef struct search_entry {
     size_t clump;
 } search_entry;
 
-typedef struct search {
+typedef struct packing_search {
     const ms_packing *packing;
     double near, edge;
     ms_sphere *sphere;
     search_clump *clump;
     search_entry *entry;
     size_t n_entries;
-} search;
+} packing_search;
 
 ms_sphere ms_packing_sphere(const ms_placed *placed, size_t s)
 {
@@ -66,7 +66,7 @@ void ms_packing_box(double lo[3], double hi[3], const ms_packing *packing)
 }
 
 /* The spheres in their places, and the boxes around them. */
-static ms_status place_spheres(search *all, ms_error *err)
+static ms_status place_spheres(packing_search *all, ms_error *err)
 {
     size_t spheres = 0, at = 0;
     for (size_t p = 0; p < all->packing->count; p++) {
@@ -89,7 +89,7 @@ static ms_status place_spheres(search *all, ms_error *err)
     return MS_OK;
 }
 
-static void choose_edge(search *all)
+static void choose_edge(packing_search *all)
 {
     double sum = 0, most = 0;
     for (size_t p = 0; p < all->packing->count; p++) {
@@ -103,13 +103,13 @@ static void choose_edge(search *all)
     all->edge = fmax(sum / (double)all->packing->count, LEAST_CELL * most);
 }
 
-static double cell_of(const search *all, double x)
+static double cell_of(const packing_search *all, double x)
 {
     return floor(x / all->edge);
 }
 
 /* Each box into the cells that it lies in; without room they are counted. */
-static size_t enter_clumps(const search *all, search_entry *entry)
+static size_t enter_clumps(const packing_search *all, search_entry *entry)
 {
     size_t n = 0;
     for (size_t p = 0; p < all->packing->count; p++) {
@@ -154,7 +154,7 @@ static int is_in_box(const ms_sphere *sphere, const search_clump *box)
 }
 
 /* The overlap of two clumps; spheres out of reach do not matter to it. */
-static ms_overlap measure_pair(const search *all, size_t first, size_t second, double margin)
+static ms_overlap measure_pair(const packing_search *all, size_t first, size_t second, double margin)
 {
     const ms_placed *a = &all->packing->placed[first], *b = &all->packing->placed[second];
     ms_overlap overlap = {.first = first, .second = second, .depth = -INFINITY};
@@ -191,8 +191,8 @@ static ms_status add_overlap(ms_overlaps *overlaps, const ms_overlap *overlap, m
 }
 
 /* Two boxes of one cell. They meet in several; the pair is that of the lowest of these. */
-static ms_status take_pair(ms_overlaps *overlaps, const search *all, const search_entry *x, const search_entry *y,
-                           ms_error *err)
+static ms_status take_pair(ms_overlaps *overlaps, const packing_search *all, const search_entry *x,
+                           const search_entry *y, ms_error *err)
 {
     const search_clump *a = &all->clump[x->clump], *b = &all->clump[y->clump];
     for (int k = 0; k < 3; k++) {
@@ -205,7 +205,7 @@ static ms_status take_pair(ms_overlaps *overlaps, const search *all, const searc
     return overlap.relative > -all->near ? add_overlap(overlaps, &overlap, err) : MS_OK;
 }
 
-static ms_status search_cells(ms_overlaps *overlaps, const search *all, ms_error *err)
+static ms_status search_cells(ms_overlaps *overlaps, const packing_search *all, ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t e = 0; e < all->n_entries; e++) {
@@ -228,7 +228,7 @@ static int compare_pairs(const void *a, const void *b)
 
 ms_status ms_packing_overlaps(ms_overlaps *overlaps, const ms_packing *packing, double near, ms_error *err)
 {
-    search all = {.packing = packing, .near = near};
+    packing_search all = {.packing = packing, .near = near};
     *overlaps = (ms_overlaps){0};
     if (packing->count == 0) {
         return MS_OK;

@@ -23,14 +23,14 @@ ms_status ms_grain_assembly_check(const ms_grains *grains, char *const *words, s
 
 /**
  * Reads all clumps of a complete table back from their files and writes beside the table assembly.csv, a row for each
- * pair of clumps that overlap or are nearer than a tenth of the smaller radius, and, for each format of the run that has
- * one, the packing. The same whether rows are of this run or were there.
+ * pair of clumps that overlap or are nearer than a tenth of the smaller radius, and, for each format of the run that
+ * has one, the packing. The same whether rows are of this run or were there.
  *
  * @param[out] sum
  * @param      csv          the table, with all its rows
  * @param      most_overlap clumps shrink until no depth is above it; 0: they stay
- * @return MS_OK; MS_ERR_ARG for a table without masses or with other ones; MS_ERR_LIMIT as ms_packing_shrink; MS_ERR_SHAPE where
- *         no grain has a clump; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for a table without masses or with other ones; MS_ERR_LIMIT as
+ *         ms_packing_shrink; MS_ERR_SHAPE where no grain has a clump; MS_ERR_IO; MS_ERR_FORMAT; MS_ERR_NOMEM
  */
 ms_status ms_grain_assembly_write(ms_grain_assembly *sum, const ms_csv *csv, const ms_grains *grains,
                                   double most_overlap, ms_error *err);

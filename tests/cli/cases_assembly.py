@@ -53,7 +53,8 @@ class Assembly(Grains):
         self.write("scan.npy", scan())
 
     def spheres(self, row, out="out"):
-        return [[float(line[column]) for column in "xyzr"] for line in parse(self.read(f"{out}/{row['file']}").decode())]
+        lines = parse(self.read(f"{out}/{row['file']}").decode())
+        return [[float(line[column]) for column in "xyzr"] for line in lines]
 
     def pairs(self, out="out"):
         return {(row["grain"], row["neighbour"]): row for row in parse(self.read(out + "/assembly.csv").decode())}
@@ -177,8 +178,8 @@ class Runs(Assembly):
         self.assertEqual(self.packing_files("two"), {})
         self.mskit("grains", *self.ARGS, *self.ALL, "-o", "two", "--resume")
         files = self.packing_files("one")
-        self.assertEqual(sorted(files), ["assembly.csv", "assembly.lammps", "assembly.lammps.bodies", "assembly.lammps.in",
-                                         "assembly.liggghts", "assembly.liggghts.in", "assembly.yade", "assembly.yade.py"])
+        endings = ("csv", "lammps", "lammps.bodies", "lammps.in", "liggghts", "liggghts.in", "yade", "yade.py")
+        self.assertEqual(sorted(files), ["assembly." + ending for ending in endings])
         self.assertEqual(self.packing_files("two"), files)
 
     def test_after_parts_are_merged(self):
@@ -208,12 +209,14 @@ class Runs(Assembly):
         os.mkdir(self.path("out"))
         self.write("out/assembly.csv", "shape\n../scan.npy\n")
         before = self.read("out/assembly.csv")
-        self.assert_says(self.mskit("grains", "out/assembly.csv", "-g", "mss", "-o", "out", "--assembly", code=1), "assembly.csv")
+        result = self.mskit("grains", "out/assembly.csv", "-g", "mss", "-o", "out", "--assembly", code=1)
+        self.assert_says(result, "assembly.csv")
         self.assertEqual(self.read("out/assembly.csv"), before)
 
     def test_rows_of_other_masses(self):
         self.grains("scan.npy", "-g", "mss", "-n", "9")
-        self.assert_says(self.mskit("grains", *self.ARGS, "--assembly", "-o", "out", "--resume", code=1), "without masses")
+        go_on = ("--assembly", "-o", "out", "--resume")
+        self.assert_says(self.mskit("grains", *self.ARGS, *go_on, code=1), "without masses")
         self.grains(*self.ARGS, out="two")
         self.assert_says(self.mskit("grains", *self.ARGS, "--density", "1000", "--assembly", "-o", "two", "--resume",
                                     code=1), "another density")

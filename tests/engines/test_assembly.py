@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The packing of an assembly, in the engines: every sphere where the scan has it, mass and inertia of each body, and the
-scripts run.
+"""The packing of an assembly, in the engines: every sphere where the scan has it, mass and inertia of each body, and
+the scripts run.
 
     MSKIT=build/eval/mskit tests/engines/test_assembly.py [-v]
 """
@@ -45,11 +45,10 @@ class Assembly(engines.Clump):
         self.mskit("grains", "scan.npy", "-g", "mss", "-n", "12", "--density", str(engines.DENSITY), "--unit", "mm",
                    "--format", "csv", "--format", "liggghts", "--format", "lammps", "--format", "yade", "--assembly",
                    "--most-overlap", "1", "-o", "out")
-        self.scan = folder
         self.folder = os.path.join(folder, "out")
         with open(self.path("grains.csv"), encoding="ascii") as f:
             self.rows = list(csv.DictReader(f))
-        self.spheres, self.bodies = [], []
+        self.spheres = []
         for row in self.rows:
             with open(self.path(row["file"]), encoding="ascii") as f:
                 clump = [[float(s[c]) * MM for c in "xyzr"] for s in csv.DictReader(f)]
@@ -129,8 +128,7 @@ class Lammps(Engine):
 
     def test_places_and_settling(self):
         script = self.assembly.script("assembly.lammps.in")
-        columns = "mass x y z inertiax inertiay inertiaz exx exy exz eyx eyy eyz ezx ezy ezz".replace(
-            "exx exy exz eyx eyy eyz ezx ezy ezz", "quatw quati quatj quatk")
+        columns = "mass x y z inertiax inertiay inertiaz quatw quati quatj quatk"
         count = len(columns.split())
         load = ("compute bodies all rigid/local move " + columns + "\ndump b all local 1 bodies.txt "
                 + " ".join(f"c_bodies[{k + 1}]" for k in range(count))
@@ -171,8 +169,8 @@ def show(word):
 
 
 """
-        self.assembly.write("load.py", script.replace("# Those that", show + "O.run(1, True)\nshow('LOAD')\n# Those that")
-                            + "show('END')\n")
+        load = show + "O.run(1, True)\nshow('LOAD')\n# Those that"
+        self.assembly.write("load.py", script.replace("# Those that", load) + "show('END')\n")
         out = self.assembly.run("yade", "-x", "-n", "load.py", "20", "2000")
         self.check_places([numbers(line) for line in re.findall(r"(?m)^LOAD (.*)", out)])
         bodies = [numbers(line) for line in re.findall(r"(?m)^LOADBODY (.*)", out)]

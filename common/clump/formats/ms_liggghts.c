@@ -104,8 +104,8 @@ ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *
     return MS_OK;
 }
 
-/* No command puts a multisphere at a point: each is inserted into a region that is as good as one. Mass and inertia that
- * are given do not go with the scale. */
+/* No command puts a multisphere at a point: each is inserted into a region that is as good as one. Mass and inertia
+ * that are given do not go with the scale. */
 static void write_liggghts_placed(FILE *stream, const ms_placed *placed, size_t k, double speck)
 {
     ms_number a, b;

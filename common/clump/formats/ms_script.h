@@ -21,8 +21,8 @@ ms_script_drop ms_script_drop_of(const ms_content *content);
 /** The first line, a comment: "Drops NAME into a box: COMMAND NAME", the suffix of the script, and what drops fifty. */
 void ms_script_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *fifty);
 
-/** How a packing comes to rest in the box around it: first the clumps that overlap come apart, without weight and slowed
- * down, then they settle under gravity. */
+/** How a packing comes to rest in the box around it: first the clumps that overlap come apart, without weight and
+ * slowed down, then they settle under gravity. */
 typedef struct ms_script_settle {
     double lo[3], hi[3]; /* box around the spheres */
     double reach;        /* of the largest clump around its centre of mass */

@@ -9,8 +9,8 @@
 int ms_write_packing_is(const ms_format *format);
 
 /**
- * Writes the packing, each file under a temporary name that is then renamed. The templates stand beside it, by the names
- * of the clumps.
+ * Writes the packing, each file under a temporary name that is then renamed. The templates stand beside it, by the
+ * names of the clumps.
  *
  * @param packing not empty, of clumps with masses
  * @param path    of its first file, whose name fits scripts
