@@ -31,7 +31,7 @@ void ms_quaternion_from_axes(double q[4], double axis[3][3])
 }
 
 /* v + 2 u x (u x v + w v), u the vector of the quaternion and w its first number, or minus it. */
-static void turn(double out[3], const double u[3], double w, const double v[3])
+static void turn_by(double out[3], const double u[3], double w, const double v[3])
 {
     double once[3], twice[3];
     ms_cross(once, u, v);
@@ -46,10 +46,10 @@ static void turn(double out[3], const double u[3], double w, const double v[3])
 
 void ms_quaternion_turn(double out[3], const double q[4], const double point[3])
 {
-    turn(out, q + 1, q[0], point);
+    turn_by(out, q + 1, q[0], point);
 }
 
 void ms_quaternion_turn_back(double out[3], const double q[4], const double point[3])
 {
-    turn(out, q + 1, -q[0], point);
+    turn_by(out, q + 1, -q[0], point);
 }

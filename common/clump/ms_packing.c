@@ -43,7 +43,7 @@ ms_sphere ms_packing_sphere(const ms_placed *placed, size_t s)
     return sphere;
 }
 
-static void grow_box(double lo[3], double hi[3], const ms_sphere *sphere, double margin)
+static void take_in_sphere(double lo[3], double hi[3], const ms_sphere *sphere, double margin)
 {
     for (int k = 0; k < 3; k++) {
         lo[k] = fmin(lo[k], sphere->centre[k] - sphere->radius - margin);
@@ -60,13 +60,13 @@ void ms_packing_box(double lo[3], double hi[3], const ms_packing *packing)
     for (size_t p = 0; p < packing->count; p++) {
         for (size_t s = 0; s < packing->placed[p].clump.n_spheres; s++) {
             const ms_sphere sphere = ms_packing_sphere(&packing->placed[p], s);
-            grow_box(lo, hi, &sphere, 0);
+            take_in_sphere(lo, hi, &sphere, 0);
         }
     }
 }
 
 /* The spheres in their places, and the boxes around them. */
-static ms_status place_spheres(packing_search *all, ms_error *err)
+static ms_status set_spheres(packing_search *all, ms_error *err)
 {
     size_t spheres = 0, at = 0;
     for (size_t p = 0; p < all->packing->count; p++) {
@@ -83,7 +83,7 @@ static ms_status place_spheres(packing_search *all, ms_error *err)
         *clump = (search_clump){&all->sphere[at], {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
         for (size_t s = 0; s < placed->clump.n_spheres; s++, at++) {
             all->sphere[at] = ms_packing_sphere(placed, s);
-            grow_box(clump->lo, clump->hi, &all->sphere[at], all->near * placed->size / 2);
+            take_in_sphere(clump->lo, clump->hi, &all->sphere[at], all->near * placed->size / 2);
         }
     }
     return MS_OK;
@@ -103,7 +103,7 @@ static void choose_edge(packing_search *all)
     all->edge = fmax(sum / (double)all->packing->count, LEAST_CELL * most);
 }
 
-static double cell_of(const packing_search *all, double x)
+static double cell_number(const packing_search *all, double x)
 {
     return floor(x / all->edge);
 }
@@ -114,9 +114,9 @@ static size_t enter_clumps(const packing_search *all, search_entry *entry)
     size_t n = 0;
     for (size_t p = 0; p < all->packing->count; p++) {
         const search_clump *c = &all->clump[p];
-        for (double z = cell_of(all, c->lo[2]); z <= cell_of(all, c->hi[2]); z++) {
-            for (double y = cell_of(all, c->lo[1]); y <= cell_of(all, c->hi[1]); y++) {
-                for (double x = cell_of(all, c->lo[0]); x <= cell_of(all, c->hi[0]); x++, n++) {
+        for (double z = cell_number(all, c->lo[2]); z <= cell_number(all, c->hi[2]); z++) {
+            for (double y = cell_number(all, c->lo[1]); y <= cell_number(all, c->hi[1]); y++) {
+                for (double x = cell_number(all, c->lo[0]); x <= cell_number(all, c->hi[0]); x++, n++) {
                     if (entry) {
                         entry[n] = (search_entry){{x, y, z}, p};
                     }
@@ -127,7 +127,7 @@ static size_t enter_clumps(const packing_search *all, search_entry *entry)
     return n;
 }
 
-static int compare_cells(const search_entry *a, const search_entry *b)
+static int order_of_cells(const search_entry *a, const search_entry *b)
 {
     int order = 0;
     for (int k = 2; k >= 0 && order == 0; k--) {
@@ -136,14 +136,14 @@ static int compare_cells(const search_entry *a, const search_entry *b)
     return order;
 }
 
-static int compare_entries(const void *a, const void *b)
+static int order_of_entries(const void *a, const void *b)
 {
     const search_entry *x = a, *y = b;
-    const int order = compare_cells(x, y);
+    const int order = order_of_cells(x, y);
     return order ? order : (x->clump > y->clump) - (x->clump < y->clump);
 }
 
-static int is_in_box(const ms_sphere *sphere, const search_clump *box)
+static int reaches_box(const ms_sphere *sphere, const search_clump *box)
 {
     int is_in = 1;
     for (int k = 0; k < 3; k++) {
@@ -161,7 +161,7 @@ static ms_overlap measure_pair(const packing_search *all, size_t first, size_t s
     for (size_t i = 0; i < a->clump.n_spheres; i++) {
         ms_sphere near = all->clump[first].sphere[i];
         near.radius += margin;
-        if (!is_in_box(&near, &all->clump[second])) {
+        if (!reaches_box(&near, &all->clump[second])) {
             continue;
         }
         for (size_t j = 0; j < b->clump.n_spheres; j++) {
@@ -175,7 +175,7 @@ static ms_overlap measure_pair(const packing_search *all, size_t first, size_t s
     return overlap;
 }
 
-static ms_status add_overlap(ms_overlaps *overlaps, const ms_overlap *overlap, ms_error *err)
+static ms_status append_overlap(ms_overlaps *overlaps, const ms_overlap *overlap, ms_error *err)
 {
     if (overlaps->count == overlaps->capacity) {
         const size_t capacity = overlaps->capacity ? 2 * overlaps->capacity : 256;
@@ -196,21 +196,21 @@ static ms_status take_pair(ms_overlaps *overlaps, const packing_search *all, con
 {
     const search_clump *a = &all->clump[x->clump], *b = &all->clump[y->clump];
     for (int k = 0; k < 3; k++) {
-        if (a->lo[k] > b->hi[k] || b->lo[k] > a->hi[k] || cell_of(all, fmax(a->lo[k], b->lo[k])) != x->cell[k]) {
+        if (a->lo[k] > b->hi[k] || b->lo[k] > a->hi[k] || cell_number(all, fmax(a->lo[k], b->lo[k])) != x->cell[k]) {
             return MS_OK;
         }
     }
     const double least = fmin(all->packing->placed[x->clump].size, all->packing->placed[y->clump].size);
     const ms_overlap overlap = measure_pair(all, x->clump, y->clump, all->near * least);
-    return overlap.relative > -all->near ? add_overlap(overlaps, &overlap, err) : MS_OK;
+    return overlap.relative > -all->near ? append_overlap(overlaps, &overlap, err) : MS_OK;
 }
 
-static ms_status search_cells(ms_overlaps *overlaps, const packing_search *all, ms_error *err)
+static ms_status walk_cells(ms_overlaps *overlaps, const packing_search *all, ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t e = 0; e < all->n_entries; e++) {
         for (size_t f = e + 1; f < all->n_entries && status == MS_OK; f++) {
-            if (compare_cells(&all->entry[e], &all->entry[f]) != 0) {
+            if (order_of_cells(&all->entry[e], &all->entry[f]) != 0) {
                 break;
             }
             status = take_pair(overlaps, all, &all->entry[e], &all->entry[f], err);
@@ -219,7 +219,7 @@ static ms_status search_cells(ms_overlaps *overlaps, const packing_search *all, 
     return status;
 }
 
-static int compare_pairs(const void *a, const void *b)
+static int order_of_pairs(const void *a, const void *b)
 {
     const ms_overlap *x = a, *y = b;
     return x->first != y->first ? (x->first > y->first) - (x->first < y->first)
@@ -233,7 +233,7 @@ ms_status ms_packing_overlaps(ms_overlaps *overlaps, const ms_packing *packing, 
     if (packing->count == 0) {
         return MS_OK;
     }
-    ms_status status = place_spheres(&all, err);
+    ms_status status = set_spheres(&all, err);
     if (status == MS_OK) {
         choose_edge(&all);
         all.n_entries = enter_clumps(&all, NULL);
@@ -242,11 +242,11 @@ ms_status ms_packing_overlaps(ms_overlaps *overlaps, const ms_packing *packing, 
     }
     if (status == MS_OK) {
         enter_clumps(&all, all.entry);
-        qsort(all.entry, all.n_entries, sizeof *all.entry, compare_entries);
-        status = search_cells(overlaps, &all, err);
+        qsort(all.entry, all.n_entries, sizeof *all.entry, order_of_entries);
+        status = walk_cells(overlaps, &all, err);
     }
     if (status == MS_OK && overlaps->count) {
-        qsort(overlaps->pair, overlaps->count, sizeof *overlaps->pair, compare_pairs);
+        qsort(overlaps->pair, overlaps->count, sizeof *overlaps->pair, order_of_pairs);
     }
     free(all.sphere);
     free(all.clump);
