@@ -54,8 +54,8 @@ static void take_in_sphere(double lo[3], double hi[3], const ms_sphere *sphere, 
 void ms_packing_box(double lo[3], double hi[3], const ms_packing *packing)
 {
     for (int k = 0; k < 3; k++) {
-        lo[k] = INFINITY;
-        hi[k] = -INFINITY;
+        lo[k] = HUGE_VAL;
+        hi[k] = -HUGE_VAL;
     }
     for (size_t p = 0; p < packing->count; p++) {
         for (size_t s = 0; s < packing->placed[p].clump.n_spheres; s++) {
@@ -80,7 +80,7 @@ static ms_status set_spheres(packing_search *all, ms_error *err)
     for (size_t p = 0; p < all->packing->count; p++) {
         const ms_placed *placed = &all->packing->placed[p];
         search_clump *clump = &all->clump[p];
-        *clump = (search_clump){&all->sphere[at], {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+        *clump = (search_clump){&all->sphere[at], {HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
         for (size_t s = 0; s < placed->clump.n_spheres; s++, at++) {
             all->sphere[at] = ms_packing_sphere(placed, s);
             take_in_sphere(clump->lo, clump->hi, &all->sphere[at], all->near * placed->size / 2);
@@ -157,7 +157,7 @@ static int reaches_box(const ms_sphere *sphere, const search_clump *box)
 static ms_overlap measure_pair(const packing_search *all, size_t first, size_t second, double margin)
 {
     const ms_placed *a = &all->packing->placed[first], *b = &all->packing->placed[second];
-    ms_overlap overlap = {.first = first, .second = second, .depth = -INFINITY};
+    ms_overlap overlap = {.first = first, .second = second, .depth = -HUGE_VAL};
     for (size_t i = 0; i < a->clump.n_spheres; i++) {
         ms_sphere near = all->clump[first].sphere[i];
         near.radius += margin;

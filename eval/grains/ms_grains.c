@@ -109,15 +109,16 @@ static ms_status make_room(grains_work *w, ms_error *err)
 static ms_grain_row begin_row(const grains_work *w, size_t at)
 {
     const ms_grain *grain = &w->g->list->grain[w->index[at]];
+    const double nan = (double)NAN;
     return (ms_grain_row){.number = w->index[at] + 1,
                           .count = w->g->list->count,
                           .grain = grain,
                           .checksum = grain->source->checksum,
                           .ending = w->g->format[0]->ending,
-                          .pieces = (double)NAN,
-                          .voxel_size = (double)NAN,
-                          .volume = (double)NAN,
-                          .place = {NAN, {NAN, NAN, NAN}, {NAN, NAN, NAN}, {NAN, NAN, NAN, NAN}}};
+                          .pieces = nan,
+                          .voxel_size = nan,
+                          .volume = nan,
+                          .place = {nan, {nan, nan, nan}, {nan, nan, nan}, {nan, nan, nan, nan}}};
 }
 
 /* Where it is: the template's frame is that of any density. */

@@ -35,7 +35,7 @@ ms_script_drop ms_script_drop_of(const ms_content *content)
 
 ms_script_settle ms_script_settle_of(const ms_packing *packing)
 {
-    ms_script_settle s = {.least = INFINITY, .drag = INFINITY, .loosen = LOOSEN_STEPS};
+    ms_script_settle s = {.least = HUGE_VAL, .drag = HUGE_VAL, .loosen = LOOSEN_STEPS};
     const double density = packing->placed[0].particle.density;
     ms_packing_box(s.lo, s.hi, packing);
     for (size_t p = 0; p < packing->count; p++) {
