@@ -7,6 +7,7 @@
 #include "cli/ms_outputs.h"
 #include "cli/ms_report.h"
 #include "cli/ms_until.h"
+#include "grains/ms_grain_assembly.h"
 #include "grains/ms_grain_merge.h"
 #include "grains/ms_grains.h"
 #include "ms_commands.h"
@@ -20,6 +21,8 @@ static const ms_flag FLAGS[] = {
     {"skip-border", 0, NULL, "leave out grains that the border of their volume cuts"},
     {"least-voxels", 0, "N", "leave out labels of fewer voxels"},
     {"largest-piece", 0, NULL, "of a label in several pieces (--connectivity) take the largest alone"},
+    {"assembly", 0, NULL, "the clumps back in their places: overlaps of neighbours, and files of the whole packing"},
+    {"most-overlap", 0, "SHARE", "shrink clumps of the assembly until none is deeper in another / equivalent radius"},
     {"resume", 0, NULL, "go on with the table that is in DIR"},
     {"part", 0, "K/N", "make the K-th of N parts alone, of about the same work, with a table of its own"},
     {"merge", 0, NULL, "join the tables of all parts in the folders DIR..., which stand in the place of sources"},
@@ -34,7 +37,8 @@ typedef struct grains_arguments {
     ms_mass_flags mass;
     ms_grains grains;
     const char *folder;
-    int resume, merge, dry_run, json;
+    int resume, merge, dry_run, json, assembly;
+    double most_overlap; /* 0: not given */
 } grains_arguments;
 
 static ms_status take_part(ms_grains *g, const char *text, ms_error *err)
@@ -76,6 +80,7 @@ static ms_status take_grains_flag(void *context, const char *name, const char *v
                  {"largest-piece", &a->grains.largest_piece},
                  {"resume", &a->resume},
                  {"merge", &a->merge},
+                 {"assembly", &a->assembly},
                  {"dry-run", &a->dry_run},
                  {"json", &a->json}};
     int taken;
@@ -99,6 +104,9 @@ static ms_status take_grains_flag(void *context, const char *name, const char *v
     }
     if (strcmp(name, "least-voxels") == 0) {
         return ms_flags_whole(&a->grains.least_voxels, name, value, 1, 9007199254740992.0, err);
+    }
+    if (strcmp(name, "most-overlap") == 0) {
+        return ms_flags_number(&a->most_overlap, name, value, 1e-6, 1, err);
     }
     return strcmp(name, "part") == 0 ? take_part(&a->grains, value, err)
                                      : ms_grain_how_flag(&taken, &a->how, name, value, err);
@@ -125,6 +133,19 @@ static ms_status resolve_formats(grains_arguments *a, ms_error *err)
     return MS_OK;
 }
 
+static ms_status resolve_assembly(const grains_arguments *a, ms_error *err)
+{
+    if (a->most_overlap > 0 && !a->assembly) {
+        return ms_fail(err, MS_ERR_ARG, "--most-overlap is of the assembly: give --assembly beside it");
+    }
+    if (a->assembly && (a->merge || a->grains.parts > 1)) {
+        return ms_fail(err, MS_ERR_ARG,
+                       "--assembly is of all grains: after --merge, repeat the command without --part, with --resume "
+                       "and --assembly");
+    }
+    return MS_OK;
+}
+
 /* What follows from all flags together. */
 static ms_status resolve_grains(grains_arguments *a, ms_error *err)
 {
@@ -141,22 +162,53 @@ static ms_status resolve_grains(grains_arguments *a, ms_error *err)
     if (status == MS_OK) {
         status = resolve_formats(a, err);
     }
+    if (status == MS_OK) {
+        status = resolve_assembly(a, err);
+    }
     return status == MS_OK ? ms_grain_how_resolve(&a->how, err) : status;
 }
 
-static ms_status report_sum(const ms_grains_sum *sum, const char *table, int as_json, ms_error *err)
+/* NULL without memory. */
+static json_t *assembly_json(const ms_grain_assembly *sum)
 {
-    if (as_json) {
+    return json_pack("{s:I,s:I,s:I,s:I,s:o,s:o,s:o}", "clumps", (json_int_t)sum->clumps, "grains_without",
+                     (json_int_t)sum->without, "neighbours", (json_int_t)sum->neighbours, "overlapping",
+                     (json_int_t)sum->overlapping, "median_relative_depth", ms_report_number(sum->median),
+                     "most_relative_depth", ms_report_number(sum->most), "volume_kept", ms_report_number(sum->volume));
+}
+
+static void print_assembly(const ms_grain_assembly *sum, const char *folder)
+{
+    printf("wrote %s/assembly.csv: %zu clumps in their places, %zu pairs of neighbours", folder, sum->clumps,
+           sum->neighbours);
+    if (sum->overlapping) {
+        printf(", %zu overlap (%.3g %%), by %.3g of the equivalent radius in the median, %.3g at most",
+               sum->overlapping, 100 * (double)sum->overlapping / (double)sum->neighbours, sum->median, sum->most);
+    }
+    if (sum->volume < 1) {
+        printf("; shrunk, with %.4g %% of their volume", 100 * sum->volume);
+    }
+    printf("%s\n", sum->without ? "; grains without a clump are missing" : "");
+}
+
+/* @param assembly NULL without */
+static ms_status report_sum(const ms_grains_sum *sum, const ms_grain_assembly *assembly, const char *table,
+                            const grains_arguments *a, ms_error *err)
+{
+    if (a->json) {
         return ms_report_print(stdout,
-                               json_pack("{s:o,s:I,s:I,s:I,s:I,s:f}", "table", ms_report_text(table), "grains",
+                               json_pack("{s:o,s:I,s:I,s:I,s:I,s:f,s:o*}", "table", ms_report_text(table), "grains",
                                          (json_int_t)sum->grains, "ok", (json_int_t)sum->ok, "left_out",
                                          (json_int_t)sum->left_out, "failed", (json_int_t)sum->failed, "spheres",
-                                         sum->spheres),
+                                         sum->spheres, "assembly", assembly ? assembly_json(assembly) : NULL),
                                err);
     }
     printf("wrote %s: %zu grains, %zu with a clump, %.0f spheres in all", table, sum->grains, sum->ok, sum->spheres);
     printf("%s%zu left out, %zu failed%s\n", "; ", sum->left_out, sum->failed,
            sum->failed + sum->left_out ? ": see the column cause" : "");
+    if (assembly) {
+        print_assembly(assembly, a->folder);
+    }
     return MS_OK;
 }
 
@@ -165,6 +217,7 @@ static ms_status make_all(const grains_arguments *a, ms_error *err)
     char table[4096];
     ms_csv csv = {.fd = -1};
     ms_grains_sum sum;
+    ms_grain_assembly assembly;
     char *header = ms_grain_row_line(NULL);
     ms_status status =
         header ? ms_outputs_make_folder(a->folder, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the header");
@@ -176,11 +229,15 @@ static ms_status make_all(const grains_arguments *a, ms_error *err)
     if (status == MS_OK) {
         status = ms_grains_make(&sum, &csv, &a->grains, err);
     }
+    const int assemble = a->assembly && status == MS_OK && sum.ok > 0;
+    if (assemble) {
+        status = ms_grain_assembly_write(&assembly, &csv, &a->grains, a->most_overlap, err);
+    }
     ms_csv_close(&csv);
     if (status == MS_OK) {
-        status = report_sum(&sum, table, a->json, err);
+        status = report_sum(&sum, assemble ? &assembly : NULL, table, a, err);
     }
-    if (status == MS_OK && sum.ok == 0 && sum.failed > 0) {
+    if (status == MS_OK && sum.ok == 0 && (sum.failed > 0 || a->assembly)) {
         status = ms_fail(err, MS_ERR_SHAPE, "%s: not one grain has a clump; the column cause says why", table);
     }
     return status;
@@ -209,7 +266,10 @@ static ms_status execute_grains(grains_arguments *a, char *const *words, size_t 
     }
     a->grains.list = &list;
     a->grains.run = ms_grain_list_checksum(&list);
-    status = a->dry_run ? try_three(a, err) : make_all(a, err);
+    status = a->assembly ? ms_grain_assembly_check(&a->grains, words, count, err) : MS_OK;
+    if (status == MS_OK) {
+        status = a->dry_run ? try_three(a, err) : make_all(a, err);
+    }
     ms_grain_list_free(&list);
     return status;
 }

@@ -80,6 +80,29 @@ static void print_masses(FILE *stream, const ms_mass *mass)
     put_number(stream, corrected ? mass->report.centre : (double)NAN);
 }
 
+/* The columns of a place, in the order of its numbers. */
+static const char *const PLACE[] = {"mass",         "moment_1",     "moment_2",    "moment_3",
+                                    "centre_x",     "centre_y",     "centre_z",    "quaternion_w",
+                                    "quaternion_x", "quaternion_y", "quaternion_z"};
+enum { PLACE_COLUMNS = sizeof PLACE / sizeof *PLACE };
+
+/* Where the number of a column stands. */
+static double *place_number(ms_grain_place *place, int column)
+{
+    double *const number[PLACE_COLUMNS] = {&place->mass,      &place->moment[0], &place->moment[1], &place->moment[2],
+                                           &place->centre[0], &place->centre[1], &place->centre[2], &place->turn[0],
+                                           &place->turn[1],   &place->turn[2],   &place->turn[3]};
+    return number[column];
+}
+
+static void print_place(FILE *stream, const ms_grain_place *place)
+{
+    ms_grain_place copy = *place;
+    for (int c = 0; c < PLACE_COLUMNS; c++) {
+        put_number(stream, *place_number(&copy, c));
+    }
+}
+
 static void print_results(FILE *stream, const ms_grain_row *row)
 {
     const ms_result *r = row->result;
@@ -102,6 +125,7 @@ static void print_results(FILE *stream, const ms_grain_row *row)
         put_number(stream, r ? m->of_metrics(&r->metrics) : (double)NAN);
     }
     print_masses(stream, r ? &r->mass : NULL);
+    print_place(stream, &row->place);
     put_number(stream, row->seconds);
     fprintf(stream, ",%d,", row->beside);
     if (r) {
@@ -122,7 +146,11 @@ static void print_header(FILE *stream)
     for (const ms_measure *m = ms_measures; m->name; m++) {
         fprintf(stream, ",%s", ms_measure_column(m, m->in_compare));
     }
-    fputs(",epsilon,products_epsilon,centre_epsilon,seconds,beside,spheres_fnv1a,cause", stream);
+    fputs(",epsilon,products_epsilon,centre_epsilon", stream);
+    for (int c = 0; c < PLACE_COLUMNS; c++) {
+        fprintf(stream, ",%s", PLACE[c]);
+    }
+    fputs(",seconds,beside,spheres_fnv1a,cause", stream);
 }
 
 char *ms_grain_row_line(const ms_grain_row *row)
@@ -144,24 +172,40 @@ char *ms_grain_row_line(const ms_grain_row *row)
 
 enum { MOST_COLUMNS = 64 + MS_MEASURES };
 
-/* The field of a column in a line that is cut; NULL if it is not there. */
-static const char *find_field(char *const *field, size_t count, const char *column)
+/* A line, cut, beside the names of its columns. */
+typedef struct row_fields {
+    char *field[MOST_COLUMNS], *name[MOST_COLUMNS], *copy, *header;
+    size_t count; /* 0: it is no row */
+} row_fields;
+
+static void cut_row(row_fields *fields, const char *line)
 {
-    char *name[MOST_COLUMNS], *header = ms_grain_row_line(NULL);
-    const size_t columns = header ? ms_csv_split(name, MOST_COLUMNS, header) : 0;
+    fields->copy = strdup(line);
+    fields->header = ms_grain_row_line(NULL);
+    const int ok = fields->copy && fields->header;
+    const size_t count = ok ? ms_csv_split(fields->field, MOST_COLUMNS, fields->copy) : 0;
+    const size_t columns = ok ? ms_csv_split(fields->name, MOST_COLUMNS, fields->header) : 0;
+    fields->count = count == columns ? count : 0;
+}
+
+static void free_fields(row_fields *fields)
+{
+    free(fields->copy);
+    free(fields->header);
+}
+
+/* The field of a column; NULL if it is not there. */
+static const char *find_field(const row_fields *fields, const char *column)
+{
     const char *found = NULL;
-    for (size_t c = 0; c < columns && columns == count; c++) {
-        found = strcmp(name[c], column) == 0 ? field[c] : found;
+    for (size_t c = 0; c < fields->count; c++) {
+        found = strcmp(fields->name[c], column) == 0 ? fields->field[c] : found;
     }
-    free(header);
     return found;
 }
 
-ms_status ms_grain_row_read(ms_grain_status *status, double *spheres, const char *line, ms_error *err)
+static int read_status(ms_grain_status *status, const char *named)
 {
-    char *field[MOST_COLUMNS], *copy = strdup(line);
-    const size_t count = copy ? ms_csv_split(field, MOST_COLUMNS, copy) : 0;
-    const char *named = find_field(field, count, "status"), *n = find_field(field, count, "n");
     int found = 0;
     for (int s = 0; s < MS_GRAIN_STATUSES && named; s++) {
         if (strcmp(named, STATUS[s]) == 0) {
@@ -169,9 +213,46 @@ ms_status ms_grain_row_read(ms_grain_status *status, double *spheres, const char
             found = 1;
         }
     }
+    return found;
+}
+
+ms_status ms_grain_row_read(ms_grain_status *status, double *spheres, const char *line, ms_error *err)
+{
+    row_fields fields;
+    cut_row(&fields, line);
+    const char *n = find_field(&fields, "n");
+    const int found = read_status(status, find_field(&fields, "status"));
     *spheres = n ? strtod(n, NULL) : 0;
-    free(copy);
+    free_fields(&fields);
     return found ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "has no status of a grain");
+}
+
+/* NAN where the field is empty or is no number. */
+static double read_number(const row_fields *fields, const char *column)
+{
+    const char *text = find_field(fields, column);
+    const ms_word word = {text, text ? strlen(text) : 0};
+    double value;
+    return text && ms_text_to_double(&value, &word) ? value : (double)NAN;
+}
+
+ms_status ms_grain_row_find(ms_grain_found *found, const char *line, ms_error *err)
+{
+    row_fields fields;
+    cut_row(&fields, line);
+    const char *file = find_field(&fields, "file");
+    const int is_row =
+        file && strlen(file) < sizeof found->file && read_status(&found->status, find_field(&fields, "status"));
+    if (is_row) {
+        snprintf(found->file, sizeof found->file, "%s", file);
+        found->number = read_number(&fields, "grain");
+        found->volume = read_number(&fields, "volume");
+        for (int c = 0; c < PLACE_COLUMNS; c++) {
+            *place_number(&found->place, c) = read_number(&fields, PLACE[c]);
+        }
+    }
+    free_fields(&fields);
+    return is_row ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "'%.60s' is no row of a grain", line);
 }
 
 char *ms_grain_row_key(const ms_grain_row *row)

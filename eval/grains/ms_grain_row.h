@@ -17,6 +17,13 @@
 typedef enum ms_grain_status { MS_GRAIN_STATUS_LIST(MS_GRAIN_ENUM) MS_GRAIN_STATUSES } ms_grain_status;
 #undef MS_GRAIN_ENUM
 
+/** Where a grain is: the frame of its template in that of its source. NAN where it is not known. */
+typedef struct ms_grain_place {
+    double mass, moment[3]; /* of the template, SI; NAN without masses */
+    double centre[3];       /* of mass, in the unit of the source */
+    double turn[4];         /* quaternion w, x, y, z: source = centre + turn of the template / scale */
+} ms_grain_place;
+
 /** What is told of a grain. What it did not get to is NAN, 0 or "". */
 typedef struct ms_grain_row {
     size_t number, count; /* from 1; of all grains */
@@ -27,6 +34,7 @@ typedef struct ms_grain_row {
     const char *ending;      /* of the first of its files */
     const ms_result *result; /* NULL without */
     double pieces, voxel_size, volume;
+    ms_grain_place place;
     double seconds; /* of all that was done for it */
     int beside;     /* other grains at the same time */
     ms_error cause;
@@ -40,6 +48,18 @@ char *ms_grain_row_line(const ms_grain_row *row);
  * @return MS_OK; MS_ERR_FORMAT for a line that is no row
  */
 ms_status ms_grain_row_read(ms_grain_status *status, double *spheres, const char *line, ms_error *err);
+
+/** A line that was there, as far as it says where its clump is. */
+typedef struct ms_grain_found {
+    ms_grain_status status;
+    double number;
+    char file[512]; /* from the folder of the table */
+    double volume;  /* NAN: not known */
+    ms_grain_place place;
+} ms_grain_found;
+
+/** @return MS_OK; MS_ERR_FORMAT for a line that is no row */
+ms_status ms_grain_row_find(ms_grain_found *found, const char *line, ms_error *err);
 
 /** How its line begins: all that was asked for, with the comma behind it. Likewise. */
 char *ms_grain_row_key(const ms_grain_row *row);

@@ -7,8 +7,10 @@
 #include <string.h>
 
 #include "base/ms_file.h"
+#include "base/ms_quaternion.h"
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
+#include "clump/ms_template.h"
 #include "measure/ms_metrics.h"
 #include "volume/ms_components.h"
 
@@ -108,15 +110,40 @@ static ms_status make_room(grains_work *w, ms_error *err)
 static ms_grain_row begin_row(const grains_work *w, size_t at)
 {
     const ms_grain *grain = &w->g->list->grain[w->index[at]];
+    const double nan = (double)NAN;
     return (ms_grain_row){.number = w->index[at] + 1,
                           .count = w->g->list->count,
                           .run = w->g->run,
                           .grain = grain,
                           .checksum = grain->source->checksum,
                           .ending = w->g->format[0]->ending,
-                          .pieces = (double)NAN,
-                          .voxel_size = (double)NAN,
-                          .volume = (double)NAN};
+                          .pieces = nan,
+                          .voxel_size = nan,
+                          .volume = nan,
+                          .place = {nan, {nan, nan, nan}, {nan, nan, nan}, {nan, nan, nan, nan}}};
+}
+
+/* Where it is: the template's frame is that of any density. */
+static ms_status find_place(ms_grain_place *place, const ms_mass *mass, const ms_body *body, ms_error *err)
+{
+    const ms_clump none = {0};
+    const int has_mass = mass->particle.mass > 0;
+    ms_particle particle = mass->particle;
+    ms_template frame;
+    ms_status status = has_mass ? MS_OK : ms_particle_from_body(&particle, body, 1, 1, err);
+    if (status == MS_OK) {
+        status = ms_template_make(&frame, &none, &particle, err);
+    }
+    if (status == MS_OK) {
+        memcpy(place->centre, frame.centre, sizeof place->centre);
+        ms_quaternion_from_axes(place->turn, frame.axis);
+        place->mass = has_mass ? particle.mass : (double)NAN;
+        for (int m = 0; m < 3; m++) {
+            place->moment[m] = has_mass ? frame.particle.inertia[m][m] : (double)NAN;
+        }
+        ms_template_free(&frame);
+    }
+    return status;
 }
 
 /* Nonzero if a filter leaves the grain out; the row says which. */
@@ -235,6 +262,9 @@ static ms_status make_grain(ms_grain_row *row, ms_result *r, const grains_work *
         row->voxel_size = input.target.grid.h;
         row->volume = input.target.body.volume;
         status = make_clump(r, &input, grain->how, w->g->mass, &row->cause);
+    }
+    if (status == MS_OK) {
+        status = find_place(&row->place, &r->mass, &input.target.body, &row->cause);
     }
     if (status == MS_OK) {
         row->result = r;

@@ -4,6 +4,7 @@
 #define MS_FORMATS_H
 
 #include "base/ms_file.h"
+#include "clump/ms_packing.h"
 #include "ms_write.h"
 
 /* Readers, as ms_format.read. In the files of YADE a fifth column is the id of a clump. */
@@ -32,5 +33,14 @@ ms_status ms_deme_write(FILE *stream, const ms_content *content, ms_error *err);
 ms_status ms_kratos_write(FILE *stream, const ms_content *content, ms_error *err);
 ms_status ms_mfix_write(FILE *stream, const ms_content *content, ms_error *err);
 ms_status ms_pfc_write(FILE *stream, const ms_content *content, ms_error *err);
+
+/* Writers of packings, as ms_packing_part.write. */
+ms_status ms_liggghts_packing(FILE *stream, const ms_packing *packing, const char *name, ms_error *err);
+ms_status ms_liggghts_settle(FILE *stream, const ms_packing *packing, const char *name, ms_error *err);
+ms_status ms_lammps_packing(FILE *stream, const ms_packing *packing, const char *name, ms_error *err);
+ms_status ms_lammps_bodies(FILE *stream, const ms_packing *packing, const char *name, ms_error *err);
+ms_status ms_lammps_settle(FILE *stream, const ms_packing *packing, const char *name, ms_error *err);
+ms_status ms_yade_packing(FILE *stream, const ms_packing *packing, const char *name, ms_error *err);
+ms_status ms_yade_settle(FILE *stream, const ms_packing *packing, const char *name, ms_error *err);
 
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/ms_escape.h"
+#include "base/ms_quaternion.h"
 #include "base/ms_text.h"
 #include "base/ms_version.h"
 #include "ms_fields.h"
@@ -208,20 +209,24 @@ ms_status ms_lammps_write(FILE *stream, const ms_content *content, ms_error *err
  * LAMMPS multiplies it by the reduced mass: a restitution of 0.5 has to be asked for as that whose polynomial is larger
  * by the root of 2, or 0.615 is what comes of it. Each run puts the walls' through the polynomial again: the script has
  * one. */
-static void write_lammps_contacts(FILE *stream, const ms_script_drop *drop)
+static void write_lammps_law(FILE *stream, double young)
 {
-    static const char *const WALLS[] = {"floor", "west_east", "south_north"};
-    ms_number young, side;
-    ms_script_number(drop->young, &young);
-    ms_script_number(drop->side, &side);
+    ms_number value;
     fprintf(stream,
             "# 0.3667 makes a restitution of 0.5.\n"
             "variable contact string \"hertz/material %s 0.3667 0.3 tangential mindlin NULL 1.0 0.5 damping tsuji\"\n"
             "pair_style granular\npair_coeff * * ${contact}\n",
-            young.text);
-    for (int k = 0; k < 3; k++) {
-        fprintf(stream, "fix %s all wall/gran granular ${contact} %cplane ", WALLS[k], "zxy"[k]);
-        fprintf(stream, k == 0 ? "0 NULL\n" : "-%s %s\n", side.text, side.text);
+            ms_script_number(young, &value));
+}
+
+/* The floor, and the walls along x and y. */
+static void write_lammps_walls(FILE *stream, double floor, const double lo[2], const double hi[2])
+{
+    ms_number a, b;
+    fprintf(stream, "fix floor all wall/gran granular ${contact} zplane %s NULL\n", ms_script_number(floor, &a));
+    for (int k = 0; k < 2; k++) {
+        fprintf(stream, "fix %s all wall/gran granular ${contact} %cplane %s %s\n", k ? "south_north" : "west_east",
+                "xy"[k], ms_script_number(lo[k], &a), ms_script_number(hi[k], &b));
     }
 }
 
@@ -253,7 +258,8 @@ ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *er
     fputs("fix molecules all property/atom mol ghost yes\n"
           "neigh_modify delay 0 exclude molecule/intra all\n",
           stream);
-    write_lammps_contacts(stream, &d);
+    write_lammps_law(stream, d.young);
+    write_lammps_walls(stream, 0, (const double[]){-d.side, -d.side}, (const double[]){d.side, d.side});
     fprintf(stream, "timestep %s\n", ms_script_number(d.step, &b));
     fputs("fix gravity all gravity 9.81 vector 0 0 -1 disable\n\n", stream);
     fputs("# The template: its mass and inertia are kept (reinit no) and gravity acts on the body.\n", stream);
@@ -267,5 +273,133 @@ ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *er
     fputs("thermo_style custom step atoms\nthermo_modify lost error\n", stream);
     fprintf(stream, "variable steps equal ceil(%.0f*sqrt(1+v_n/4))\n", ceil(d.end / d.step));
     fprintf(stream, "thermo %.0f\nrun ${steps}\n", ceil(d.end / d.step / 10));
+    return MS_OK;
+}
+
+static void write_lammps_atoms(FILE *stream, const ms_packing *packing)
+{
+    size_t atom = 1;
+    fputs("\nAtoms # sphere\n\n", stream);
+    for (size_t p = 0; p < packing->count; p++) {
+        const ms_placed *placed = &packing->placed[p];
+        for (size_t s = 0; s < placed->clump.n_spheres; s++) {
+            const ms_sphere b = ms_packing_sphere(placed, s);
+            const double row[] = {2 * b.radius, placed->particle.density, b.centre[0], b.centre[1], b.centre[2]};
+            fprintf(stream, "%zu 1 ", atom++);
+            ms_fields_numbers(stream, row, 5, " ");
+            fputc('\n', stream);
+        }
+    }
+}
+
+/* The number of the body of each atom. */
+static void write_lammps_molecules(FILE *stream, const ms_packing *packing)
+{
+    size_t atom = 1;
+    fputs("\nMolecules\n\n", stream);
+    for (size_t p = 0; p < packing->count; p++) {
+        for (size_t s = 0; s < packing->placed[p].clump.n_spheres; s++) {
+            fprintf(stream, "%zu %zu\n", atom++, p + 1);
+        }
+    }
+}
+
+/* A data file: the spheres as atoms, in their places. */
+ms_status ms_lammps_packing(FILE *stream, const ms_packing *packing, const char *name, ms_error *err)
+{
+    const ms_script_settle settle = ms_script_settle_of(packing);
+    size_t spheres = 0;
+    ms_number a, b;
+    (void)err;
+    (void)name;
+    for (size_t p = 0; p < packing->count; p++) {
+        spheres += packing->placed[p].clump.n_spheres;
+    }
+    fprintf(stream, "packing by mskit " MS_VERSION ", SI\n\n%zu atoms\n1 atom types\n", spheres);
+    for (int axis = 0; axis < 3; axis++) {
+        double lo, hi;
+        ms_script_settle_domain(&lo, &hi, &settle, axis);
+        fprintf(stream, "%s %s %clo %chi\n", ms_script_number(lo, &a), ms_script_number(hi, &b), "xyz"[axis],
+                "xyz"[axis]);
+    }
+    write_lammps_atoms(stream, packing);
+    write_lammps_molecules(stream, packing);
+    return MS_OK;
+}
+
+/* The inertia of a body along the axes of the packing, xx yy zz xy xz yz: sum of moment * axis axis^T. */
+static void turn_inertia(double out[6], const ms_placed *placed)
+{
+    static const int ROW[] = {0, 1, 2, 0, 0, 1}, COLUMN[] = {0, 1, 2, 1, 2, 2};
+    memset(out, 0, 6 * sizeof *out);
+    for (int m = 0; m < 3; m++) {
+        const double along[3] = {m == 0, m == 1, m == 2};
+        double axis[3];
+        ms_quaternion_turn(axis, placed->turn, along);
+        for (int k = 0; k < 6; k++) {
+            out[k] += placed->particle.inertia[m][m] * axis[ROW[k]] * axis[COLUMN[k]];
+        }
+    }
+}
+
+/* The infile of fix rigid/small: body, mass, centre, inertia, velocity, angular momentum, images. */
+ms_status ms_lammps_bodies(FILE *stream, const ms_packing *packing, const char *name, ms_error *err)
+{
+    (void)err;
+    (void)name;
+    fprintf(stream, "%zu\n", packing->count);
+    for (size_t p = 0; p < packing->count; p++) {
+        const ms_placed *placed = &packing->placed[p];
+        double inertia[6];
+        turn_inertia(inertia, placed);
+        fprintf(stream, "%zu %s ", p + 1, ms_text_of_number(placed->particle.mass).text);
+        ms_fields_numbers(stream, placed->centre, 3, " ");
+        fputc(' ', stream);
+        ms_fields_numbers(stream, inertia, 6, " ");
+        fputs(" 0 0 0 0 0 0 0 0 0\n", stream);
+    }
+    return MS_OK;
+}
+
+static void write_lammps_bodies_fix(FILE *stream, const char *name)
+{
+    char bodies[512];
+    snprintf(bodies, sizeof bodies, "%s.bodies", name);
+    fputs("# The bodies: mass and inertia are kept (reinit no) and gravity acts on them.\n"
+          "fix move all rigid/small molecule infile ",
+          stream);
+    ms_escape_lammps(stream, bodies);
+    fputs(" reinit no gravity gravity\n\n", stream);
+}
+
+ms_status ms_lammps_settle(FILE *stream, const ms_packing *packing, const char *name, ms_error *err)
+{
+    const ms_script_settle s = ms_script_settle_of(packing);
+    ms_number a;
+    (void)err;
+    ms_script_settle_title(stream, name, "lmp -in", ".in");
+    fprintf(stream, "variable loosen index %.0f\nvariable steps index %.0f\n\n", s.loosen, s.end);
+    fputs("units si\natom_style sphere\natom_modify map array\nboundary f f f\nnewton off\n"
+          "fix molecules all property/atom mol ghost yes\nread_data ",
+          stream);
+    ms_escape_lammps(stream, name);
+    fprintf(stream, " fix molecules NULL Molecules\ncomm_modify vel yes cutoff %s\n",
+            ms_script_number(2 * s.reach, &a));
+    fprintf(stream, "neighbor %s bin\nneigh_modify delay 0 exclude molecule/intra all\n\n",
+            ms_script_number(s.least, &a));
+    write_lammps_law(stream, s.young);
+    write_lammps_walls(stream, s.lo[2], s.lo, s.hi);
+    fprintf(stream, "timestep %s\nfix gravity all gravity 0 vector 0 0 -1 disable\n\n", ms_script_number(s.step, &a));
+    write_lammps_bodies_fix(stream, name);
+    fprintf(stream,
+            "compute energy all ke/rigid move\nthermo_style custom step atoms c_energy\n"
+            "thermo_modify lost error\n\n# Those that overlap come apart.\n"
+            "fix drag all viscous %s\nthermo 1000\nrun ${loosen}\nunfix drag\n\n",
+            ms_script_number(s.drag, &a));
+    fputs("# They settle. Walls lose their damping in a second run: new ones.\n"
+          "unfix floor\nunfix west_east\nunfix south_north\n",
+          stream);
+    write_lammps_walls(stream, s.lo[2], s.lo, s.hi);
+    fputs("fix gravity all gravity 9.81 vector 0 0 -1 disable\nthermo 10000\nrun ${steps}\n", stream);
     return MS_OK;
 }

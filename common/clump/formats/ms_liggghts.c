@@ -6,6 +6,9 @@
 #include "ms_formats.h"
 #include "ms_script.h"
 
+static const char STYLE[] = "atom_style granular\natom_modify map array\ncommunicate single vel yes\n"
+                            "boundary f f f\nnewton off\nunits si\n";
+
 /* A comment or an empty line in it crashes LIGGGHTS. */
 ms_status ms_liggghts_write(FILE *stream, const ms_content *content, ms_error *err)
 {
@@ -28,40 +31,54 @@ static void write_liggghts_places(FILE *stream, const ms_script_drop *drop)
     fprintf(stream, " %s ${top} volume_limit 1e-300 units box\n", ms_script_number(0.2 * drop->reach, &low));
 }
 
-static void write_liggghts_contacts(FILE *stream, const ms_script_drop *drop)
+static void write_liggghts_law(FILE *stream, double young)
 {
-    static const char *const WALLS[] = {"floor", "west", "east", "south", "north"};
     ms_number value;
     fputs("hard_particles yes\n", stream); /* lets the modulus be above 1e9 */
-    fprintf(stream, "fix young all property/global youngsModulus peratomtype %s\n",
-            ms_script_number(drop->young, &value));
+    fprintf(stream, "fix young all property/global youngsModulus peratomtype %s\n", ms_script_number(young, &value));
     fputs("fix poisson all property/global poissonsRatio peratomtype 0.3\n"
           "fix restitution all property/global coefficientRestitution peratomtypepair 1 0.5\n"
           "fix friction all property/global coefficientFriction peratomtypepair 1 0.5\n"
           "pair_style gran model hertz tangential history\npair_coeff * *\n",
           stream);
-    ms_script_number(drop->side, &value);
+}
+
+/* The floor and four walls, in the order of their names. */
+static void write_liggghts_walls(FILE *stream, const double at[5])
+{
+    static const char *const WALLS[] = {"floor", "west", "east", "south", "north"};
+    ms_number value;
     for (int k = 0; k < 5; k++) {
-        fprintf(stream, "fix %s all wall/gran model hertz tangential history primitive type 1 %cplane %s%s\n", WALLS[k],
-                "zxxyy"[k], k % 2 ? "-" : "", k == 0 ? "0" : value.text);
+        fprintf(stream, "fix %s all wall/gran model hertz tangential history primitive type 1 %cplane %s\n", WALLS[k],
+                "zxxyy"[k], ms_script_number(at[k], &value));
     }
+}
+
+/* The end of the line of a template. */
+static void write_liggghts_mass(FILE *stream, const ms_particle *particle)
+{
+    ms_number value;
+    fprintf(stream, " mass %s inertia_tensor", ms_script_number(particle->mass, &value));
+    for (int k = 0; k < 6; k++) {
+        const int is_moment = k == 0 || k == 3 || k == 5;
+        fprintf(stream, " %s", is_moment ? ms_script_number(particle->inertia[k / 2][k / 2], &value) : "0");
+    }
+    fputs(" use_density\n", stream);
 }
 
 static void write_liggghts_particle(FILE *stream, const ms_content *content)
 {
     const ms_particle *p = content->particle;
-    ms_number a, b, c;
+    ms_number a;
     fputs("# The template: mass and inertia about its origin, along its axes.\n", stream);
     fprintf(stream,
             "fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 "
             "density constant %s nspheres %zu ntry 1000 spheres file ",
             ms_script_number(p->density, &a), content->clump->n_spheres);
     ms_escape_lammps(stream, content->name);
-    fprintf(stream, " scale 1.0 type 1 mass %s inertia_tensor", ms_script_number(p->mass, &b));
-    for (int k = 0; k < 6; k++) {
-        fprintf(stream, " %s", k == 0 || k == 3 || k == 5 ? ms_script_number(p->inertia[k / 2][k / 2], &c) : "0");
-    }
-    fputs(" use_density\nfix kinds all particledistribution/discrete 15485867 1 clump 1.0\n", stream);
+    fputs(" scale 1.0 type 1", stream);
+    write_liggghts_mass(stream, p);
+    fputs("fix kinds all particledistribution/discrete 15485867 1 clump 1.0\n", stream);
 }
 
 ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *err)
@@ -71,12 +88,11 @@ ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *
     (void)err;
     ms_script_title(stream, content->name, "liggghts -in", ".in", "-var n 50");
     fputs("variable n index 1\n\n", stream);
-    fputs("atom_style granular\natom_modify map array\ncommunicate single vel yes\nboundary f f f\nnewton off\n"
-          "units si\n",
-          stream);
+    fputs(STYLE, stream);
     write_liggghts_places(stream, &d);
     fprintf(stream, "neighbor %s bin\nneigh_modify delay 0\n\n", ms_script_number(0.2 * d.reach, &a));
-    write_liggghts_contacts(stream, &d);
+    write_liggghts_law(stream, d.young);
+    write_liggghts_walls(stream, (const double[]){0, -d.side, d.side, -d.side, d.side});
     fprintf(stream, "timestep %s\n", ms_script_number(d.step, &a));
     fputs("fix gravity all gravity 9.81 vector 0 0 -1\n\n", stream);
     write_liggghts_particle(stream, content);
@@ -85,5 +101,84 @@ ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *
           stream);
     fprintf(stream, "variable steps equal ceil(%.0f*sqrt(1+v_n/4))\n", ceil(d.end / d.step));
     fprintf(stream, "thermo %.0f\nrun ${steps}\n", ceil(d.end / d.step / 10));
+    return MS_OK;
+}
+
+/* No command puts a multisphere at a point: each is inserted into a region that is as good as one. Mass and inertia
+ * that are given do not go with the scale. */
+static void write_liggghts_placed(FILE *stream, const ms_placed *placed, size_t k, double speck)
+{
+    ms_number a, b;
+    fprintf(stream,
+            "fix t%zu all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 density constant %s "
+            "nspheres %zu ntry 1000 spheres file \"%s.liggghts\" scale %s type %zu",
+            k, ms_script_number(placed->particle.density, &a), placed->clump.n_spheres, placed->name,
+            ms_script_number(placed->scale, &b), k);
+    write_liggghts_mass(stream, &placed->particle);
+    fprintf(stream, "fix d%zu all particledistribution/discrete 15485867 1 t%zu 1.0\nregion r%zu block", k, k, k);
+    for (int axis = 0; axis < 3; axis++) {
+        const double x = placed->centre[axis];
+        fprintf(stream, " %s %s", ms_script_number(x - speck, &a), ms_script_number(x + speck, &b));
+    }
+    fprintf(stream,
+            " volume_limit 1e-300 units box\nfix i%zu all insert/pack seed 32452843 distributiontemplate d%zu "
+            "insert_every once overlapcheck no orientation constant ",
+            k, k);
+    ms_fields_numbers(stream, placed->turn, 4, " ");
+    fprintf(stream, " all_in no particles_in_region 1 region r%zu\n", k);
+}
+
+/* Half the width of such a region: a part in 1e9 of the smallest sphere, or what doubles can tell apart. */
+static double speck_of(const ms_script_settle *s)
+{
+    double speck = 1e-9 * s->least;
+    for (int k = 0; k < 3; k++) {
+        speck = fmax(speck, 1e-15 * fmax(fabs(s->lo[k]), fabs(s->hi[k])));
+    }
+    return speck;
+}
+
+ms_status ms_liggghts_packing(FILE *stream, const ms_packing *packing, const char *name, ms_error *err)
+{
+    const ms_script_settle s = ms_script_settle_of(packing);
+    (void)err;
+    (void)name;
+    for (size_t p = 0; p < packing->count; p++) {
+        write_liggghts_placed(stream, &packing->placed[p], p + 1, speck_of(&s));
+    }
+    return MS_OK;
+}
+
+static void write_liggghts_domain(FILE *stream, const ms_script_settle *s)
+{
+    ms_number a, b;
+    fputs("region box block", stream);
+    for (int axis = 0; axis < 3; axis++) {
+        double lo, hi;
+        ms_script_settle_domain(&lo, &hi, s, axis);
+        fprintf(stream, " %s %s", ms_script_number(lo, &a), ms_script_number(hi, &b));
+    }
+    fputs(" units box\ncreate_box 1 box\n", stream);
+}
+
+ms_status ms_liggghts_settle(FILE *stream, const ms_packing *packing, const char *name, ms_error *err)
+{
+    const ms_script_settle s = ms_script_settle_of(packing);
+    ms_number a;
+    (void)err;
+    ms_script_settle_title(stream, name, "liggghts -in", ".in");
+    fprintf(stream, "variable loosen index %.0f\nvariable steps index %.0f\n\n%s", s.loosen, s.end, STYLE);
+    write_liggghts_domain(stream, &s);
+    fprintf(stream, "neighbor %s bin\nneigh_modify delay 0\n\n", ms_script_number(s.least, &a));
+    write_liggghts_law(stream, s.young);
+    write_liggghts_walls(stream, (const double[]){s.lo[2], s.lo[0], s.hi[0], s.lo[1], s.hi[1]});
+    fprintf(stream, "timestep %s\n\n# A template and a place for each.\ninclude ", ms_script_number(s.step, &a));
+    ms_escape_lammps(stream, name);
+    fputs("\nfix move all multisphere\ncompute energy all ke/multisphere\nthermo_style custom step atoms c_energy\n\n# "
+          "Those that overlap come apart.\n",
+          stream);
+    fprintf(stream, "fix drag all viscous %s\nthermo 1000\nrun ${loosen}\nunfix drag\n\n",
+            ms_script_number(s.drag, &a));
+    fputs("# They settle.\nfix gravity all gravity 9.81 vector 0 0 -1\nthermo 10000\nrun ${steps}\n", stream);
     return MS_OK;
 }

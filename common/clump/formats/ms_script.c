@@ -5,15 +5,66 @@
 #include "base/ms_escape.h"
 
 static const double GRAVITY = 9.81, POISSON = 0.3;
+static const double LOOSEN_STEPS = 20000, SLOWING_STEPS = 5;
+
+/* Stiff enough for what weighs on a particle below that height, and what LIGGGHTS demands. */
+static double young_below(double height, double density)
+{
+    return fmax(1e5 * density * GRAVITY * height, 5e6);
+}
+
+/* A tenth of the Rayleigh time of the smallest sphere. */
+static double step_of(double least, double density, double young)
+{
+    const double shear = young / (2 * (1 + POISSON));
+    const double rayleigh = acos(-1.0) * least * sqrt(density / shear) / (0.1631 * POISSON + 0.8766);
+    return rayleigh / 10;
+}
 
 ms_script_drop ms_script_drop_of(const ms_content *content)
 {
     const ms_particle *p = content->particle;
     const double reach = ms_template_reach(content->clump), least = ms_clump_smallest_radius(content->clump);
-    const double young = fmax(1e5 * p->density * GRAVITY * reach, 5e6), shear = young / (2 * (1 + POISSON));
-    const double rayleigh = acos(-1.0) * least * sqrt(p->density / shear) / (0.1631 * POISSON + 0.8766);
-    return (ms_script_drop){
-        .reach = reach, .young = young, .step = rayleigh / 10, .end = 4 * sqrt(4 * reach / GRAVITY), .side = 4 * reach};
+    const double young = young_below(reach, p->density);
+    return (ms_script_drop){.reach = reach,
+                            .young = young,
+                            .step = step_of(least, p->density, young),
+                            .end = 4 * sqrt(4 * reach / GRAVITY),
+                            .side = 4 * reach};
+}
+
+ms_script_settle ms_script_settle_of(const ms_packing *packing)
+{
+    ms_script_settle s = {.least = HUGE_VAL, .drag = HUGE_VAL, .loosen = LOOSEN_STEPS};
+    const double density = packing->placed[0].particle.density;
+    ms_packing_box(s.lo, s.hi, packing);
+    for (size_t p = 0; p < packing->count; p++) {
+        const ms_placed *placed = &packing->placed[p];
+        s.reach = fmax(s.reach, placed->scale * ms_template_reach(&placed->clump));
+        s.least = fmin(s.least, placed->scale * ms_clump_smallest_radius(&placed->clump));
+        s.drag = fmin(s.drag, placed->particle.mass / (double)placed->clump.n_spheres);
+    }
+    s.young = young_below(s.hi[2] - s.lo[2], density);
+    s.step = step_of(s.least, density, s.young);
+    s.drag /= SLOWING_STEPS * s.step;
+    s.end = ceil(2 * sqrt(2 * (s.hi[2] - s.lo[2]) / GRAVITY) / s.step);
+    return s;
+}
+
+void ms_script_settle_title(FILE *stream, const char *name, const char *command, const char *suffix)
+{
+    fputs("# Lets ", stream);
+    ms_escape_comment(stream, name);
+    fprintf(stream, " come to rest in the box around it: %s ", command);
+    ms_escape_comment(stream, name);
+    fprintf(stream, "%s\n", suffix);
+}
+
+void ms_script_settle_domain(double *lo, double *hi, const ms_script_settle *s, int axis)
+{
+    const int is_up = axis == 2;
+    *lo = s->lo[axis] - s->reach;
+    *hi = s->hi[axis] + s->reach + (is_up ? s->hi[2] - s->lo[2] : 0);
 }
 
 void ms_script_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *fifty)

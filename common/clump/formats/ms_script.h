@@ -4,6 +4,7 @@
 #define MS_SCRIPT_H
 
 #include "base/ms_text.h"
+#include "clump/ms_packing.h"
 #include "ms_write.h"
 
 /** A drop that suits the size of the particle, whatever that is; the scripts have a restitution of 0.5. */
@@ -19,6 +20,27 @@ ms_script_drop ms_script_drop_of(const ms_content *content);
 
 /** The first line, a comment: "Drops NAME into a box: COMMAND NAME", the suffix of the script, and what drops fifty. */
 void ms_script_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *fifty);
+
+/** How a packing comes to rest in the box around it: first the clumps that overlap come apart, without weight and
+ * slowed down, then they settle under gravity. */
+typedef struct ms_script_settle {
+    double lo[3], hi[3]; /* box around the spheres */
+    double reach;        /* of the largest clump around its centre of mass */
+    double least;        /* radius */
+    double young;        /* as in ms_script_drop, for the height of the packing */
+    double step;         /* likewise */
+    double drag;         /* of each sphere, kg/s: slows the lightest body down within 5 steps */
+    double loosen, end;  /* steps of both stages */
+} ms_script_settle;
+
+/** @param packing not empty, with masses */
+ms_script_settle ms_script_settle_of(const ms_packing *packing);
+
+/** The first line of the script, a comment. */
+void ms_script_settle_title(FILE *stream, const char *name, const char *command, const char *suffix);
+
+/** Ends of its domain along an axis: a reach around the box, above it a height more. */
+void ms_script_settle_domain(double *lo, double *hi, const ms_script_settle *settle, int axis);
 
 /** The number as text, which stands in `room`. */
 const char *ms_script_number(double value, ms_number *room);

@@ -17,12 +17,19 @@ typedef struct ms_content {
 } ms_content;
 
 struct ms_bytes;
+struct ms_packing;
 
 /** One file of a format. */
 typedef struct ms_part {
     const char *suffix; /* behind the path: "" for the first file, ".in" for a script, "/Clump/Clump.txt" in a folder */
     ms_status (*write)(FILE *stream, const ms_content *content, ms_error *err);
 } ms_part;
+
+/** One file of a whole packing, which names the templates. */
+typedef struct ms_packing_part {
+    const char *suffix; /* behind the path, as above */
+    ms_status (*write)(FILE *stream, const struct ms_packing *packing, const char *name, ms_error *err);
+} ms_packing_part;
 
 /* What a format must know of a clump. */
 typedef enum ms_need {
@@ -38,7 +45,7 @@ typedef enum ms_sum {
     MS_SUM_VOLUMES /* solid spheres of the particle's density */
 } ms_sum;
 
-enum { MS_FORMAT_MAX_PARTS = 5, MS_WRITE_REMARK = 512 };
+enum { MS_FORMAT_MAX_PARTS = 5, MS_FORMAT_MAX_PACKING = 4, MS_WRITE_REMARK = 512 };
 
 /** A format of clump files. A table of them ends with a NULL name. */
 typedef struct ms_format {
@@ -56,6 +63,8 @@ typedef struct ms_format {
     const char *not_one; /* why the engine takes no clump of one sphere; NULL: it does */
     ms_sum sum;
     const char *sums; /* when it does, in words */
+
+    ms_packing_part packing[MS_FORMAT_MAX_PACKING]; /* ends with a NULL suffix; none: no packings are written */
 } ms_format;
 
 MS_API extern const ms_format ms_formats[];

@@ -1,0 +1,21 @@
+/** Files of a whole packing: every clump in its place, by its own template, and a script that lets it come to rest. */
+#ifndef MS_WRITE_PACKING_H
+#define MS_WRITE_PACKING_H
+
+#include "clump/ms_packing.h"
+#include "ms_write.h"
+
+/** Nonzero if packings of this format are written. */
+int ms_write_packing_is(const ms_format *format);
+
+/**
+ * Writes the packing, each file under a temporary name that is then renamed. The templates stand beside it, by the
+ * names of the clumps.
+ *
+ * @param packing not empty, of clumps with masses
+ * @param path    of its first file, whose name fits scripts
+ * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM
+ */
+ms_status ms_write_packing(const ms_packing *packing, const char *path, const ms_format *format, ms_error *err);
+
+#endif
