@@ -12,9 +12,9 @@
 enum { AT_ONCE = 4 };
 
 /*
- * The planes of the triangles k of a leaf of n, for a first judgement: normal[a] at a n + k, the distance from the centre
- * at 3 n + k, so that a leaf's are together. Of single precision and in units of the mesh's size, which is enough to
- * tell that a plane is too far (is_plane_farther).
+ * The planes of the triangles k of a leaf of n, for a first judgement: normal[a] at a n + k, the distance from the
+ * centre at 3 n + k, so that a leaf's are together. Of single precision and in units of the mesh's size, which is enough
+ * to tell that a plane is too far (find_plane_limit).
  */
 struct ms_closest {
     ms_bvh bvh;
@@ -225,13 +225,13 @@ static double side_by_triangle(const ms_bvh_triangle *t, const double ap[3], con
 
 /*
  * Planes farther than this, in units of the mesh's size and of single precision, are farther than the best for sure. In
- * the depth of a round body the boxes of most faces are near enough and their planes are not. Rounding is below
- * 4e-7 of |x| + |y| + |z| + size; so far away that numbers overflow nothing is left out.
+ * the depth of a round body the boxes of most faces are near enough and their planes are not. Rounding is below 4e-7 of
+ * |x| + |y| + |z| + size; so far away that numbers might overflow nothing is left out.
  */
 static float find_plane_limit(const nearest_search *s)
 {
     const double reach = fabs(s->point[0]) + fabs(s->point[1]) + fabs(s->point[2]), size = s->bvh->size;
-    return reach < 1e6 * size ? (float)fmin(sqrt(s->best) / size + 1e-6 * (reach / size + 1), HUGE_VALF) : HUGE_VALF;
+    return reach < 1e6 * size ? (float)fmin(sqrt(s->best) / size + 1e-6 * (reach / size + 1), 1e30) : HUGE_VALF;
 }
 
 static void search_triangle(nearest_search *s, const ms_bvh_triangle *t)
