@@ -13,8 +13,8 @@ enum { AT_ONCE = 4 };
 
 /*
  * The planes of the triangles k of a leaf of n, for a first judgement: normal[a] at a n + k, the distance from the
- * centre at 3 n + k, so that a leaf's are together. Of single precision and in units of the mesh's size, which is enough
- * to tell that a plane is too far (find_plane_limit).
+ * centre at 3 n + k, so that a leaf's are together. Of single precision and in units of the mesh's size, which is
+ * enough to tell that a plane is too far (find_plane_limit).
  */
 struct ms_closest {
     ms_bvh bvh;
