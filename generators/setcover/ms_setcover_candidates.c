@@ -20,6 +20,9 @@ static const double SURELY_INSIDE = 1.0 / (1 << 14);
 /* Centres are moved to the medial surface within this part of a skeleton's voxel. */
 static const double MEDIAL_TOLERANCE = 0.01;
 
+/* More than rounding adds to a distance, as a factor. */
+static const double NEAR_ENOUGH = 1 + 1e-6;
+
 static int is_by_mesh(const ms_target *target)
 {
     return target->mesh && target->closed;
@@ -195,8 +198,9 @@ static ms_sphere fit_start(const ms_setcover_start *start, const ms_closest *clo
     ms_sphere sphere;
     double nearest[3];
     memcpy(sphere.centre, start->centre, sizeof sphere.centre);
-    sphere.radius = ms_closest_distance(nearest, closest, sphere.centre, HUGE_VAL);
     const double rolled = sqrt(ms_squared_distance(start->from, start->centre));
+    /* The face that it was rolled away from is as far as its radius, which spares the search most places. */
+    sphere.radius = ms_closest_distance(nearest, closest, sphere.centre, start->radius * NEAR_ENOUGH);
     if (rolled > 0 && !(sphere.radius > rolled + SURELY_INSIDE * step)) {
         memcpy(sphere.centre, start->from, sizeof sphere.centre);
         sphere.radius = ms_closest_distance(nearest, closest, sphere.centre, HUGE_VAL);
