@@ -8,7 +8,7 @@
 
 /* Strided passes take neighbouring lines together, as many as fill a cache line, so that
  * every byte fetched is used. In the work space they stay interleaved: no transposition. */
-enum { BLOCK = 16 };
+enum { BLOCK = MS_DISTANCE_BLOCK };
 
 /* "No background along the axes so far"; larger than any squared distance in the grid. */
 static const uint32_t NONE = UINT32_MAX;
@@ -254,80 +254,199 @@ ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms
     return MS_OK;
 }
 
-/* What ms_distance_box works with. */
-typedef struct box_job {
-    const uint8_t *inside;
-    uint32_t *between; /* after x and y: the box's columns, all planes */
-    int wide, high;    /* of the box, along x and y */
-    int lo_x, n_x;
-    line_part y, z;
-} box_job;
+/* A block of columns of which some voxels are wanted, and where the background is that decides of these. */
+typedef struct block_job {
+    float *distance;
+    const uint8_t *inside, *wanted; /* wanted[0]: of the block in row 0 */
+    const int *n;
+    int x, width, blocks;         /* first column, columns, blocks of a row */
+    int lo[2], hi[2], from, to;   /* wanted, along y and z; rows that may decide */
+    int first_plane, after_plane; /* planes that may */
+    uint32_t *between;            /* after x and y: the wanted rows of those planes */
+} block_job;
 
-/* The passes along x and y of plane k. */
-static void box_plane(const box_job *job, uint32_t *rows, uint32_t *row, int k, const lines *w)
+/* How many voxels there are without background before `at`, or from it on (forward). */
+static int count_inside(const uint8_t *inside, int n, int at, int forward)
 {
-    for (int j = 0; j < job->y.n; j++) {
-        row_distances(row, job->inside + ((size_t)k * job->y.n + (size_t)j) * job->n_x, job->n_x);
-        memcpy(rows + (size_t)j * job->wide, row + job->lo_x, (size_t)job->wide * sizeof *rows);
+    if (forward) {
+        const uint8_t *end = at < n ? memchr(inside + at, 0, (size_t)(n - at)) : NULL;
+        return end ? (int)(end - inside) - at : (int)MS_GRID_MAX_EXTENT + 1;
     }
-    transform_plane(job->between + (size_t)k * job->wide * job->high, rows, job->wide, &job->y, w);
+    const uint64_t ones = 0x0101010101010101u, highest = 0x8080808080808080u;
+    int i = at;
+    for (; i >= 8; i -= 8) {
+        uint64_t eight;
+        memcpy(&eight, inside + i - 8, sizeof eight);
+        if ((eight - ones) & ~eight & highest) { /* a byte is 0: Warren, Hacker's Delight, 6-1 */
+            break;
+        }
+    }
+    while (i > 0 && inside[i - 1]) {
+        i--;
+    }
+    return i > 0 ? at - i : (int)MS_GRID_MAX_EXTENT + 1;
 }
 
-/* All passes. @return 0 without memory */
-static int transform_box(float *distance, const size_t apart[2], const box_job *job)
+/* row_distances of `width` voxels from x on; 0 if all are background. */
+static int part_distances(uint32_t *out, const uint8_t *inside, int n, int x, int width)
 {
-    const size_t plane = (size_t)job->wide * (size_t)job->high;
-    int out_of_memory = 0;
-#pragma omp parallel reduction(| : out_of_memory) if ((size_t)job->n_x * job->y.n * job->z.n >= MS_GRID_THREADS_FROM)
+    const uint32_t far = MS_GRID_MAX_EXTENT + 1;
+    if (!inside[x] && memcmp(inside + x, inside + x + 1, (size_t)width - 1) == 0) {
+        memset(out, 0, (size_t)width * sizeof *out);
+        return 0;
+    }
+    uint32_t away = (uint32_t)count_inside(inside, n, x, 0);
+    for (int i = 0; i < width; i++) {
+        away = inside[x + i] ? away + 1 : 0;
+        out[i] = away;
+    }
+    away = (uint32_t)count_inside(inside, n, x + width, 1);
+    for (int i = width - 1; i >= 0; i--) {
+        away = inside[x + i] ? away + 1 : 0;
+        const uint32_t least = away < out[i] ? away : out[i];
+        out[i] = least >= far ? NONE : least * least;
+    }
+    return 1;
+}
+
+static size_t find_row(const block_job *b, int j, int k)
+{
+    return (size_t)j + (size_t)b->n[1] * (size_t)k;
+}
+
+/* Where voxels are wanted; 0 if none is. */
+static int find_wanted(block_job *b)
+{
+    b->lo[0] = b->n[1];
+    b->lo[1] = b->n[2];
+    b->hi[0] = b->hi[1] = 0;
+    for (int k = 0; k < b->n[2]; k++) {
+        for (int j = 0; j < b->n[1]; j++) {
+            if (b->wanted[find_row(b, j, k) * (size_t)b->blocks]) {
+                b->lo[0] = j < b->lo[0] ? j : b->lo[0];
+                b->hi[0] = j >= b->hi[0] ? j + 1 : b->hi[0];
+                b->lo[1] = k < b->lo[1] ? k : b->lo[1];
+                b->hi[1] = k + 1;
+            }
+        }
+    }
+    return b->hi[1] > 0;
+}
+
+/* No background that decides is farther than that of a voxel's own row. */
+static void find_deciding(block_job *b)
+{
+    uint32_t most = 0;
+#pragma omp parallel for reduction(max : most)
+    for (int k = b->lo[1]; k < b->hi[1]; k++) {
+        for (int j = b->lo[0]; j < b->hi[0]; j++) {
+            uint32_t row[BLOCK];
+            const size_t at = find_row(b, j, k);
+            if (b->wanted[at * (size_t)b->blocks] &&
+                part_distances(row, b->inside + at * (size_t)b->n[0], b->n[0], b->x, b->width)) {
+                for (int c = 0; c < b->width; c++) {
+                    most = row[c] > most ? row[c] : most;
+                }
+            }
+        }
+    }
+    const int reach = most == NONE ? MS_GRID_MAX_EXTENT : (int)ceil(sqrt(most));
+    b->from = b->lo[0] > reach ? b->lo[0] - reach : 0;
+    b->to = b->n[1] - b->hi[0] > reach ? b->hi[0] + reach : b->n[1];
+    b->first_plane = b->lo[1] > reach ? b->lo[1] - reach : 0;
+    b->after_plane = b->n[2] - b->hi[1] > reach ? b->hi[1] + reach : b->n[2];
+}
+
+/* The passes along x and y of plane k. */
+static void block_plane(const block_job *b, int k, const lines *w)
+{
+    const line_part y = {b->to - b->from, b->lo[0] - b->from, b->hi[0] - b->from};
+    const size_t rows = (size_t)(y.to - y.from);
+    int any = 0;
+    for (int j = b->from; j < b->to; j++) {
+        any |= part_distances(w->block + (size_t)(j - b->from) * BLOCK, b->inside + find_row(b, j, k) * (size_t)b->n[0],
+                              b->n[0], b->x, b->width);
+    }
+    for (int c = 0; any && c < b->width; c++) {
+        transform_line(w->block + c, &y, w);
+    }
+    memcpy(b->between + rows * BLOCK * (size_t)(k - b->first_plane), w->block + (size_t)y.from * BLOCK,
+           rows * BLOCK * sizeof *b->between);
+}
+
+/* The pass along z of the lines of row j, and the roots of what is wanted. */
+static void block_slice(const block_job *b, int j, const lines *w)
+{
+    const size_t rows = (size_t)(b->hi[0] - b->lo[0]);
+    line_part z = {b->after_plane - b->first_plane, b->n[2], 0};
+    for (int k = b->lo[1]; k < b->hi[1]; k++) {
+        if (b->wanted[find_row(b, j, k) * (size_t)b->blocks]) {
+            z.from = k - b->first_plane < z.from ? k - b->first_plane : z.from;
+            z.to = k - b->first_plane + 1;
+        }
+    }
+    if (z.to == 0) {
+        return;
+    }
+    transform_block(b->between + BLOCK * (size_t)(j - b->lo[0]), b->width, &z, rows * BLOCK, w);
+    for (int k = b->lo[1]; k < b->hi[1]; k++) {
+        const size_t row = find_row(b, j, k);
+        float *out = b->distance + row * (size_t)b->n[0] + b->x;
+        for (int c = 0; b->wanted[row * (size_t)b->blocks] && c < b->width; c++) {
+            const uint32_t squared = w->block[(size_t)(k - b->first_plane) * BLOCK + (size_t)c];
+            out[c] = squared == NONE ? INFINITY : sqrtf((float)squared);
+        }
+    }
+}
+
+/* One block's columns. @return 0 without memory */
+static int transform_columns(block_job *b)
+{
+    const int n_y = b->to - b->from, n_z = b->after_plane - b->first_plane;
+    const size_t voxels = (size_t)(b->hi[0] - b->lo[0]) * BLOCK * (size_t)n_z;
+    b->between = malloc(voxels * sizeof *b->between);
+    int out_of_memory = !b->between;
+#pragma omp parallel reduction(| : out_of_memory) if (voxels >= MS_GRID_THREADS_FROM)
     {
         lines w = {0};
-        uint32_t *rows = malloc((size_t)job->wide * job->y.n * sizeof *rows);
-        uint32_t *row = malloc((size_t)job->n_x * sizeof *row);
-        const int ready = lines_alloc(&w, (size_t)(job->y.n > job->z.n ? job->y.n : job->z.n)) && rows && row;
-        out_of_memory = !ready;
-#pragma omp for schedule(dynamic, 1)
-        for (int k = 0; k < job->z.n; k++) {
+        const int ready = lines_alloc(&w, (size_t)(n_y > n_z ? n_y : n_z)) && b->between;
+        out_of_memory |= !ready;
+#pragma omp for schedule(dynamic, 4)
+        for (int k = b->first_plane; k < b->after_plane; k++) {
             if (ready) {
-                box_plane(job, rows, row, k, &w);
+                block_plane(b, k, &w);
             }
         }
-#pragma omp for schedule(dynamic, 1)
-        for (int j = 0; j < job->high; j++) {
+#pragma omp for schedule(dynamic, 4)
+        for (int j = b->lo[0]; j < b->hi[0]; j++) {
             if (ready) {
-                transform_slice(distance + (size_t)j * apart[0], apart[1], job->between + (size_t)j * job->wide, plane,
-                                job->wide, &job->z, &w);
+                block_slice(b, j, &w);
             }
         }
-        free(row);
-        free(rows);
         lines_free(&w);
     }
+    free(b->between);
     return !out_of_memory;
 }
 
-ms_status ms_distance_box(float *distance, const size_t apart[2], const uint8_t *inside, const int n[3],
-                          const int lo[3], const int hi[3], ms_error *err)
+ms_status ms_distance_blocks(float *distance, const uint8_t *inside, const int n[3], const uint8_t *wanted,
+                             ms_error *err)
 {
     const ms_status status = check_extents(n, err);
     if (status != MS_OK) {
         return status;
     }
-    for (int a = 0; a < 3; a++) {
-        if (lo[a] < 0 || hi[a] <= lo[a] || hi[a] > n[a]) {
-            return ms_fail(err, MS_ERR_ARG, "voxels %d to %d along %c are no part of a grid of %d", lo[a], hi[a],
-                           "xyz"[a], n[a]);
+    block_job b = {.distance = distance, .inside = inside, .n = n, .blocks = (n[0] + BLOCK - 1) / BLOCK};
+    for (int block = 0; block < b.blocks; block++) {
+        b.x = block * BLOCK;
+        b.width = block_width(n[0], b.x);
+        b.wanted = wanted + block;
+        if (find_wanted(&b)) {
+            find_deciding(&b);
+            if (!transform_columns(&b)) {
+                return ms_fail(err, MS_ERR_NOMEM, "no memory for distances in %d columns; use fewer cells", b.width);
+            }
         }
     }
-    box_job job = {.inside = inside,
-                   .wide = hi[0] - lo[0],
-                   .high = hi[1] - lo[1],
-                   .lo_x = lo[0],
-                   .n_x = n[0],
-                   .y = {n[1], lo[1], hi[1]},
-                   .z = {n[2], lo[2], hi[2]}};
-    const size_t between = (size_t)job.wide * (size_t)job.high * (size_t)n[2];
-    job.between = malloc(between * sizeof *job.between);
-    const int done = job.between && transform_box(distance, apart, &job);
-    free(job.between);
-    return done ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for distances of %zu voxels", between);
+    return MS_OK;
 }

@@ -124,7 +124,8 @@ long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball)
 long ms_mss_open_fit(ms_ball *ball, const ms_mss_open *open, double lo, double hi, double step)
 {
     long most = ms_mss_open_gain(open, ball);
-    for (int up = 1; up >= -1; up -= 2) {
+    const double start = ball->radius;
+    for (int up = 1; up >= -1 && ball->radius == start; up -= 2) { /* where it rises upwards it does not downwards */
         ms_ball next = *ball;
         for (next.radius += up * step; next.radius >= lo && next.radius <= hi; next.radius += up * step) {
             const long gain = ms_mss_open_gain(open, &next);
