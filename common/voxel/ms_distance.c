@@ -337,7 +337,7 @@ static int find_wanted(block_job *b)
 static void find_deciding(block_job *b)
 {
     uint32_t most = 0;
-#pragma omp parallel for reduction(max : most)
+#pragma omp parallel for reduction(max : most) if ((size_t)b->n[1] * (size_t)b->n[2] * BLOCK >= MS_GRID_THREADS_FROM)
     for (int k = b->lo[1]; k < b->hi[1]; k++) {
         for (int j = b->lo[0]; j < b->hi[0]; j++) {
             uint32_t row[BLOCK];

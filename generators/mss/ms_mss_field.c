@@ -135,24 +135,36 @@ static void clear_around(uint8_t *clear, const cell_map *map, int i, int j, int 
     clear[i + n[0] * (j + n[1] * k)] = 2;
 }
 
+static int holds_new(const uint16_t *first, int from, int to, size_t first_new)
+{
+    int any = 0;
+    for (int i = from; i < to; i++) {
+        any |= (first[i] >= first_new) & (first[i] != MS_RASTER_NONE);
+    }
+    return any;
+}
+
 static void mark_cells(uint8_t *clear, const cell_map *map, const ms_mss_field *field, const ms_mss_box *box,
                        const covered_box *covered)
 {
-    for (int k = covered->box.lo[2]; k < covered->box.hi[2]; k++) {
-        for (int j = covered->box.lo[1]; j < covered->box.hi[1]; j++) {
+    const ms_mss_box *own = &covered->box;
+    for (int k = own->lo[2]; k < own->hi[2]; k++) {
+        for (int j = own->lo[1]; j < own->hi[1]; j++) {
             const uint16_t *first = field->raster.first + ms_grid_index(&field->target->grid, 0, j, k);
-            for (int i = covered->box.lo[0]; i < covered->box.hi[0]; i++) {
-                if (first[i] >= covered->first_new && first[i] != MS_RASTER_NONE) {
-                    clear_around(clear, map, (i - box->lo[0]) / map->size, (j - box->lo[1]) / map->size,
-                                 (k - box->lo[2]) / map->size);
+            for (int i = own->lo[0]; i < own->hi[0];) {
+                const int cell = (i - box->lo[0]) / map->size, end = box->lo[0] + (cell + 1) * map->size;
+                const int to = end < own->hi[0] ? end : own->hi[0];
+                if (holds_new(first, i, to, covered->first_new)) {
+                    clear_around(clear, map, cell, (j - box->lo[1]) / map->size, (k - box->lo[2]) / map->size);
                 }
+                i = to;
             }
         }
     }
 }
 
 static ms_status map_cells(cell_map *map, const ms_mss_field *field, const ms_mss_box *box, const covered_box *covered,
-                           ms_error *err)
+                           size_t count, ms_error *err)
 {
     int longest = 0;
     size_t cells = 1;
@@ -171,7 +183,9 @@ static ms_status map_cells(cell_map *map, const ms_mss_field *field, const ms_ms
         status = ms_fail(err, MS_ERR_NOMEM, "no memory for %zu cells", cells);
     } else {
         memset(clear, 1, cells);
-        mark_cells(clear, map, field, box, covered);
+        for (size_t c = 0; c < count; c++) {
+            mark_cells(clear, map, field, box, &covered[c]);
+        }
         for (size_t c = 0; c < cells; c++) {
             clear[c] = clear[c] == 1;
         }
@@ -184,16 +198,15 @@ static ms_status map_cells(cell_map *map, const ms_mss_field *field, const ms_ms
     return status;
 }
 
-/* Does E~ of one of the voxels from <= i < to of a row change? Those change that a new sphere covers, and those may that
- * had their nearest background, which was as far as their old E~, among these. */
+/* May E~ of one of the voxels from <= i < to of a row change? It does where a new sphere covers, and may where the
+ * nearest background was among that, as far as their old E~. */
 static int may_change(const float *within, const uint16_t *first, int from, int to, float away, size_t first_new)
 {
     int any = 0;
     for (int i = from; i < to; i++) {
         any |= (within[i] >= away) & (within[i] > 0);
-        any |= (first[i] >= first_new) & (first[i] != MS_RASTER_NONE);
     }
-    return any;
+    return any || holds_new(first, from, to, first_new);
 }
 
 static void mark_row(ms_mss_field *field, const cell_map *map, const ms_mss_box *box, size_t first_new, int j, int k)
@@ -216,17 +229,23 @@ static void mark_row(ms_mss_field *field, const cell_map *map, const ms_mss_box 
     }
 }
 
-/* Marks the blocks whose E~ new spheres may change. */
-static ms_status mark_stale(ms_mss_field *field, const covered_box *covered, ms_error *err)
+/* The voxels that have their nearest background in a box, at most. */
+static ms_mss_box find_reach(const ms_mss_field *field, const ms_mss_box *box)
 {
-    const ms_mss_box reach = ms_mss_field_grow(&covered->box, (int)ceilf(field->deepest_within), field->target->grid.n);
+    return ms_mss_field_grow(box, (int)ceilf(field->deepest_within), field->target->grid.n);
+}
+
+/* Marks the blocks of a box whose E~ the spheres may change. */
+static ms_status mark_stale(ms_mss_field *field, const ms_mss_box *reach, const covered_box *covered, size_t count,
+                            ms_error *err)
+{
     cell_map map = {.away = NULL};
-    const ms_status status = map_cells(&map, field, &reach, covered, err);
+    const ms_status status = map_cells(&map, field, reach, covered, count, err);
     if (status == MS_OK) {
-#pragma omp parallel for schedule(dynamic, 4) if (count_box(&reach) >= MS_GRID_THREADS_FROM)
-        for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
-            for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
-                mark_row(field, &map, &reach, covered->first_new, j, k);
+#pragma omp parallel for schedule(dynamic, 4) if (count_box(reach) >= MS_GRID_THREADS_FROM)
+        for (int k = reach->lo[2]; k < reach->hi[2]; k++) {
+            for (int j = reach->lo[1]; j < reach->hi[1]; j++) {
+                mark_row(field, &map, reach, covered->first_new, j, k);
             }
         }
     }
@@ -234,11 +253,48 @@ static ms_status mark_stale(ms_mss_field *field, const covered_box *covered, ms_
     return status;
 }
 
-/* Lists the boxes of what was marked, one for each column of blocks, and how deep E~ is there. */
+/* Around each sphere, or around all at once where that is less to look at. */
+static ms_status mark_all_stale(ms_mss_field *field, const covered_box *covered, size_t count, ms_error *err)
+{
+    ms_mss_box all = {{INT_MAX, INT_MAX, INT_MAX}, {0, 0, 0}};
+    ms_status status = MS_OK;
+    size_t sum = 0;
+    memset(field->stale, 0, count_rows(field) * count_blocks(field));
+    for (size_t c = 0; c < count; c++) {
+        const ms_mss_box reach = find_reach(field, &covered[c].box);
+        include_box(&all, reach.lo, reach.hi);
+        sum += count_box(&reach);
+    }
+    if (count > 0 && count_box(&all) < sum) {
+        return mark_stale(field, &all, covered, count, err);
+    }
+    for (size_t c = 0; c < count && status == MS_OK; c++) {
+        const ms_mss_box reach = find_reach(field, &covered[c].box);
+        status = mark_stale(field, &reach, &covered[c], 1, err);
+    }
+    return status;
+}
+
+/* Lists a box, as one with the last of the list where that is hardly more. */
+static ms_status join_changed(ms_mss_field *field, const ms_mss_box *box, ms_error *err)
+{
+    if (field->n_changed > 0) {
+        ms_mss_box *last = &field->changed[field->n_changed - 1], both = *last;
+        include_box(&both, box->lo, box->hi);
+        if ((double)count_box(&both) <= 1.2 * (double)(count_box(last) + count_box(box))) {
+            *last = both;
+            return MS_OK;
+        }
+    }
+    return add_changed(field, box, err);
+}
+
+/* Lists boxes that hold what was marked, column of blocks by column, and takes note of how deep E~ is there. */
 static ms_status list_changed(ms_mss_field *field, ms_error *err)
 {
     const ms_grid *grid = &field->target->grid;
     const int blocks = (int)count_blocks(field);
+    float deepest = field->deepest_within;
     ms_status status = MS_OK;
     for (int b = 0; b < blocks && status == MS_OK; b++) {
         const int x = b * MS_DISTANCE_BLOCK;
@@ -248,43 +304,33 @@ static ms_status list_changed(ms_mss_field *field, ms_error *err)
             if (field->stale[row * (size_t)blocks + (size_t)b]) {
                 const int j = (int)(row % (size_t)grid->n[1]), k = (int)(row / (size_t)grid->n[1]);
                 include_box(&box, (int[3]){x, j, k}, (int[3]){end, j + 1, k + 1});
-                for (size_t v = row * (size_t)grid->n[0] + (size_t)x; v < row * (size_t)grid->n[0] + (size_t)end; v++) {
-                    field->deepest_within = fmaxf(field->deepest_within, field->within[v]);
+                const float *within = field->within + row * (size_t)grid->n[0];
+                for (int i = x; i < end; i++) {
+                    deepest = within[i] > deepest ? within[i] : deepest;
                 }
             }
         }
-        status = box.hi[0] > 0 ? add_changed(field, &box, err) : MS_OK;
+        status = box.hi[0] > 0 ? join_changed(field, &box, err) : MS_OK;
     }
+    field->deepest_within = deepest;
     return status;
 }
 
-/* Adds spheres to S~; lists the boxes of what each has covered, or one for all where that is less to look at. */
+/* Adds spheres to S~; lists the boxes of what each has covered. */
 static ms_status spread_balls(covered_box *covered, size_t *n_covered, ms_mss_field *field, const ms_ball *balls,
                               size_t count, ms_error *err)
 {
     const ms_raster *raster = &field->raster;
-    const int *n = field->target->grid.n, margin = (int)ceilf(field->deepest_within);
-    covered_box all = {raster->n_balls, {{INT_MAX, INT_MAX, INT_MAX}, {0, 0, 0}}};
+    const size_t first_new = raster->n_balls;
     ms_status status = MS_OK;
-    size_t sum = 0;
     *n_covered = 0;
     for (size_t b = 0; b < count && status == MS_OK; b++) {
         status = ms_raster_add(&field->raster, &balls[b], 1, err);
         if (status == MS_OK && raster->hi[0] > raster->lo[0]) {
             covered_box *next = &covered[(*n_covered)++];
-            next->first_new = all.first_new;
+            next->first_new = first_new;
             memcpy(next->box.lo, raster->lo, sizeof next->box.lo);
             memcpy(next->box.hi, raster->hi, sizeof next->box.hi);
-            include_box(&all.box, raster->lo, raster->hi);
-            const ms_mss_box reach = ms_mss_field_grow(&next->box, margin, n);
-            sum += count_box(&reach);
-        }
-    }
-    if (*n_covered > 1) {
-        const ms_mss_box reach = ms_mss_field_grow(&all.box, margin, n);
-        if (count_box(&reach) < sum) {
-            covered[0] = all;
-            *n_covered = 1;
         }
     }
     return status;
@@ -292,6 +338,7 @@ static ms_status spread_balls(covered_box *covered, size_t *n_covered, ms_mss_fi
 
 static void note_covered(ms_mss_field *field, const ms_mss_box *box)
 {
+#pragma omp parallel for if (count_box(box) >= MS_GRID_THREADS_FROM)
     for (int k = box->lo[2]; k < box->hi[2]; k++) {
         for (int j = box->lo[1]; j < box->hi[1]; j++) {
             const size_t row = ms_grid_index(&field->target->grid, 0, j, k);
@@ -311,14 +358,15 @@ ms_status ms_mss_field_add(ms_mss_field *field, const ms_ball *balls, size_t cou
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     }
     ms_status status = spread_balls(covered, &n_covered, field, balls, count, err);
-    memset(field->stale, 0, count_rows(field) * count_blocks(field));
-    for (size_t b = 0; b < n_covered && status == MS_OK; b++) {
-        note_covered(field, &covered[b].box);
-        status = mark_stale(field, &covered[b], err);
+    for (size_t c = 0; c < n_covered; c++) {
+        note_covered(field, &covered[c].box);
     }
-    free(covered);
+    if (status == MS_OK) {
+        status = mark_all_stale(field, covered, n_covered, err);
+    }
     if (status == MS_OK) {
         status = ms_distance_blocks(field->within, field->covered, field->target->grid.n, field->stale, err);
     }
+    free(covered);
     return status == MS_OK ? list_changed(field, err) : status;
 }
