@@ -254,15 +254,21 @@ ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms
     return MS_OK;
 }
 
-/* A block of columns of which some voxels are wanted, and where the background is that decides of these. */
+/* The wanted planes of a row (along z), and how far the background that decides of them may be. */
+typedef struct wanted_row {
+    int from, to, reach;
+} wanted_row;
+
+/* A block of columns of which some voxels are wanted. */
 typedef struct block_job {
     float *distance;
     const uint8_t *inside, *wanted; /* wanted[0]: of the block in row 0 */
     const int *n;
     int x, width, blocks;         /* first column, columns, blocks of a row */
-    int lo[2], hi[2], from, to;   /* wanted, along y and z; rows that may decide */
-    int first_plane, after_plane; /* planes that may */
-    uint32_t *between;            /* after x and y: the wanted rows of those planes */
+    int lo, hi;                   /* rows with wanted voxels */
+    int first_plane, after_plane; /* planes that may decide */
+    wanted_row *row;              /* n[1] */
+    uint32_t *between;            /* after x and y: rows lo to hi of those planes */
 } block_job;
 
 /* How many voxels there are without background before `at`, or from it on (forward). */
@@ -314,86 +320,110 @@ static size_t find_row(const block_job *b, int j, int k)
     return (size_t)j + (size_t)b->n[1] * (size_t)k;
 }
 
-/* Where voxels are wanted; 0 if none is. */
-static int find_wanted(block_job *b)
+static int is_wanted(const block_job *b, int j, int k)
 {
-    b->lo[0] = b->n[1];
-    b->lo[1] = b->n[2];
-    b->hi[0] = b->hi[1] = 0;
-    for (int k = 0; k < b->n[2]; k++) {
-        for (int j = 0; j < b->n[1]; j++) {
-            if (b->wanted[find_row(b, j, k) * (size_t)b->blocks]) {
-                b->lo[0] = j < b->lo[0] ? j : b->lo[0];
-                b->hi[0] = j >= b->hi[0] ? j + 1 : b->hi[0];
-                b->lo[1] = k < b->lo[1] ? k : b->lo[1];
-                b->hi[1] = k + 1;
-            }
-        }
-    }
-    return b->hi[1] > 0;
+    return b->wanted[find_row(b, j, k) * (size_t)b->blocks];
 }
 
-/* No background that decides is farther than that of a voxel's own row. */
-static void find_deciding(block_job *b)
+/* Where voxels of row j are wanted. No background that decides is farther than that of a voxel's own line along x. */
+static wanted_row find_wanted(const block_job *b, int j)
 {
+    wanted_row w = {b->n[2], 0, 0};
     uint32_t most = 0;
-#pragma omp parallel for reduction(max : most) if ((size_t)b->n[1] * (size_t)b->n[2] * BLOCK >= MS_GRID_THREADS_FROM)
-    for (int k = b->lo[1]; k < b->hi[1]; k++) {
-        for (int j = b->lo[0]; j < b->hi[0]; j++) {
-            uint32_t row[BLOCK];
-            const size_t at = find_row(b, j, k);
-            if (b->wanted[at * (size_t)b->blocks] &&
-                part_distances(row, b->inside + at * (size_t)b->n[0], b->n[0], b->x, b->width)) {
+    for (int k = 0; k < b->n[2]; k++) {
+        uint32_t line[BLOCK];
+        if (is_wanted(b, j, k)) {
+            w.from = k < w.from ? k : w.from;
+            w.to = k + 1;
+            if (part_distances(line, b->inside + find_row(b, j, k) * (size_t)b->n[0], b->n[0], b->x, b->width)) {
                 for (int c = 0; c < b->width; c++) {
-                    most = row[c] > most ? row[c] : most;
+                    most = line[c] > most ? line[c] : most;
                 }
             }
         }
     }
-    const int reach = most == NONE ? MS_GRID_MAX_EXTENT : (int)ceil(sqrt(most));
-    b->from = b->lo[0] > reach ? b->lo[0] - reach : 0;
-    b->to = b->n[1] - b->hi[0] > reach ? b->hi[0] + reach : b->n[1];
-    b->first_plane = b->lo[1] > reach ? b->lo[1] - reach : 0;
-    b->after_plane = b->n[2] - b->hi[1] > reach ? b->hi[1] + reach : b->n[2];
+    w.reach = most == NONE ? MS_GRID_MAX_EXTENT : (int)ceil(sqrt(most));
+    return w;
 }
 
-/* The passes along x and y of plane k. */
+/* The first of the planes that may decide of a row, and the one after the last. */
+static int first_deciding(const block_job *b, int j)
+{
+    return b->row[j].from > b->row[j].reach ? b->row[j].from - b->row[j].reach : 0;
+}
+
+static int after_deciding(const block_job *b, int j)
+{
+    return b->n[2] - b->row[j].to > b->row[j].reach ? b->row[j].to + b->row[j].reach : b->n[2];
+}
+
+/* 0 if nothing is wanted in the block. */
+static int find_rows(block_job *b)
+{
+    b->lo = b->n[1];
+    b->hi = b->after_plane = 0;
+    b->first_plane = b->n[2];
+#pragma omp parallel for schedule(dynamic, 4) if ((size_t)b->n[1] * (size_t)b->n[2] * BLOCK >= MS_GRID_THREADS_FROM)
+    for (int j = 0; j < b->n[1]; j++) {
+        b->row[j] = find_wanted(b, j);
+    }
+    for (int j = 0; j < b->n[1]; j++) {
+        if (b->row[j].to > 0) {
+            b->lo = j < b->lo ? j : b->lo;
+            b->hi = j + 1;
+            b->first_plane = first_deciding(b, j) < b->first_plane ? first_deciding(b, j) : b->first_plane;
+            b->after_plane = after_deciding(b, j) > b->after_plane ? after_deciding(b, j) : b->after_plane;
+        }
+    }
+    return b->hi > 0;
+}
+
+/* The passes along x and y of plane k, as far as it may decide of wanted voxels. */
 static void block_plane(const block_job *b, int k, const lines *w)
 {
-    const line_part y = {b->to - b->from, b->lo[0] - b->from, b->hi[0] - b->from};
-    const size_t rows = (size_t)(y.to - y.from);
-    int any = 0;
-    for (int j = b->from; j < b->to; j++) {
-        any |= part_distances(w->block + (size_t)(j - b->from) * BLOCK, b->inside + find_row(b, j, k) * (size_t)b->n[0],
+    int lo = b->hi, hi = b->lo, from = b->n[1], to = 0, any = 0;
+    for (int j = b->lo; j < b->hi; j++) {
+        if (b->row[j].to > 0 && k >= first_deciding(b, j) && k < after_deciding(b, j)) {
+            const int reach = b->row[j].reach;
+            lo = j < lo ? j : lo;
+            hi = j + 1;
+            from = j - reach < from ? j - reach : from;
+            to = j + reach >= to ? j + reach + 1 : to;
+        }
+    }
+    from = from > 0 ? from : 0;
+    to = to < b->n[1] ? to : b->n[1];
+    for (int j = from; j < to; j++) {
+        any |= part_distances(w->block + (size_t)(j - from) * BLOCK, b->inside + find_row(b, j, k) * (size_t)b->n[0],
                               b->n[0], b->x, b->width);
     }
+    const line_part y = {to - from, lo - from, hi - from};
     for (int c = 0; any && c < b->width; c++) {
         transform_line(w->block + c, &y, w);
     }
-    memcpy(b->between + rows * BLOCK * (size_t)(k - b->first_plane), w->block + (size_t)y.from * BLOCK,
-           rows * BLOCK * sizeof *b->between);
+    const size_t rows = (size_t)(b->hi - b->lo);
+    for (int j = lo; j < hi; j++) {
+        memcpy(b->between + (rows * (size_t)(k - b->first_plane) + (size_t)(j - b->lo)) * BLOCK,
+               w->block + (size_t)(j - from) * BLOCK, BLOCK * sizeof *b->between);
+    }
 }
 
 /* The pass along z of the lines of row j, and the roots of what is wanted. */
 static void block_slice(const block_job *b, int j, const lines *w)
 {
-    const size_t rows = (size_t)(b->hi[0] - b->lo[0]);
-    line_part z = {b->after_plane - b->first_plane, b->n[2], 0};
-    for (int k = b->lo[1]; k < b->hi[1]; k++) {
-        if (b->wanted[find_row(b, j, k) * (size_t)b->blocks]) {
-            z.from = k - b->first_plane < z.from ? k - b->first_plane : z.from;
-            z.to = k - b->first_plane + 1;
-        }
-    }
-    if (z.to == 0) {
+    const wanted_row *row = &b->row[j];
+    if (row->to == 0) {
         return;
     }
-    transform_block(b->between + BLOCK * (size_t)(j - b->lo[0]), b->width, &z, rows * BLOCK, w);
-    for (int k = b->lo[1]; k < b->hi[1]; k++) {
-        const size_t row = find_row(b, j, k);
-        float *out = b->distance + row * (size_t)b->n[0] + b->x;
-        for (int c = 0; b->wanted[row * (size_t)b->blocks] && c < b->width; c++) {
-            const uint32_t squared = w->block[(size_t)(k - b->first_plane) * BLOCK + (size_t)c];
+    const size_t rows = (size_t)(b->hi - b->lo);
+    const int first = first_deciding(b, j);
+    const line_part z = {after_deciding(b, j) - first, row->from - first, row->to - first};
+    transform_block(b->between + (rows * (size_t)(first - b->first_plane) + (size_t)(j - b->lo)) * BLOCK, b->width, &z,
+                    rows * BLOCK, w);
+    for (int k = row->from; k < row->to; k++) {
+        float *out = b->distance + find_row(b, j, k) * (size_t)b->n[0] + b->x;
+        for (int c = 0; is_wanted(b, j, k) && c < b->width; c++) {
+            const uint32_t squared = w->block[(size_t)(k - first) * BLOCK + (size_t)c];
             out[c] = squared == NONE ? INFINITY : sqrtf((float)squared);
         }
     }
@@ -402,14 +432,14 @@ static void block_slice(const block_job *b, int j, const lines *w)
 /* One block's columns. @return 0 without memory */
 static int transform_columns(block_job *b)
 {
-    const int n_y = b->to - b->from, n_z = b->after_plane - b->first_plane;
-    const size_t voxels = (size_t)(b->hi[0] - b->lo[0]) * BLOCK * (size_t)n_z;
+    const int n_z = b->after_plane - b->first_plane;
+    const size_t voxels = (size_t)(b->hi - b->lo) * BLOCK * (size_t)n_z;
     b->between = malloc(voxels * sizeof *b->between);
     int out_of_memory = !b->between;
 #pragma omp parallel reduction(| : out_of_memory) if (voxels >= MS_GRID_THREADS_FROM)
     {
         lines w = {0};
-        const int ready = lines_alloc(&w, (size_t)(n_y > n_z ? n_y : n_z)) && b->between;
+        const int ready = lines_alloc(&w, (size_t)(b->n[1] > n_z ? b->n[1] : n_z)) && b->between;
         out_of_memory |= !ready;
 #pragma omp for schedule(dynamic, 4)
         for (int k = b->first_plane; k < b->after_plane; k++) {
@@ -418,7 +448,7 @@ static int transform_columns(block_job *b)
             }
         }
 #pragma omp for schedule(dynamic, 4)
-        for (int j = b->lo[0]; j < b->hi[0]; j++) {
+        for (int j = b->lo; j < b->hi; j++) {
             if (ready) {
                 block_slice(b, j, &w);
             }
@@ -432,21 +462,19 @@ static int transform_columns(block_job *b)
 ms_status ms_distance_blocks(float *distance, const uint8_t *inside, const int n[3], const uint8_t *wanted,
                              ms_error *err)
 {
-    const ms_status status = check_extents(n, err);
+    ms_status status = check_extents(n, err);
     if (status != MS_OK) {
         return status;
     }
     block_job b = {.distance = distance, .inside = inside, .n = n, .blocks = (n[0] + BLOCK - 1) / BLOCK};
-    for (int block = 0; block < b.blocks; block++) {
+    b.row = malloc((size_t)n[1] * sizeof *b.row);
+    int done = b.row != NULL;
+    for (int block = 0; block < b.blocks && done; block++) {
         b.x = block * BLOCK;
         b.width = block_width(n[0], b.x);
         b.wanted = wanted + block;
-        if (find_wanted(&b)) {
-            find_deciding(&b);
-            if (!transform_columns(&b)) {
-                return ms_fail(err, MS_ERR_NOMEM, "no memory for distances in %d columns; use fewer cells", b.width);
-            }
-        }
+        done = !find_rows(&b) || transform_columns(&b);
     }
-    return MS_OK;
+    free(b.row);
+    return done ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for distances in columns of %d by %d", n[1], n[2]);
 }
