@@ -363,7 +363,7 @@ static int find_rows(block_job *b)
     b->lo = b->n[1];
     b->hi = b->after_plane = 0;
     b->first_plane = b->n[2];
-#pragma omp parallel for schedule(dynamic, 4) if ((size_t)b->n[1] * (size_t)b->n[2] * BLOCK >= MS_GRID_THREADS_FROM)
+#pragma omp parallel for schedule(dynamic, 4) if ((size_t)b->n[1] * (size_t)b->n[2] >= MS_GRID_THREADS_FROM)
     for (int j = 0; j < b->n[1]; j++) {
         b->row[j] = find_wanted(b, j);
     }
@@ -436,7 +436,7 @@ static int transform_columns(block_job *b)
     const size_t voxels = (size_t)(b->hi - b->lo) * BLOCK * (size_t)n_z;
     b->between = malloc(voxels * sizeof *b->between);
     int out_of_memory = !b->between;
-#pragma omp parallel reduction(| : out_of_memory) if (voxels >= MS_GRID_THREADS_FROM)
+#pragma omp parallel reduction(| : out_of_memory) if (voxels >= 4 * MS_GRID_THREADS_FROM)
     {
         lines w = {0};
         const int ready = lines_alloc(&w, (size_t)(b->n[1] > n_z ? b->n[1] : n_z)) && b->between;
