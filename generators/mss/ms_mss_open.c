@@ -97,8 +97,7 @@ static long count_row(const uint64_t *inside, const uint64_t *outside, int from,
     return sum;
 }
 
-/* ceil where it is not below 0, else 0; ceil itself is a call. (A centre is within the grid: the other end is not
- * below 0.) */
+/* ceil where it is not below 0, else 0; ceil itself is a call. */
 static int round_up(double x)
 {
     const int whole = x > 0 ? (int)x : 0;
@@ -119,7 +118,8 @@ long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball)
             const double y = j - c[1], left = rest - y * y;
             if (left >= 0) {
                 const double half = sqrt(left);
-                const int from = round_up(c[0] - half), end = (int)(c[0] + half) + 1;
+                const double last = c[0] + half;
+                const int from = round_up(c[0] - half), end = last >= 0 ? (int)last + 1 : 0;
                 const int to = end < open->n[0] ? end : open->n[0];
                 const size_t row = ((size_t)j + (size_t)open->n[1] * (size_t)k) * open->words;
                 sum += from < to ? count_row(open->inside + row, open->outside + row, from, to) : 0;
