@@ -98,7 +98,7 @@ static long count_row(const uint64_t *inside, const uint64_t *outside, int from,
 }
 
 /* ceil where it is not below 0, else 0; ceil itself is a call. */
-static int round_up(double x)
+static int round_place(double x)
 {
     const int whole = x > 0 ? (int)x : 0;
     return whole + (x > whole);
@@ -119,7 +119,7 @@ long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball)
             if (left >= 0) {
                 const double half = sqrt(left);
                 const double last = c[0] + half;
-                const int from = round_up(c[0] - half), end = last >= 0 ? (int)last + 1 : 0;
+                const int from = round_place(c[0] - half), end = last >= 0 ? (int)last + 1 : 0;
                 const int to = end < open->n[0] ? end : open->n[0];
                 const size_t row = ((size_t)j + (size_t)open->n[1] * (size_t)k) * open->words;
                 sum += from < to ? count_row(open->inside + row, open->outside + row, from, to) : 0;
