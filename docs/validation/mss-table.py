@@ -7,7 +7,7 @@ SHARED holds data/ with the meshes, peers-mss.csv with the better D of other cod
 compiled here by cc) and tostl.py. Meshes that are not there are named and left out. All n of a nested variant come from
 one run, each a prefix; with polish each n is a run of its own. Prints D, and its ratio to that of the other codes.
 `spacing`: D of variant=paper over delta_min for the two bodies of the paper.
-`heldout`: best beside paper on shapes that no constant was chosen on; no figures of other codes.
+`heldout`: best beside paper on shapes outside the table; there are no figures of other codes for them.
 """
 import csv
 import json
