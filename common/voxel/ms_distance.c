@@ -8,7 +8,7 @@
 
 /* Strided passes take neighbouring lines together, as many as fill a cache line, so that
  * every byte fetched is used. In the work space they stay interleaved: no transposition. */
-enum { BLOCK = 16 };
+enum { BLOCK = MS_DISTANCE_BLOCK };
 
 /* "No background along the axes so far"; larger than any squared distance in the grid. */
 static const uint32_t NONE = UINT32_MAX;
@@ -254,80 +254,227 @@ ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms
     return MS_OK;
 }
 
-/* What ms_distance_box works with. */
-typedef struct box_job {
-    const uint8_t *inside;
-    uint32_t *between; /* after x and y: the box's columns, all planes */
-    int wide, high;    /* of the box, along x and y */
-    int lo_x, n_x;
-    line_part y, z;
-} box_job;
+/* The wanted planes of a row (along z), and how far the background that decides of them may be. */
+typedef struct wanted_row {
+    int from, to, reach;
+} wanted_row;
 
-/* The passes along x and y of plane k. */
-static void box_plane(const box_job *job, uint32_t *rows, uint32_t *row, int k, const lines *w)
+/* A block of columns of which some voxels are wanted. */
+typedef struct block_job {
+    float *distance;
+    const uint8_t *inside, *wanted; /* wanted[0]: of the block in row 0 */
+    const int *n;
+    int x, width, blocks;         /* first column, columns, blocks of a row */
+    int lo, hi;                   /* rows with wanted voxels */
+    int first_plane, after_plane; /* planes that may decide */
+    wanted_row *row;              /* n[1] */
+    uint32_t *between;            /* after x and y: rows lo to hi of those planes */
+} block_job;
+
+/* How many voxels there are without background before `at`, or from it on (forward). */
+static int count_inside(const uint8_t *inside, int n, int at, int forward)
 {
-    for (int j = 0; j < job->y.n; j++) {
-        row_distances(row, job->inside + ((size_t)k * job->y.n + (size_t)j) * job->n_x, job->n_x);
-        memcpy(rows + (size_t)j * job->wide, row + job->lo_x, (size_t)job->wide * sizeof *rows);
+    if (forward) {
+        const uint8_t *end = at < n ? memchr(inside + at, 0, (size_t)(n - at)) : NULL;
+        return end ? (int)(end - inside) - at : (int)MS_GRID_MAX_EXTENT + 1;
     }
-    transform_plane(job->between + (size_t)k * job->wide * job->high, rows, job->wide, &job->y, w);
+    const uint64_t ones = 0x0101010101010101u, highest = 0x8080808080808080u;
+    int i = at;
+    for (; i >= 8; i -= 8) {
+        uint64_t eight;
+        memcpy(&eight, inside + i - 8, sizeof eight);
+        if ((eight - ones) & ~eight & highest) { /* a byte is 0: Warren, Hacker's Delight, 6-1 */
+            break;
+        }
+    }
+    while (i > 0 && inside[i - 1]) {
+        i--;
+    }
+    return i > 0 ? at - i : (int)MS_GRID_MAX_EXTENT + 1;
 }
 
-/* All passes. @return 0 without memory */
-static int transform_box(float *distance, const size_t apart[2], const box_job *job)
+/* row_distances of `width` voxels from x on; 0 if all are background. */
+static int part_distances(uint32_t *out, const uint8_t *inside, int n, int x, int width)
 {
-    const size_t plane = (size_t)job->wide * (size_t)job->high;
-    int out_of_memory = 0;
-#pragma omp parallel reduction(| : out_of_memory) if ((size_t)job->n_x * job->y.n * job->z.n >= MS_GRID_THREADS_FROM)
+    const uint32_t far = MS_GRID_MAX_EXTENT + 1;
+    if (!inside[x] && memcmp(inside + x, inside + x + 1, (size_t)width - 1) == 0) {
+        memset(out, 0, (size_t)width * sizeof *out);
+        return 0;
+    }
+    uint32_t away = (uint32_t)count_inside(inside, n, x, 0);
+    for (int i = 0; i < width; i++) {
+        away = inside[x + i] ? away + 1 : 0;
+        out[i] = away;
+    }
+    away = (uint32_t)count_inside(inside, n, x + width, 1);
+    for (int i = width - 1; i >= 0; i--) {
+        away = inside[x + i] ? away + 1 : 0;
+        const uint32_t least = away < out[i] ? away : out[i];
+        out[i] = least >= far ? NONE : least * least;
+    }
+    return 1;
+}
+
+static size_t find_row(const block_job *b, int j, int k)
+{
+    return (size_t)j + (size_t)b->n[1] * (size_t)k;
+}
+
+static int is_wanted(const block_job *b, int j, int k)
+{
+    return b->wanted[find_row(b, j, k) * (size_t)b->blocks];
+}
+
+/* Where voxels of row j are wanted. No background that decides is farther than that of a voxel's own line along x. */
+static wanted_row find_wanted(const block_job *b, int j)
+{
+    wanted_row w = {b->n[2], 0, 0};
+    uint32_t most = 0;
+    for (int k = 0; k < b->n[2]; k++) {
+        uint32_t line[BLOCK];
+        if (is_wanted(b, j, k)) {
+            w.from = k < w.from ? k : w.from;
+            w.to = k + 1;
+            if (part_distances(line, b->inside + find_row(b, j, k) * (size_t)b->n[0], b->n[0], b->x, b->width)) {
+                for (int c = 0; c < b->width; c++) {
+                    most = line[c] > most ? line[c] : most;
+                }
+            }
+        }
+    }
+    w.reach = most == NONE ? MS_GRID_MAX_EXTENT : (int)ceil(sqrt(most));
+    return w;
+}
+
+/* The first of the planes that may decide of a row, and the one after the last. */
+static int first_deciding(const block_job *b, int j)
+{
+    return b->row[j].from > b->row[j].reach ? b->row[j].from - b->row[j].reach : 0;
+}
+
+static int after_deciding(const block_job *b, int j)
+{
+    return b->n[2] - b->row[j].to > b->row[j].reach ? b->row[j].to + b->row[j].reach : b->n[2];
+}
+
+/* 0 if nothing is wanted in the block. */
+static int find_rows(block_job *b)
+{
+    b->lo = b->n[1];
+    b->hi = b->after_plane = 0;
+    b->first_plane = b->n[2];
+#pragma omp parallel for schedule(dynamic, 4) if ((size_t)b->n[1] * (size_t)b->n[2] >= MS_GRID_THREADS_FROM)
+    for (int j = 0; j < b->n[1]; j++) {
+        b->row[j] = find_wanted(b, j);
+    }
+    for (int j = 0; j < b->n[1]; j++) {
+        if (b->row[j].to > 0) {
+            b->lo = j < b->lo ? j : b->lo;
+            b->hi = j + 1;
+            b->first_plane = first_deciding(b, j) < b->first_plane ? first_deciding(b, j) : b->first_plane;
+            b->after_plane = after_deciding(b, j) > b->after_plane ? after_deciding(b, j) : b->after_plane;
+        }
+    }
+    return b->hi > 0;
+}
+
+/* The passes along x and y of plane k, as far as it may decide of wanted voxels. */
+static void block_plane(const block_job *b, int k, const lines *w)
+{
+    int lo = b->hi, hi = b->lo, from = b->n[1], to = 0, any = 0;
+    for (int j = b->lo; j < b->hi; j++) {
+        if (b->row[j].to > 0 && k >= first_deciding(b, j) && k < after_deciding(b, j)) {
+            const int reach = b->row[j].reach;
+            lo = j < lo ? j : lo;
+            hi = j + 1;
+            from = j - reach < from ? j - reach : from;
+            to = j + reach >= to ? j + reach + 1 : to;
+        }
+    }
+    from = from > 0 ? from : 0;
+    to = to < b->n[1] ? to : b->n[1];
+    for (int j = from; j < to; j++) {
+        any |= part_distances(w->block + (size_t)(j - from) * BLOCK, b->inside + find_row(b, j, k) * (size_t)b->n[0],
+                              b->n[0], b->x, b->width);
+    }
+    const line_part y = {to - from, lo - from, hi - from};
+    for (int c = 0; any && c < b->width; c++) {
+        transform_line(w->block + c, &y, w);
+    }
+    const size_t rows = (size_t)(b->hi - b->lo);
+    for (int j = lo; j < hi; j++) {
+        memcpy(b->between + (rows * (size_t)(k - b->first_plane) + (size_t)(j - b->lo)) * BLOCK,
+               w->block + (size_t)(j - from) * BLOCK, BLOCK * sizeof *b->between);
+    }
+}
+
+/* The pass along z of the lines of row j, and the roots of what is wanted. */
+static void block_slice(const block_job *b, int j, const lines *w)
+{
+    const wanted_row *row = &b->row[j];
+    if (row->to == 0) {
+        return;
+    }
+    const size_t rows = (size_t)(b->hi - b->lo);
+    const int first = first_deciding(b, j);
+    const line_part z = {after_deciding(b, j) - first, row->from - first, row->to - first};
+    transform_block(b->between + (rows * (size_t)(first - b->first_plane) + (size_t)(j - b->lo)) * BLOCK, b->width, &z,
+                    rows * BLOCK, w);
+    for (int k = row->from; k < row->to; k++) {
+        float *out = b->distance + find_row(b, j, k) * (size_t)b->n[0] + b->x;
+        for (int c = 0; is_wanted(b, j, k) && c < b->width; c++) {
+            const uint32_t squared = w->block[(size_t)(k - first) * BLOCK + (size_t)c];
+            out[c] = squared == NONE ? INFINITY : sqrtf((float)squared);
+        }
+    }
+}
+
+/* One block's columns. @return 0 without memory */
+static int transform_columns(block_job *b)
+{
+    const int n_z = b->after_plane - b->first_plane;
+    const size_t voxels = (size_t)(b->hi - b->lo) * BLOCK * (size_t)n_z;
+    b->between = malloc(voxels * sizeof *b->between);
+    int out_of_memory = !b->between;
+#pragma omp parallel reduction(| : out_of_memory) if (voxels >= 4 * MS_GRID_THREADS_FROM)
     {
         lines w = {0};
-        uint32_t *rows = malloc((size_t)job->wide * job->y.n * sizeof *rows);
-        uint32_t *row = malloc((size_t)job->n_x * sizeof *row);
-        const int ready = lines_alloc(&w, (size_t)(job->y.n > job->z.n ? job->y.n : job->z.n)) && rows && row;
-        out_of_memory = !ready;
-#pragma omp for schedule(dynamic, 1)
-        for (int k = 0; k < job->z.n; k++) {
+        const int ready = lines_alloc(&w, (size_t)(b->n[1] > n_z ? b->n[1] : n_z)) && b->between;
+        out_of_memory |= !ready;
+#pragma omp for schedule(dynamic, 4)
+        for (int k = b->first_plane; k < b->after_plane; k++) {
             if (ready) {
-                box_plane(job, rows, row, k, &w);
+                block_plane(b, k, &w);
             }
         }
-#pragma omp for schedule(dynamic, 1)
-        for (int j = 0; j < job->high; j++) {
+#pragma omp for schedule(dynamic, 4)
+        for (int j = b->lo; j < b->hi; j++) {
             if (ready) {
-                transform_slice(distance + (size_t)j * apart[0], apart[1], job->between + (size_t)j * job->wide, plane,
-                                job->wide, &job->z, &w);
+                block_slice(b, j, &w);
             }
         }
-        free(row);
-        free(rows);
         lines_free(&w);
     }
+    free(b->between);
     return !out_of_memory;
 }
 
-ms_status ms_distance_box(float *distance, const size_t apart[2], const uint8_t *inside, const int n[3],
-                          const int lo[3], const int hi[3], ms_error *err)
+ms_status ms_distance_blocks(float *distance, const uint8_t *inside, const int n[3], const uint8_t *wanted,
+                             ms_error *err)
 {
-    const ms_status status = check_extents(n, err);
+    ms_status status = check_extents(n, err);
     if (status != MS_OK) {
         return status;
     }
-    for (int a = 0; a < 3; a++) {
-        if (lo[a] < 0 || hi[a] <= lo[a] || hi[a] > n[a]) {
-            return ms_fail(err, MS_ERR_ARG, "voxels %d to %d along %c are no part of a grid of %d", lo[a], hi[a],
-                           "xyz"[a], n[a]);
-        }
+    block_job b = {.distance = distance, .inside = inside, .n = n, .blocks = (n[0] + BLOCK - 1) / BLOCK};
+    b.row = malloc((size_t)n[1] * sizeof *b.row);
+    int done = b.row != NULL;
+    for (int block = 0; block < b.blocks && done; block++) {
+        b.x = block * BLOCK;
+        b.width = block_width(n[0], b.x);
+        b.wanted = wanted + block;
+        done = !find_rows(&b) || transform_columns(&b);
     }
-    box_job job = {.inside = inside,
-                   .wide = hi[0] - lo[0],
-                   .high = hi[1] - lo[1],
-                   .lo_x = lo[0],
-                   .n_x = n[0],
-                   .y = {n[1], lo[1], hi[1]},
-                   .z = {n[2], lo[2], hi[2]}};
-    const size_t between = (size_t)job.wide * (size_t)job.high * (size_t)n[2];
-    job.between = malloc(between * sizeof *job.between);
-    const int done = job.between && transform_box(distance, apart, &job);
-    free(job.between);
-    return done ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for distances of %zu voxels", between);
+    free(b.row);
+    return done ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for distances in columns of %d by %d", n[1], n[2]);
 }

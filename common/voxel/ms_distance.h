@@ -25,18 +25,19 @@ MS_C_BEGIN
  */
 MS_API ms_status ms_distance(float *distance, const uint8_t *inside, const int n[3], ms_error *err);
 
+/* Voxels of a block: those i with the same i / MS_DISTANCE_BLOCK of a row. */
+enum { MS_DISTANCE_BLOCK = 16 };
+
 /**
- * The same for the voxels of a box alone, from the background of the whole grid given.
+ * The same for some blocks alone, for an update: the others' distances are left as they are.
  *
- * @param[out] distance where voxel lo goes; those of the box are written, rows apart[0] values apart, planes apart[1]
- * @param      lo,hi    the box lo <= (i,j,k) < hi, not empty, within the grid
- * @return as ms_distance; also MS_ERR_ARG for a box that is no part of the grid
+ * @param wanted one for each block, those of a row one after the other, then rows, then planes; nonzero: write it
  *
- * Cost: along x of the grid, along y of the box's columns in all planes, along z of its columns; 4 bytes for each voxel
- * of its columns.
+ * Cost: for each column of blocks, along x and y of the planes within reach of what is wanted (no farther than the
+ * background of the wanted voxels' own rows), along z of the lines with wanted voxels; 64 bytes for each row of these.
  */
-MS_API ms_status ms_distance_box(float *distance, const size_t apart[2], const uint8_t *inside, const int n[3],
-                                 const int lo[3], const int hi[3], ms_error *err);
+MS_API ms_status ms_distance_blocks(float *distance, const uint8_t *inside, const int n[3], const uint8_t *wanted,
+                                    ms_error *err);
 
 MS_C_END
 

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """D of MSS against other codes: the tables of docs/validation.md.
 
-    MSKIT=build/eval/mskit docs/validation/mss-table.py SHARED [best] [polish] [paper] [spacing]
+    MSKIT=build/eval/mskit docs/validation/mss-table.py SHARED [best] [polish] [paper] [spacing] [heldout]
 
 SHARED holds data/ with the meshes, peers-mss.csv with the better D of other codes, and tools/ with the judge (score.c,
 compiled here by cc) and tostl.py. Meshes that are not there are named and left out. All n of a nested variant come from
 one run, each a prefix; with polish each n is a run of its own. Prints D, and its ratio to that of the other codes.
 `spacing`: D of variant=paper over delta_min for the two bodies of the paper.
+`heldout`: best beside paper on shapes outside the table; there are no figures of other codes for them.
 """
 import csv
 import json
@@ -40,7 +41,7 @@ class Judge:
             return None
         stl = path
         if not shape.endswith(".stl"):
-            stl = os.path.join(self.folder, shape + ".stl")
+            stl = os.path.join(self.folder, os.path.basename(shape) + ".stl")
             run(sys.executable, os.path.join(self.shared, "tools/tostl.py"), path, stl)
         return path, stl
 
@@ -92,10 +93,34 @@ def over_spacing(judge):
             print(f"| {shape} | {spacing or 'automatic'} | {len(lines)} | {judge.dice(mesh[1], lines):.4f} |", flush=True)
 
 
+HELD_OUT = ("lithic_flake2.ply", "open-clumps/bowl.stl", "open-clumps/boot.stl", "grains402/ma165-00048.ply",
+            "grains402/ma165-00112.ply")
+
+
+def held_out(judge):
+    """D of best, and its ratio to paper's; where paper has fewer spheres than asked for, how many."""
+    print("\nheld out: D of best (ratio to paper)")
+    ratios = []
+    for shape in HELD_OUT:
+        mesh = judge.mesh(shape)
+        if not mesh:
+            continue
+        best, paper = (judge.spheres(mesh[0], 100, VARIANTS[name]) for name in ("best", "paper"))
+        cells = []
+        for n in (10, 30, 100):
+            ours, theirs = judge.dice(mesh[1], best[:n]), judge.dice(mesh[1], paper[:n])
+            ratios.append(ours / theirs)
+            short = "" if len(paper) >= n else f", {len(paper)}"
+            cells.append(f"{ours:.4f} ({ours / theirs:.2f}{short})")
+        print("| " + " | ".join([shape, *cells]) + " |", flush=True)
+    if ratios:
+        print(f"geometric mean of the ratios {mean(ratios):.3f}, largest {max(ratios):.2f}")
+
+
 def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    shared, chosen = sys.argv[1], sys.argv[2:] or ["best", "polish", "paper", "spacing"]
+    shared, chosen = sys.argv[1], sys.argv[2:] or ["best", "polish", "paper", "spacing", "heldout"]
     table = os.path.join(shared, "peers-mss.csv")
     if not os.path.exists(table):
         print(f"skipped: no {table}")
@@ -107,7 +132,12 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         judge = Judge(shared, folder)
         for name in chosen:
-            over_spacing(judge) if name == "spacing" else against_others(judge, peers, name)
+            if name == "spacing":
+                over_spacing(judge)
+            elif name == "heldout":
+                held_out(judge)
+            else:
+                against_others(judge, peers, name)
 
 
 if __name__ == "__main__":

@@ -26,16 +26,30 @@ typedef struct best {
     ms_mss_open open;
 } best;
 
-/* What a new candidate gains at most: no more than a ball of its largest radius has voxels; and than the one that was
- * at its voxel before, the gain of which has not risen since, and what its centre has moved by sweeps. */
+/* Voxel centres in a ball, no fewer (or no more, with -HALF_DIAGONAL). */
+static double count_in_ball(double radius, double margin)
+{
+    const double r = fmax(radius + margin, 0);
+    return 4.18879020478639098 * r * r * r;
+}
+
+/*
+ * What a new candidate gains at most: no more than a ball of its largest radius has voxels, less those that E~ says are
+ * covered, as near as that to its voxel; and than the one that was at its voxel before, the gain of which has not risen
+ * since, and what its centre has moved by sweeps.
+ */
 static double bound_gain(const ms_mss_run *m, const ms_mss_candidate *c, const ms_mss_candidate *before)
 {
-    (void)m;
-    const double r = c->e + MOST_OVER_E + HALF_DIAGONAL, ball = 4.19 * r * r * r;
+    const ms_grid *grid = &m->run->target->grid;
+    const size_t nx = (size_t)grid->n[0], ny = (size_t)grid->n[1];
+    const double voxel[3] = {(double)(c->voxel % nx), (double)(c->voxel / nx % ny), (double)(c->voxel / nx / ny)};
+    const double covered = (double)m->field.within[c->voxel] - sqrt(ms_squared_distance(voxel, c->ball.centre));
+    const double most = c->e + MOST_OVER_E, r = most + HALF_DIAGONAL;
+    const double ring = count_in_ball(most, HALF_DIAGONAL) - count_in_ball(covered, -HALF_DIAGONAL);
     if (!before) {
-        return ball;
+        return ring;
     }
-    return fmin(ball, before->rank + 3.15 * r * r * sqrt(ms_squared_distance(before->ball.centre, c->ball.centre)));
+    return fmin(ring, before->rank + 3.15 * r * r * sqrt(ms_squared_distance(before->ball.centre, c->ball.centre)));
 }
 
 /* Gives a ball the radius that lowers |S xor S~| most. @return by how many voxels; 0 if there is no room for one */

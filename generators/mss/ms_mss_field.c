@@ -7,9 +7,6 @@
 
 #include "voxel/ms_distance.h"
 
-/* How far S~ may stand out of S, in voxels, beyond the distance to its background that E gives; write-back checks. */
-enum { STAND_OUT = 3 };
-
 /* A box is seen in at most so many cells along an axis where a bound on a distance is enough. */
 enum { CELLS = 24 };
 
@@ -51,6 +48,17 @@ ms_status ms_mss_field_touch_all(ms_mss_field *field, ms_error *err)
     return add_changed(field, &all, err);
 }
 
+/* The blocks of a row of the grid. */
+static size_t count_blocks(const ms_mss_field *field)
+{
+    return ((size_t)field->target->grid.n[0] + MS_DISTANCE_BLOCK - 1) / MS_DISTANCE_BLOCK;
+}
+
+static size_t count_rows(const ms_mss_field *field)
+{
+    return (size_t)field->target->grid.n[1] * (size_t)field->target->grid.n[2];
+}
+
 ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const ms_settings *settings, ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(&target->grid);
@@ -59,8 +67,10 @@ ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const 
     field->target = target;
     field->weight = 1;
     field->within = calloc(voxels, sizeof *field->within);
+    field->covered = calloc(voxels, 1);
+    field->stale = malloc(count_rows(field) * count_blocks(field));
     field->own_e = settings->n_planes ? malloc(voxels * sizeof *field->own_e) : NULL;
-    if (!field->within || (settings->n_planes && !field->own_e)) {
+    if (!field->within || !field->covered || !field->stale || (settings->n_planes && !field->own_e)) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the field E~ of %zu voxels; use fewer cells", voxels);
     }
     if (settings->n_planes) {
@@ -80,46 +90,10 @@ void ms_mss_field_free(ms_mss_field *field)
 {
     ms_raster_free(&field->raster);
     free(field->within);
+    free(field->covered);
+    free(field->stale);
     free(field->own_e);
     free(field->changed);
-}
-
-/* Which voxels of a part S~ covers. */
-static void copy_covered(uint8_t *covered, const ms_mss_field *field, const ms_mss_box *part)
-{
-    const size_t row = (size_t)(part->hi[0] - part->lo[0]), plane = row * (size_t)(part->hi[1] - part->lo[1]);
-#pragma omp parallel for if (plane * (size_t)(part->hi[2] - part->lo[2]) >= MS_GRID_THREADS_FROM)
-    for (int k = part->lo[2]; k < part->hi[2]; k++) {
-        for (int j = part->lo[1]; j < part->hi[1]; j++) {
-            const uint16_t *from = field->raster.first + ms_grid_index(&field->target->grid, part->lo[0], j, k);
-            uint8_t *to = covered + plane * (size_t)(k - part->lo[2]) + row * (size_t)(j - part->lo[1]);
-            for (size_t i = 0; i < row; i++) {
-                to[i] = from[i] != MS_RASTER_NONE;
-            }
-        }
-    }
-}
-
-static ms_status update_whole(ms_mss_field *field, ms_error *err)
-{
-    const size_t voxels = ms_grid_voxels(&field->target->grid);
-    ms_status status = ms_mss_field_touch_all(field, err);
-    uint8_t *covered = status == MS_OK ? malloc(voxels) : NULL;
-    if (!covered) {
-        return status != MS_OK
-                   ? status
-                   : ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
-    }
-    copy_covered(covered, field, &field->changed[0]);
-    status = ms_distance(field->within, covered, field->target->grid.n, err);
-    free(covered);
-    float deepest = 0;
-#pragma omp parallel for reduction(max : deepest) if (voxels >= MS_GRID_THREADS_FROM)
-    for (size_t v = 0; v < voxels; v++) {
-        deepest = field->within[v] > deepest ? field->within[v] : deepest;
-    }
-    field->deepest_within = deepest;
-    return status;
 }
 
 /* Takes in the voxels lo <= (i,j,k) < hi. */
@@ -131,13 +105,13 @@ static void include_box(ms_mss_box *b, const int lo[3], const int hi[3])
     }
 }
 
-static void join_boxes(ms_mss_box *b, const ms_mss_box *other)
-{
-    include_box(b, other->lo, other->hi);
-}
-#pragma omp declare reduction(hull:ms_mss_box : join_boxes(&omp_out, &omp_in)) initializer(omp_priv = omp_orig)
+/* Spheres that were added, and the box of what they have covered first. */
+typedef struct covered_box {
+    size_t first_new;
+    ms_mss_box box;
+} covered_box;
 
-/* How far the voxels in the cells of a box are from those that ball b has covered first, at least. */
+/* How far the voxels in the cells of a box are from those that new spheres have covered first, at least. */
 typedef struct cell_map {
     int n[3], size;
     float *away;
@@ -161,24 +135,36 @@ static void clear_around(uint8_t *clear, const cell_map *map, int i, int j, int 
     clear[i + n[0] * (j + n[1] * k)] = 2;
 }
 
-static void mark_cells(uint8_t *clear, const cell_map *map, const ms_mss_field *field, const ms_mss_box *box, size_t b,
-                       const ms_mss_box *covered)
+static int holds_new(const uint16_t *first, int from, int to, size_t first_new)
 {
-    for (int k = covered->lo[2]; k < covered->hi[2]; k++) {
-        for (int j = covered->lo[1]; j < covered->hi[1]; j++) {
+    int any = 0;
+    for (int i = from; i < to; i++) {
+        any |= (first[i] >= first_new) & (first[i] != MS_RASTER_NONE);
+    }
+    return any;
+}
+
+static void mark_cells(uint8_t *clear, const cell_map *map, const ms_mss_field *field, const ms_mss_box *box,
+                       const covered_box *covered)
+{
+    const ms_mss_box *own = &covered->box;
+    for (int k = own->lo[2]; k < own->hi[2]; k++) {
+        for (int j = own->lo[1]; j < own->hi[1]; j++) {
             const uint16_t *first = field->raster.first + ms_grid_index(&field->target->grid, 0, j, k);
-            for (int i = covered->lo[0]; i < covered->hi[0]; i++) {
-                if (first[i] == b) {
-                    clear_around(clear, map, (i - box->lo[0]) / map->size, (j - box->lo[1]) / map->size,
-                                 (k - box->lo[2]) / map->size);
+            for (int i = own->lo[0]; i < own->hi[0];) {
+                const int cell = (i - box->lo[0]) / map->size, end = box->lo[0] + (cell + 1) * map->size;
+                const int to = end < own->hi[0] ? end : own->hi[0];
+                if (holds_new(first, i, to, covered->first_new)) {
+                    clear_around(clear, map, cell, (j - box->lo[1]) / map->size, (k - box->lo[2]) / map->size);
                 }
+                i = to;
             }
         }
     }
 }
 
-static ms_status map_cells(cell_map *map, const ms_mss_field *field, const ms_mss_box *box, size_t b,
-                           const ms_mss_box *covered, ms_error *err)
+static ms_status map_cells(cell_map *map, const ms_mss_field *field, const ms_mss_box *box, const covered_box *covered,
+                           size_t count, ms_error *err)
 {
     int longest = 0;
     size_t cells = 1;
@@ -197,7 +183,9 @@ static ms_status map_cells(cell_map *map, const ms_mss_field *field, const ms_ms
         status = ms_fail(err, MS_ERR_NOMEM, "no memory for %zu cells", cells);
     } else {
         memset(clear, 1, cells);
-        mark_cells(clear, map, field, box, b, covered);
+        for (size_t c = 0; c < count; c++) {
+            mark_cells(clear, map, field, box, &covered[c]);
+        }
         for (size_t c = 0; c < cells; c++) {
             clear[c] = clear[c] == 1;
         }
@@ -210,215 +198,121 @@ static ms_status map_cells(cell_map *map, const ms_mss_field *field, const ms_ms
     return status;
 }
 
-/* Where E~ may change: rows of a box, the voxels from <= i < to of each. */
-typedef struct changed_rows {
-    ms_mss_box box;
-    int (*span)[2]; /* of row j of plane k: j - lo + rows * (k - lo); all of the box that was looked at */
-    ms_mss_box within;
-} changed_rows;
-
-static int *measure_span(const changed_rows *c, int j, int k)
+/* May E~ of one of the voxels from <= i < to of a row change? It does where a new sphere covers, and may where the
+ * nearest background was among that, as far as their old E~. */
+static int may_change(const float *within, const uint16_t *first, int from, int to, float away, size_t first_new)
 {
-    const size_t rows = (size_t)(c->within.hi[1] - c->within.lo[1]);
-    return c->span[(size_t)(j - c->within.lo[1]) + rows * (size_t)(k - c->within.lo[2])];
+    int any = 0;
+    for (int i = from; i < to; i++) {
+        any |= (within[i] >= away) & (within[i] > 0);
+    }
+    return any || holds_new(first, from, to, first_new);
 }
 
-/*
- * The voxels of a row whose E~ may change by what ball b has covered: those voxels, and those that had their nearest
- * background voxel among them, which then was as far as their old E~.
- */
-static void find_span(int span[2], const ms_mss_field *field, const cell_map *map, const ms_mss_box *box, size_t b,
-                      int j, int k)
+static void mark_row(ms_mss_field *field, const cell_map *map, const ms_mss_box *box, size_t first_new, int j, int k)
 {
-    const size_t start = ms_grid_index(&field->target->grid, box->lo[0], j, k);
-    const float *within = field->within + start;
-    const uint16_t *first = field->raster.first + start;
+    const size_t start = ms_grid_index(&field->target->grid, 0, j, k);
+    const size_t row = (size_t)j + (size_t)field->target->grid.n[1] * (size_t)k;
+    uint8_t *stale = field->stale + row * count_blocks(field);
     const float *away = map->away + (size_t)map->n[0] * ((size_t)((j - box->lo[1]) / map->size) +
                                                          (size_t)map->n[1] * (size_t)((k - box->lo[2]) / map->size));
-    const int n = box->hi[0] - box->lo[0];
-    int from = n, to = 0;
-    for (int cell = 0; cell < map->n[0]; cell++) {
-        const int end = (cell + 1) * map->size < n ? (cell + 1) * map->size : n;
-        for (int i = cell * map->size; i < end; i++) {
-            if ((within[i] >= away[cell] && within[i] > 0) || first[i] == b) {
-                from = i < from ? i : from;
-                to = i + 1;
-            }
+    for (int i = box->lo[0]; i < box->hi[0];) {
+        const int cell = (i - box->lo[0]) / map->size, block = i / MS_DISTANCE_BLOCK;
+        int to = box->lo[0] + (cell + 1) * map->size;
+        to = to < (block + 1) * MS_DISTANCE_BLOCK ? to : (block + 1) * MS_DISTANCE_BLOCK;
+        to = to < box->hi[0] ? to : box->hi[0];
+        if (!stale[block]) {
+            stale[block] =
+                (uint8_t)may_change(field->within + start, field->raster.first + start, i, to, away[cell], first_new);
         }
+        i = to;
     }
-    span[0] = box->lo[0] + from;
-    span[1] = box->lo[0] + (from < to ? to : from);
 }
 
-/* @param[out] changed the caller frees its spans */
-static ms_status find_changed(changed_rows *changed, const ms_mss_field *field, size_t b, const ms_mss_box *covered,
-                              ms_error *err)
+/* The voxels that have their nearest background in a box, at most. */
+static ms_mss_box find_reach(const ms_mss_field *field, const ms_mss_box *box)
 {
-    const ms_mss_box reach = ms_mss_field_grow(covered, (int)ceilf(field->deepest_within), field->target->grid.n);
-    const size_t rows = (size_t)(reach.hi[1] - reach.lo[1]) * (size_t)(reach.hi[2] - reach.lo[2]);
+    return ms_mss_field_grow(box, (int)ceilf(field->deepest_within), field->target->grid.n);
+}
+
+/* Marks the blocks of a box whose E~ the spheres may change. */
+static ms_status mark_stale(ms_mss_field *field, const ms_mss_box *reach, const covered_box *covered, size_t count,
+                            ms_error *err)
+{
     cell_map map = {.away = NULL};
-    ms_mss_box box = *covered;
-    *changed = (changed_rows){.span = malloc(rows * sizeof *changed->span), .within = reach};
-    ms_status status = changed->span ? map_cells(&map, field, &reach, b, covered, err)
-                                     : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu rows", rows);
+    const ms_status status = map_cells(&map, field, reach, covered, count, err);
     if (status == MS_OK) {
-#pragma omp parallel for schedule(dynamic, 4) reduction(hull : box) if (count_box(&reach) >= MS_GRID_THREADS_FROM)
-        for (int k = reach.lo[2]; k < reach.hi[2]; k++) {
-            for (int j = reach.lo[1]; j < reach.hi[1]; j++) {
-                int *span = measure_span(changed, j, k);
-                find_span(span, field, &map, &reach, b, j, k);
-                if (span[0] < span[1]) {
-                    include_box(&box, (int[3]){span[0], j, k}, (int[3]){span[1], j + 1, k + 1});
-                }
+#pragma omp parallel for schedule(dynamic, 4) if (count_box(reach) >= MS_GRID_THREADS_FROM)
+        for (int k = reach->lo[2]; k < reach->hi[2]; k++) {
+            for (int j = reach->lo[1]; j < reach->hi[1]; j++) {
+                mark_row(field, &map, reach, covered->first_new, j, k);
             }
         }
     }
     free(map.away);
-    changed->box = box;
     return status;
 }
 
-/* All voxels that may be the nearest background of a changed one: none is farther than E and what S~ stands out. */
-static ms_mss_box find_surroundings(const ms_mss_field *field, const changed_rows *changed)
+/* Around each sphere, or around all at once where that is less to look at. */
+static ms_status mark_all_stale(ms_mss_field *field, const covered_box *covered, size_t count, ms_error *err)
 {
-    const ms_grid *grid = &field->target->grid;
-    const ms_mss_box *box = &changed->box;
-    ms_mss_box part = *box;
-#pragma omp parallel for reduction(hull : part) if (count_box(box) >= MS_GRID_THREADS_FROM)
-    for (int k = box->lo[2]; k < box->hi[2]; k++) {
-        for (int j = box->lo[1]; j < box->hi[1]; j++) {
-            const float *e = field->target->distance + ms_grid_index(grid, 0, j, k);
-            const int *span = measure_span(changed, j, k);
-            int lo = box->hi[0], hi = box->lo[0], deepest = 0;
-            for (int i = span[0]; i < span[1]; i++) {
-                const int reach = (int)e[i] + 1 + STAND_OUT;
-                deepest = reach > deepest ? reach : deepest;
-                lo = i - reach < lo ? i - reach : lo;
-                hi = i + reach >= hi ? i + reach + 1 : hi;
-            }
-            if (span[0] < span[1]) {
-                include_box(&part, (int[3]){lo, j - deepest, k - deepest},
-                            (int[3]){hi, j + deepest + 1, k + deepest + 1});
-            }
-        }
+    ms_mss_box all = {{INT_MAX, INT_MAX, INT_MAX}, {0, 0, 0}};
+    ms_status status = MS_OK;
+    size_t sum = 0;
+    memset(field->stale, 0, count_rows(field) * count_blocks(field));
+    for (size_t c = 0; c < count; c++) {
+        const ms_mss_box reach = find_reach(field, &covered[c].box);
+        include_box(&all, reach.lo, reach.hi);
+        sum += count_box(&reach);
     }
-    return ms_mss_field_grow(&part, 0, grid->n);
+    if (count > 0 && count_box(&all) < sum) {
+        return mark_stale(field, &all, covered, count, err);
+    }
+    for (size_t c = 0; c < count && status == MS_OK; c++) {
+        const ms_mss_box reach = find_reach(field, &covered[c].box);
+        status = mark_stale(field, &reach, &covered[c], 1, err);
+    }
+    return status;
 }
 
-/* How far a voxel is from the outside of the part, where the part is not the grid's own end. */
-static int find_depth(const ms_mss_box *part, const int n[3], int i, int j, int k)
+/* Lists a box, as one with the last of the list where that is hardly more. */
+static ms_status join_changed(ms_mss_field *field, const ms_mss_box *box, ms_error *err)
 {
-    const int at[3] = {i, j, k};
-    int depth = MS_GRID_MAX_EXTENT;
-    for (int a = 0; a < 3; a++) {
-        if (part->lo[a] > 0 && at[a] - part->lo[a] + 1 < depth) {
-            depth = at[a] - part->lo[a] + 1;
-        }
-        if (part->hi[a] < n[a] && part->hi[a] - at[a] < depth) {
-            depth = part->hi[a] - at[a];
+    if (field->n_changed > 0) {
+        ms_mss_box *last = &field->changed[field->n_changed - 1], both = *last;
+        include_box(&both, box->lo, box->hi);
+        if ((double)count_box(&both) <= 1.2 * (double)(count_box(last) + count_box(box))) {
+            *last = both;
+            return MS_OK;
         }
     }
-    return depth;
+    return add_changed(field, box, err);
 }
 
-/* Writes E~ of the changed voxels; 0 if a distance may be to background beyond the part. */
-static int write_within(ms_mss_field *field, const float *distance, const ms_mss_box *part, const changed_rows *changed)
+/* Lists boxes that hold what was marked, column of blocks by column, and takes note of how deep E~ is there. */
+static ms_status list_changed(ms_mss_field *field, ms_error *err)
 {
     const ms_grid *grid = &field->target->grid;
-    const ms_mss_box *box = &changed->box;
-    const size_t row = (size_t)(box->hi[0] - box->lo[0]), plane = row * (size_t)(box->hi[1] - box->lo[1]);
+    const int blocks = (int)count_blocks(field);
     float deepest = field->deepest_within;
-    int exact = 1;
-#pragma omp parallel for reduction(& : exact) reduction(max : deepest) if (count_box(box) >= MS_GRID_THREADS_FROM)
-    for (int k = box->lo[2]; k < box->hi[2]; k++) {
-        for (int j = box->lo[1]; j < box->hi[1]; j++) {
-            const float *from = distance + plane * (size_t)(k - box->lo[2]) + row * (size_t)(j - box->lo[1]);
-            float *within = field->within + ms_grid_index(grid, 0, j, k);
-            const int *span = measure_span(changed, j, k);
-            for (int i = span[0]; i < span[1]; i++) {
-                const float d = from[i - box->lo[0]];
-                exact &= d <= 1 + STAND_OUT || d <= (float)find_depth(part, grid->n, i, j, k);
-                deepest = d > deepest ? d : deepest;
-                within[i] = d;
+    ms_status status = MS_OK;
+    for (int b = 0; b < blocks && status == MS_OK; b++) {
+        const int x = b * MS_DISTANCE_BLOCK;
+        const int end = x + MS_DISTANCE_BLOCK < grid->n[0] ? x + MS_DISTANCE_BLOCK : grid->n[0];
+        ms_mss_box box = {{INT_MAX, INT_MAX, INT_MAX}, {0, 0, 0}};
+        for (size_t row = 0; row < count_rows(field); row++) {
+            if (field->stale[row * (size_t)blocks + (size_t)b]) {
+                const int j = (int)(row % (size_t)grid->n[1]), k = (int)(row / (size_t)grid->n[1]);
+                include_box(&box, (int[3]){x, j, k}, (int[3]){end, j + 1, k + 1});
+                const float *within = field->within + row * (size_t)grid->n[0];
+                for (int i = x; i < end; i++) {
+                    deepest = within[i] > deepest ? within[i] : deepest;
+                }
             }
         }
+        status = box.hi[0] > 0 ? join_changed(field, &box, err) : MS_OK;
     }
     field->deepest_within = deepest;
-    return exact;
-}
-
-/* @param[out] done 0 if the part proved too small */
-static ms_status update_part(int *done, ms_mss_field *field, const ms_mss_box *part, const changed_rows *changed,
-                             ms_error *err)
-{
-    const ms_mss_box *box = &changed->box;
-    int n[3], lo[3], hi[3];
-    for (int a = 0; a < 3; a++) {
-        n[a] = part->hi[a] - part->lo[a];
-        lo[a] = box->lo[a] - part->lo[a];
-        hi[a] = box->hi[a] - part->lo[a];
-    }
-    const size_t row = (size_t)(hi[0] - lo[0]), apart[2] = {row, row * (size_t)(hi[1] - lo[1])};
-    uint8_t *covered = malloc(count_box(part));
-    float *distance = malloc(count_box(box) * sizeof *distance);
-    ms_status status = MS_OK;
-    *done = 0;
-    if (!covered || !distance) {
-        status = ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", count_box(part));
-    } else {
-        copy_covered(covered, field, part);
-        status = ms_distance_box(distance, apart, covered, n, lo, hi, err);
-    }
-    *done = status == MS_OK && write_within(field, distance, part, changed);
-    free(covered);
-    free(distance);
-    return status;
-}
-
-/* What a sphere has covered first. */
-typedef struct covered_box {
-    size_t ball;
-    ms_mss_box box;
-} covered_box;
-
-/* What transforming a part takes, in voxels of which a lower envelope is made along two axes. */
-static size_t cost_of_part(const ms_mss_box *box, const ms_mss_box *part)
-{
-    const size_t lines_y = count_box(part) / (size_t)(part->hi[0] - part->lo[0]) * (size_t)(box->hi[0] - box->lo[0]);
-    const size_t lines_z = lines_y / (size_t)(part->hi[1] - part->lo[1]) * (size_t)(box->hi[1] - box->lo[1]);
-    return count_box(part) / 4 + (lines_y + lines_z) / 2;
-}
-
-/* That of the grid: background is passed over. */
-static size_t cost_of_whole(const ms_target *target)
-{
-    return target->voxels + ms_grid_voxels(&target->grid) / 4;
-}
-
-/*
- * Brings E~ up to date where one sphere has covered voxels, unless the whole grid is sooner.
- *
- * @param[in,out] cost what the spheres before took
- * @param         left how many spheres there are with this one, which are taken to cost the same
- */
-static ms_status update_around(int *done, size_t *cost, ms_mss_field *field, const covered_box *covered, size_t left,
-                               ms_error *err)
-{
-    changed_rows changed;
-    *done = 0;
-    ms_status status = find_changed(&changed, field, covered->ball, &covered->box, err);
-    if (status == MS_OK) {
-        const ms_mss_box *box = &changed.box, part = find_surroundings(field, &changed);
-        const size_t columns = count_box(box) / (size_t)(box->hi[2] - box->lo[2]) * (size_t)(part.hi[2] - part.lo[2]);
-        const size_t bytes = count_box(&part) + sizeof(float) * (columns + count_box(box));
-        const size_t here = cost_of_part(box, &part), all = ms_grid_voxels(&field->target->grid);
-        if (*cost + left * here <= cost_of_whole(field->target) && bytes <= all / 4 * 7) {
-            status = add_changed(field, box, err);
-            status = status == MS_OK ? update_part(done, field, &part, &changed, err) : status;
-        }
-        *cost += here;
-    }
-    free(changed.span);
     return status;
 }
 
@@ -427,13 +321,14 @@ static ms_status spread_balls(covered_box *covered, size_t *n_covered, ms_mss_fi
                               size_t count, ms_error *err)
 {
     const ms_raster *raster = &field->raster;
+    const size_t first_new = raster->n_balls;
     ms_status status = MS_OK;
     *n_covered = 0;
     for (size_t b = 0; b < count && status == MS_OK; b++) {
         status = ms_raster_add(&field->raster, &balls[b], 1, err);
         if (status == MS_OK && raster->hi[0] > raster->lo[0]) {
             covered_box *next = &covered[(*n_covered)++];
-            next->ball = raster->n_balls - 1;
+            next->first_new = first_new;
             memcpy(next->box.lo, raster->lo, sizeof next->box.lo);
             memcpy(next->box.hi, raster->hi, sizeof next->box.hi);
         }
@@ -441,19 +336,37 @@ static ms_status spread_balls(covered_box *covered, size_t *n_covered, ms_mss_fi
     return status;
 }
 
+static void note_covered(ms_mss_field *field, const ms_mss_box *box)
+{
+#pragma omp parallel for if (count_box(box) >= MS_GRID_THREADS_FROM)
+    for (int k = box->lo[2]; k < box->hi[2]; k++) {
+        for (int j = box->lo[1]; j < box->hi[1]; j++) {
+            const size_t row = ms_grid_index(&field->target->grid, 0, j, k);
+            for (size_t v = row + (size_t)box->lo[0]; v < row + (size_t)box->hi[0]; v++) {
+                field->covered[v] = field->raster.first[v] != MS_RASTER_NONE;
+            }
+        }
+    }
+}
+
 ms_status ms_mss_field_add(ms_mss_field *field, const ms_ball *balls, size_t count, ms_error *err)
 {
-    size_t n_covered = 0, cost = 0;
-    int done = 1;
+    size_t n_covered = 0;
     covered_box *covered = malloc((count + 1) * sizeof *covered);
     field->n_changed = 0;
     if (!covered) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     }
     ms_status status = spread_balls(covered, &n_covered, field, balls, count, err);
-    for (size_t b = 0; b < n_covered && done && status == MS_OK; b++) {
-        status = update_around(&done, &cost, field, &covered[b], n_covered - b, err);
+    for (size_t c = 0; c < n_covered; c++) {
+        note_covered(field, &covered[c].box);
+    }
+    if (status == MS_OK) {
+        status = mark_all_stale(field, covered, n_covered, err);
+    }
+    if (status == MS_OK) {
+        status = ms_distance_blocks(field->within, field->covered, field->target->grid.n, field->stale, err);
     }
     free(covered);
-    return done || status != MS_OK ? status : update_whole(field, err);
+    return status == MS_OK ? list_changed(field, err) : status;
 }

@@ -20,6 +20,8 @@ typedef struct ms_mss_field {
     float *within;        /* E~, in voxels: exact roots, so that equal distances compare equal */
     float deepest;        /* largest E */
     float deepest_within; /* at least the largest E~; E~ only grows */
+    uint8_t *covered;     /* by S~ */
+    uint8_t *stale;       /* of each block (ms_distance_blocks): the update under way can change E~ */
     ms_mss_box *changed;  /* where the last update can have changed E~ */
     size_t n_changed, room;
 } ms_mss_field;
@@ -34,8 +36,8 @@ ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const 
 
 /**
  * Adds spheres to S~ and brings E~ up to date where they can have changed it.
- * Cost: of a distance transform of the boxes that each of them changes and of what surrounds these, or of the grid if
- * that is less.
+ * Cost: a look at the voxels no farther from the new spheres than the largest E~; ms_distance_blocks of those that had
+ * their nearest background among what is covered now.
  */
 ms_status ms_mss_field_add(ms_mss_field *field, const ms_ball *balls, size_t count, ms_error *err);
 

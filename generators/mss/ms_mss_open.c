@@ -97,6 +97,13 @@ static long count_row(const uint64_t *inside, const uint64_t *outside, int from,
     return sum;
 }
 
+/* ceil where it is not below 0, else 0; ceil itself is a call. */
+static int round_place(double x)
+{
+    const int whole = x > 0 ? (int)x : 0;
+    return whole + (x > whole);
+}
+
 long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball)
 {
     const double *c = ball->centre, r = ball->radius, square = r * r + ON_SURFACE;
@@ -111,8 +118,9 @@ long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball)
             const double y = j - c[1], left = rest - y * y;
             if (left >= 0) {
                 const double half = sqrt(left);
-                const int from = ms_mss_open_clamp(ceil(c[0] - half), 0, open->n[0]);
-                const int to = ms_mss_open_clamp(floor(c[0] + half) + 1, 0, open->n[0]);
+                const double last = c[0] + half;
+                const int from = round_place(c[0] - half), end = last >= 0 ? (int)last + 1 : 0;
+                const int to = end < open->n[0] ? end : open->n[0];
                 const size_t row = ((size_t)j + (size_t)open->n[1] * (size_t)k) * open->words;
                 sum += from < to ? count_row(open->inside + row, open->outside + row, from, to) : 0;
             }
@@ -124,7 +132,8 @@ long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball)
 long ms_mss_open_fit(ms_ball *ball, const ms_mss_open *open, double lo, double hi, double step)
 {
     long most = ms_mss_open_gain(open, ball);
-    for (int up = 1; up >= -1; up -= 2) {
+    const double start = ball->radius;
+    for (int up = 1; up >= -1 && ball->radius == start; up -= 2) { /* where it rises upwards it does not downwards */
         ms_ball next = *ball;
         for (next.radius += up * step; next.radius >= lo && next.radius <= hi; next.radius += up * step) {
             const long gain = ms_mss_open_gain(open, &next);

@@ -379,6 +379,28 @@ static void smooth_bodies_get_their_spheres(void **state)
     }
 }
 
+/* An ellipsoid by few cells runs out of spheres that lower the mismatch: the limit of the method (docs/methods/mss.md).
+ * The run then says that it is exhausted, and its spheres are those of a run that asked for just as many. */
+static void smooth_ellipsoid_is_exhausted(void **state)
+{
+    (void)state;
+    ms_mesh mesh;
+    ms_target target;
+    make_shape(&mesh, "ellipsoid", "");
+    make_target(&target, &mesh, 18, MS_VOXEL_HALF);
+    mss_outcome all = run_mss(&target, at_most(200), "");
+    const size_t n = all.clump.n_spheres;
+    assert_int_equal(all.reason, MS_STOP_EXHAUSTED);
+    assert_in_range(n, 2, 199);
+    mss_outcome same = run_mss(&target, at_most(n), "");
+    assert_int_equal(same.reason, MS_STOP_SPHERES);
+    assert_memory_equal(all.clump.sphere, same.clump.sphere, n * sizeof *all.clump.sphere);
+    ms_clump_free(&all.clump);
+    ms_clump_free(&same.clump);
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
 static long count_difference(const ms_target *target, const ms_clump *clump)
 {
     const ms_grid *grid = &target->grid;
@@ -521,6 +543,7 @@ int main(void)
         cmocka_unit_test(planes_are_not_crossed),
         cmocka_unit_test(spacing_is_kept),
         cmocka_unit_test(smooth_bodies_get_their_spheres),
+        cmocka_unit_test(smooth_ellipsoid_is_exhausted),
         cmocka_unit_test(polish_fits_radii),
         cmocka_unit_test(gains_are_counted),
         cmocka_unit_test(options_of_the_other_variant_are_refused),

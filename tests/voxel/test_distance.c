@@ -84,59 +84,50 @@ static void random_sizes_agree_with_brute_force(void **state)
     free(inside);
 }
 
-/* A box alone is what the transform of all of the grid has there, written between what is not of the box. */
-static void boxes_agree_with_the_whole(void **state)
+/* The blocks wanted are as the transform of all of the grid has them; the others are left as they are. */
+static void blocks_agree_with_the_whole(void **state)
 {
     (void)state;
     uint64_t seed = 11;
-    for (int round = 0; round < 200; round++) {
-        int n[3], lo[3], hi[3];
+    for (int round = 0; round < 300; round++) {
+        int n[3];
         for (int a = 0; a < 3; a++) {
-            n[a] = 1 + (int)(40 * next_uniform(&seed));
-            lo[a] = (int)(n[a] * next_uniform(&seed));
-            hi[a] = lo[a] + 1 + (int)((n[a] - lo[a]) * next_uniform(&seed));
-            hi[a] = hi[a] > n[a] ? n[a] : hi[a];
+            n[a] = 1 + (int)((a == 0 ? 70 : 40) * next_uniform(&seed));
         }
-        const size_t voxels = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
-        const size_t apart[2] = {(size_t)n[0], (size_t)n[0] * (size_t)n[1]};
-        uint8_t *inside = malloc(voxels);
+        const size_t rows = (size_t)n[1] * (size_t)n[2], voxels = rows * (size_t)n[0];
+        const size_t blocks = ((size_t)n[0] + MS_DISTANCE_BLOCK - 1) / MS_DISTANCE_BLOCK;
+        uint8_t *inside = malloc(voxels), *wanted = malloc(rows * blocks);
         float *got = malloc(voxels * sizeof *got);
-        assert_true(inside && got);
-        fill_random(inside, n, round % 2 ? 0.999 : 0.9, &seed);
+        assert_true(inside && wanted && got);
+        fill_random(inside, n, (const double[]){0.9, 0.999, 1}[round % 3], &seed);
+        for (size_t b = 0; b < rows * blocks; b++) { /* from a few to all but a few */
+            wanted[b] = next_uniform(&seed) < pow(0.01, round % 7 / 6.);
+        }
         float *whole = distances(inside, n);
         for (size_t v = 0; v < voxels; v++) {
             got[v] = -1;
         }
-        float *to = got + (size_t)lo[0] + apart[0] * (size_t)lo[1] + apart[1] * (size_t)lo[2];
-        assert_int_equal(ms_distance_box(to, apart, inside, n, lo, hi, NULL), MS_OK);
+        assert_int_equal(ms_distance_blocks(got, inside, n, wanted, NULL), MS_OK);
         for (size_t v = 0; v < voxels; v++) {
-            const int at[3] = {(int)(v % apart[0]), (int)(v / apart[0] % (size_t)n[1]), (int)(v / apart[1])};
-            int in_box = 1;
-            for (int a = 0; a < 3; a++) {
-                in_box &= at[a] >= lo[a] && at[a] < hi[a];
-            }
-            assert_true(got[v] == (in_box ? whole[v] : -1));
+            const size_t block = v / (size_t)n[0] * blocks + v % (size_t)n[0] / MS_DISTANCE_BLOCK;
+            assert_true(got[v] == (wanted[block] ? whole[v] : -1));
         }
         free(whole);
         free(got);
+        free(wanted);
         free(inside);
     }
 }
 
-static void boxes_beyond_the_grid_are_refused(void **state)
+static void blocks_of_no_grid_are_refused(void **state)
 {
     (void)state;
-    const int n[3] = {3, 3, 3}, zero[3] = {0, 0, 0};
-    const uint8_t inside[27] = {0};
-    const size_t apart[2] = {3, 9};
-    float out[27];
+    const int zero[3] = {3, 0, 3};
+    const uint8_t none[1] = {0};
+    float out[1];
     ms_error err;
-    const int bad[][2][3] = {{{-1, 0, 0}, {3, 3, 3}}, {{0, 0, 0}, {3, 4, 3}}, {{0, 0, 2}, {3, 3, 2}}};
-    for (size_t c = 0; c < sizeof bad / sizeof *bad; c++) {
-        assert_int_equal(ms_distance_box(out, apart, inside, n, bad[c][0], bad[c][1], &err), MS_ERR_ARG);
-        assert_non_null(strstr(err.text, "no part of a grid"));
-    }
-    assert_int_equal(ms_distance_box(out, apart, inside, zero, zero, n, &err), MS_ERR_ARG);
+    assert_int_equal(ms_distance_blocks(out, none, zero, none, &err), MS_ERR_ARG);
+    assert_non_null(strstr(err.text, "extent 0 along y"));
 }
 
 static void one_background_voxel_gives_the_distance_from_it(void **state)
@@ -263,8 +254,8 @@ int main(void)
         cmocka_unit_test(the_longest_lines_are_exact),
         cmocka_unit_test(any_nonzero_byte_is_inside),
         cmocka_unit_test(bad_extents_are_refused),
-        cmocka_unit_test(boxes_agree_with_the_whole),
-        cmocka_unit_test(boxes_beyond_the_grid_are_refused),
+        cmocka_unit_test(blocks_agree_with_the_whole),
+        cmocka_unit_test(blocks_of_no_grid_are_refused),
         cmocka_unit_test(the_centre_of_a_ball_is_its_radius_away),
     };
     omp_set_num_threads(1); /* small grids */

@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""Yuan's eps_w, the weighted mean error of the principal moments, at 90 and 95 % coverage by inscribed spheres.
+
+    MSKIT=build/eval/mskit docs/validation/inertia-error.py [MESH]...
+
+The spheroid and the tablet of the paper are made by mskit; further meshes are files.
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+MSKIT = os.environ.get("MSKIT", "mskit")
+MADE = {"spheroid": ["ellipsoid", "a=6.585", "b=6.585", "c=3.395"], "tablet": ["tablet"]}
+
+
+def run(*command):
+    done = subprocess.run([MSKIT, *command], capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"{' '.join(command)}\n{done.stderr}")
+    return done.stdout
+
+
+def row(name, mesh, folder):
+    cells = []
+    for coverage in ("0.90", "0.95"):
+        clump = os.path.join(folder, "clump.csv")
+        run("generate", mesh, "-g", "setcover", "--deq", "100", "--until", f"coverage={coverage}", "-o", clump)
+        scores = json.loads(run("score", clump, "--target", mesh, "--deq", "100", "--json"))["scores"]
+        cells.append(f"{100 * scores['inertia_error']['weighted_mean']:.1f} % ({scores['spheres']})")
+    print(f"| {name} | {' | '.join(cells)} |", flush=True)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        for name, shape in MADE.items():
+            mesh = os.path.join(folder, name + ".stl")
+            run("shape", *shape, "-o", mesh)
+            row(name, mesh, folder)
+        for mesh in sys.argv[1:]:
+            row(os.path.basename(mesh), mesh, folder)
+
+
+if __name__ == "__main__":
+    main()
