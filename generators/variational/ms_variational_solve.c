@@ -73,7 +73,6 @@ typedef struct solver {
 static void free_solver(solver *s)
 {
     ms_coarse_view_free(&s->coarse);
-    ms_signed_distance_free(&s->field);
     ms_lattice_free(&s->lattice);
     free(s->walled);
     free(s->ball);
@@ -340,8 +339,8 @@ static ms_status begin_solver(solver *s, const ms_run *run, const ms_variational
     }
     ms_status status = given->n_spheres > 0 ? start_from_given(s, given, err) : start_from_cover(s, err);
     if (status == MS_OK) {
-        status = ms_signed_distance_alloc(&s->field, run->target,
-                                          s->coarse.step < FIELD_STEP ? s->coarse.step : FIELD_STEP, err);
+        status = ms_signed_distance_open(&s->field, run->target,
+                                         s->coarse.step < FIELD_STEP ? s->coarse.step : FIELD_STEP, err);
     }
     if (status == MS_OK) {
         status = ms_lattice_alloc(&s->lattice, settings->points, err);

@@ -1,6 +1,7 @@
 /* The parts of the variational generator: signed distances, losses, fits, bounds. */
 #include "support/variational_samples.h"
 
+#include <pthread.h>
 #include <string.h>
 
 #include "variational/ms_coverage_count.h"
@@ -24,7 +25,7 @@ static void field_is_the_distance(void **state)
     const ms_ball ball = ms_grid_ball(&target.grid, &unit);
     const double *middle = ball.centre, radius = ball.radius;
     for (int step = 1; step <= 3; step++) {
-        assert_int_equal(ms_signed_distance_alloc(&field, &target, step, &err), MS_OK);
+        assert_int_equal(ms_signed_distance_open(&field, &target, step, &err), MS_OK);
         for (int t = 0; t < 300; t++) {
             const double p[3] = {uniform(-3, 37), uniform(-3, 37), uniform(-3, 37)};
             const double truth = sqrt(ms_squared_distance(p, middle)) - radius;
@@ -35,8 +36,61 @@ static void field_is_the_distance(void **state)
             assert_true(phi > truth - 0.4 * step * step / away - 0.05);
             assert_true(phi < truth + 0.8 * step * step / away + 0.05 + 3 * beyond);
         }
-        ms_signed_distance_free(&field);
     }
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
+enum { RUNS = 4, PLACES = 2000 };
+
+/* A run on a target, beside others. */
+typedef struct side_run {
+    const ms_target *target;
+    int step;
+    float *nodes;
+    double phi[PLACES];
+} side_run;
+
+static void *look_up_places(void *context)
+{
+    side_run *run = context;
+    ms_signed_distance field;
+    ms_error err;
+    assert_int_equal(ms_signed_distance_open(&field, run->target, run->step, &err), MS_OK);
+    run->nodes = field.phi;
+    for (int p = 0; p < PLACES; p++) {
+        const double place[3] = {0.011 * p, 20 - 0.007 * p, 7 + 0.005 * p};
+        run->phi[p] = ms_signed_distance_at(&field, place);
+    }
+    return NULL;
+}
+
+/* Runs side by side share the nodes of their step, and find what a run alone finds. */
+static void field_is_kept_with_its_target(void **state)
+{
+    (void)state;
+    ms_mesh mesh;
+    ms_target target, other;
+    static side_run run[RUNS], alone;
+    pthread_t thread[RUNS];
+    make_shape(&mesh, "ball", "r=1 fineness=60");
+    make_target(&target, &mesh, 30, MS_VOXEL_HALF);
+    make_target(&other, &mesh, 30, MS_VOXEL_HALF);
+    for (int r = 0; r < RUNS; r++) {
+        run[r] = (side_run){.target = &target, .step = r % 2 + 1};
+        assert_int_equal(pthread_create(&thread[r], NULL, look_up_places, &run[r]), 0);
+    }
+    for (int r = 0; r < RUNS; r++) {
+        assert_int_equal(pthread_join(thread[r], NULL), 0);
+    }
+    for (int r = 0; r < RUNS; r++) {
+        assert_ptr_equal(run[r].nodes, run[r % 2].nodes);
+        alone = (side_run){.target = &other, .step = r % 2 + 1};
+        look_up_places(&alone);
+        assert_memory_equal(alone.phi, run[r].phi, sizeof alone.phi);
+    }
+    assert_ptr_not_equal(run[0].nodes, run[1].nodes);
+    ms_target_free(&other);
     ms_target_free(&target);
     ms_mesh_free(&mesh);
 }
@@ -134,7 +188,7 @@ static void step_lowers_the_mismatch(void **state)
     ms_lattice lattice;
     int fell = 0, tried = 0;
     assert_int_equal(ms_lattice_alloc(&lattice, 256, &err), MS_OK);
-    assert_int_equal(ms_signed_distance_alloc(&field, target, 1, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_open(&field, target, 1, &err), MS_OK);
     for (int t = 0; t < 40; t++) {
         ms_ball ball[3], before[3];
         const double damping[2] = {0.3, 0.3};
@@ -158,7 +212,6 @@ static void step_lowers_the_mismatch(void **state)
     assert_true(tried > 30);
     ms_lattice_free(&lattice);
     assert_true(fell >= tried - 2); /* a sphere and its neighbour may both fill the same gap */
-    ms_signed_distance_free(&field);
 }
 
 static void search_never_raises_the_mismatch(void **state)
@@ -167,7 +220,7 @@ static void search_never_raises_the_mismatch(void **state)
     ms_signed_distance field;
     ms_error err;
     ms_ball ball[8];
-    assert_int_equal(ms_signed_distance_alloc(&field, target, 1, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_open(&field, target, 1, &err), MS_OK);
     ms_surface_fit fit = {.field = &field, .bounds = {.least = 0.5, .protrusion = 1.5}};
     for (int b = 0; b < 8; b++) {
         do {
@@ -190,7 +243,6 @@ static void search_never_raises_the_mismatch(void **state)
         }
     }
     assert_true(before < first);
-    ms_signed_distance_free(&field);
 }
 
 /* Places of each level that lie in no other sphere, and no others. */
@@ -247,7 +299,7 @@ static void tally_is_the_volume(void **state)
     ms_error err;
     make_shape(&mesh, "ball", "r=1 fineness=120");
     make_target(&target, &mesh, 30, MS_VOXEL_HALF);
-    assert_int_equal(ms_signed_distance_alloc(&field, &target, 1, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_open(&field, &target, 1, &err), MS_OK);
     assert_int_equal(ms_lattice_alloc(&lattice, 512, &err), MS_OK);
     field.cubic = 1;
     const ms_surface_fit fit = {.field = &field, .lattice = &lattice};
@@ -265,7 +317,6 @@ static void tally_is_the_volume(void **state)
     assert_true(-loss[1] * cell < lune && -loss[1] * cell > lune - 2 * 2 * pi * 0.01);
     assert_true(loss[0] * cell > 0.95 * lune && loss[0] * cell < 1.01 * lune);
     ms_lattice_free(&lattice);
-    ms_signed_distance_free(&field);
     ms_target_free(&target);
     ms_mesh_free(&mesh);
 }
@@ -276,6 +327,7 @@ int main(void)
         cmocka_unit_test(exposed_places_are_those_of_brute_force),
         cmocka_unit_test(tally_is_the_volume),
         cmocka_unit_test(field_is_the_distance),
+        cmocka_unit_test(field_is_kept_with_its_target),
         cmocka_unit_test(losses_are_those_of_brute_force),
         cmocka_unit_test(spheres_are_dropped_by_their_loss),
         cmocka_unit_test(step_lowers_the_mismatch),
