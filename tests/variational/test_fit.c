@@ -8,6 +8,7 @@
 #include "variational/ms_exposed.h"
 #include "variational/ms_pattern_search.h"
 #include "variational/ms_prune.h"
+#include "variational/ms_split.h"
 #include "variational/ms_surface_fit.h"
 #include "variational/ms_surface_tally.h"
 
@@ -214,6 +215,113 @@ static void step_lowers_the_mismatch(void **state)
     assert_true(fell >= tried - 2); /* a sphere and its neighbour may both fill the same gap */
 }
 
+/* In the target, away from its surface. */
+static void place_at_random(ms_ball *ball, size_t count, const ms_signed_distance *field)
+{
+    for (size_t b = 0; b < count; b++) {
+        do {
+            for (int a = 0; a < 3; a++) {
+                ball[b].centre[a] = uniform(0, field->target->grid.n[a]);
+            }
+        } while (ms_signed_distance_at(field, ball[b].centre) > -2);
+        ball[b].radius = uniform(0.5, 1.1) * -ms_signed_distance_at(field, ball[b].centre);
+    }
+}
+
+static void held_spheres_stay(void **state)
+{
+    const ms_target *target = *state;
+    static const uint8_t MOVING[6] = {1, 0, 1, 0, 0, 1};
+    ms_signed_distance field;
+    ms_lattice lattice;
+    ms_error err;
+    ms_ball ball[6], before[6];
+    const double damping[2] = {0.5, 0.5};
+    assert_int_equal(ms_lattice_alloc(&lattice, 128, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_open(&field, target, 1, &err), MS_OK);
+    place_at_random(ball, 6, &field);
+    memcpy(before, ball, sizeof ball);
+    ms_surface_fit fit = {.field = &field, .bounds = {.protrusion = HUGE_VAL}, .lattice = &lattice, .moving = MOVING};
+    assert_int_equal(ms_surface_fit_steps(&fit, ball, 6, 5, damping, &err), MS_OK);
+    int moved = 0;
+    for (int b = 0; b < 6; b++) {
+        const int is_same = memcmp(&ball[b], &before[b], sizeof ball[b]) == 0;
+        assert_true(is_same || MOVING[b]);
+        moved += !is_same;
+    }
+    assert_true(moved >= 2); /* one may be covered by others */
+    ms_lattice_free(&lattice);
+}
+
+/* The sphere that bears most is now two, a quarter of the way to its nearest and as far the other way. */
+static void worst_sphere_is_split(void **state)
+{
+    const ms_target *target = *state;
+    ms_signed_distance field;
+    ms_lattice lattice;
+    ms_error err;
+    ms_ball ball[8], before[8];
+    ms_surface_worth worth[7];
+    assert_int_equal(ms_lattice_alloc(&lattice, 256, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_open(&field, target, 1, &err), MS_OK);
+    const ms_surface_fit fit = {.field = &field, .lattice = &lattice};
+    for (int t = 0; t < 20; t++) {
+        size_t count = 7, worst = 0, near = 7;
+        place_at_random(ball, 7, &field);
+        memcpy(before, ball, sizeof ball);
+        assert_int_equal(ms_surface_tally(worth, NULL, &fit, ball, 7, &err), MS_OK);
+        for (size_t b = 1; b < 7; b++) {
+            worst = worth[b].mismatch > worth[worst].mismatch ? b : worst;
+        }
+        for (size_t b = 0; b < 7; b++) {
+            const double *of = ball[worst].centre;
+            if (b != worst &&
+                (near == 7 || ms_squared_distance(ball[b].centre, of) < ms_squared_distance(ball[near].centre, of))) {
+                near = b;
+            }
+        }
+        assert_int_equal(ms_split_worst(ball, &count, 1, &fit, &err), MS_OK);
+        assert_int_equal(count, 8);
+        for (size_t b = 0; b < 7; b++) {
+            assert_true(b == worst || memcmp(&ball[b], &before[b], sizeof ball[b]) == 0);
+        }
+        const ms_ball *whole = &before[worst], *to = &before[near];
+        assert_true(fabs(ball[worst].radius - (whole->radius + 0.25 * (to->radius - whole->radius))) < 1e-9);
+        assert_true(fabs(ball[7].radius - (whole->radius - 0.25 * (to->radius - whole->radius))) < 1e-9);
+        for (int c = 0; c < 3; c++) {
+            const double way = 0.25 * (to->centre[c] - whole->centre[c]);
+            assert_true(fabs(ball[worst].centre[c] - (whole->centre[c] + way)) < 1e-9);
+            assert_true(fabs(ball[7].centre[c] - (whole->centre[c] - way)) < 1e-9);
+        }
+    }
+    ms_lattice_free(&lattice);
+}
+
+/* Eight to each new one: as many as those that are no farther from it than one that is marked. */
+static void nearest_spheres_are_marked(void **state)
+{
+    (void)state;
+    enum { COUNT = 40, FIRST = 38 };
+    ms_ball ball[COUNT];
+    uint8_t near[COUNT], brute[COUNT] = {0};
+    for (int b = 0; b < COUNT; b++) {
+        ball[b] = (ms_ball){{uniform(0, 9), uniform(0, 9), uniform(0, 9)}, 1};
+    }
+    ms_split_mark_near(near, ball, COUNT, FIRST);
+    for (int a = FIRST; a < COUNT; a++) {
+        brute[a] = 1;
+        for (int b = 0; b < FIRST; b++) {
+            int nearer = 0;
+            for (int k = 0; k < FIRST; k++) {
+                nearer += ms_squared_distance(ball[k].centre, ball[a].centre) <
+                          ms_squared_distance(ball[b].centre, ball[a].centre);
+            }
+            brute[b] |= nearer < 8;
+        }
+    }
+    assert_memory_equal(near, brute, sizeof near);
+}
+
 static void search_never_raises_the_mismatch(void **state)
 {
     const ms_target *target = *state;
@@ -304,18 +412,19 @@ static void tally_is_the_volume(void **state)
     field.cubic = 1;
     const ms_surface_fit fit = {.field = &field, .lattice = &lattice};
     const double h = target.grid.h, cell = h * h * h, pi = acos(-1.0);
-    double loss[2], mismatch;
+    ms_surface_worth worth[2];
+    double mismatch;
     const ms_sphere smaller = {.radius = 0.99}, beside = {.centre = {0.05, 0, 0}, .radius = 0.99};
     ms_ball ball[2] = {ms_grid_ball(&target.grid, &smaller), ms_grid_ball(&target.grid, &beside)};
-    assert_int_equal(ms_surface_tally(loss, &mismatch, &fit, ball, 1, &err), MS_OK);
+    assert_int_equal(ms_surface_tally(worth, &mismatch, &fit, ball, 1, &err), MS_OK);
     assert_true(fabs(mismatch * cell / (4 * pi * 0.99 * 0.99 * 0.01) - 1) < 0.03);
-    assert_true(fabs(loss[0] * cell / (4 * pi / 3 * 0.99 * 0.99 * 0.99) - 1) < 0.01);
+    assert_true(fabs(worth[0].loss * cell / (4 * pi / 3 * 0.99 * 0.99 * 0.99) - 1) < 0.01);
     /* Moved by d, a lune of pi r^2 d - pi d^3 / 12 is added: what lies outside of the shape, all but the shell between,
      * counts against it. */
-    assert_int_equal(ms_surface_tally(loss, &mismatch, &fit, ball, 2, &err), MS_OK);
+    assert_int_equal(ms_surface_tally(worth, &mismatch, &fit, ball, 2, &err), MS_OK);
     const double lune = pi * (0.99 * 0.99 * 0.05 - 0.05 * 0.05 * 0.05 / 12);
-    assert_true(-loss[1] * cell < lune && -loss[1] * cell > lune - 2 * 2 * pi * 0.01);
-    assert_true(loss[0] * cell > 0.95 * lune && loss[0] * cell < 1.01 * lune);
+    assert_true(-worth[1].loss * cell < lune && -worth[1].loss * cell > lune - 2 * 2 * pi * 0.01);
+    assert_true(worth[0].loss * cell > 0.95 * lune && worth[0].loss * cell < 1.01 * lune);
     ms_lattice_free(&lattice);
     ms_target_free(&target);
     ms_mesh_free(&mesh);
@@ -331,6 +440,9 @@ int main(void)
         cmocka_unit_test(losses_are_those_of_brute_force),
         cmocka_unit_test(spheres_are_dropped_by_their_loss),
         cmocka_unit_test(step_lowers_the_mismatch),
+        cmocka_unit_test(held_spheres_stay),
+        cmocka_unit_test(worst_sphere_is_split),
+        cmocka_unit_test(nearest_spheres_are_marked),
         cmocka_unit_test(search_never_raises_the_mismatch),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
