@@ -368,17 +368,13 @@ static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
     return status == MS_OK ? fit_spheres(s, LAST_STEPS, 0.5, 0.05, err) : status;
 }
 
-/* Adds spheres and fits them and those about them. Where the surfaces are close everywhere, no inscribed sphere covers
- * what is left: those that bear most of it are split. */
-static ms_status add_and_settle(solver *s, size_t more, ms_error *err)
+/* Splits spheres, and fits them and those about them. */
+static ms_status split_and_settle(solver *s, size_t more, ms_error *err)
 {
     const size_t before = s->count, room = s->room - before;
-    const int *across = s->settings->mirror.across, alone = !(across[0] || across[1] || across[2]);
     uint8_t *moving = malloc(s->room);
-    ms_status status = !moving ? ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", s->room)
-                       : alone && s->field.cubic
-                           ? ms_split_worst(s->ball, &s->count, more < room ? more : room, &s->fit, err)
-                           : add_to_cover(s, more, err);
+    ms_status status = moving ? ms_split_worst(s->ball, &s->count, more < room ? more : room, &s->fit, err)
+                              : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", s->room);
     if (status == MS_OK && !s->fit.bounds.equal) {
         ms_split_mark_near(moving, s->ball, s->count, before);
         s->fit.moving = moving;
@@ -420,12 +416,15 @@ static ms_status try_change(solver *s, ms_status (*change)(solver *, size_t, ms_
     return status;
 }
 
-/* Puts idle spheres where the union leaves most, and drops those that are idle there, too. */
+/* Puts idle spheres where the union leaves most, and drops those that are idle there, too. Where the surfaces are close
+ * everywhere, no inscribed sphere covers what is left: those that bear most of it are split. */
 static ms_status replace_idle(solver *s, ms_error *err)
 {
+    const int *across = s->settings->mirror.across;
+    const int splits = s->field.cubic && !(across[0] || across[1] || across[2]);
     ms_status status = ms_prune_idle(s->ball, &s->count, &s->fit, err);
     for (int round = 0; round < REPAIRS && status == MS_OK && count_with_images(s) < s->wanted; round++) {
-        status = try_change(s, add_and_settle, s->wanted - count_with_images(s), err);
+        status = try_change(s, splits ? split_and_settle : add_and_prune, s->wanted - count_with_images(s), err);
         if (status == MS_OK) {
             status = ms_prune_idle(s->ball, &s->count, &s->fit, err);
         }

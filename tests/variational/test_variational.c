@@ -62,8 +62,8 @@ static void find_worth(ms_surface_worth *worth, double *mismatch, const ms_targe
     ms_signed_distance field;
     ms_lattice lattice;
     ms_error err;
-    ms_ball ball[40];
-    assert_true(clump->n_spheres <= 40);
+    ms_ball ball[64];
+    assert_true(clump->n_spheres <= 64);
     for (size_t s = 0; s < clump->n_spheres; s++) {
         ball[s] = ms_grid_ball(&target->grid, &clump->sphere[s]);
     }
@@ -194,7 +194,7 @@ static void planes_are_not_crossed(void **state)
     ms_target target;
     static const char *const OPTIONS[] = {"plane", "1,0,0,0.25", "plane", "0,0,2,0", NULL};
     make_shape(&mesh, "cube", "a=1");
-    make_target(&target, &mesh, 40, MS_VOXEL_HALF);
+    make_target(&target, &mesh, 60, MS_VOXEL_HALF);
     ms_clump clump = generate(&target, 30, OPTIONS), by_mss = generate_by(&ms_generator_mss, &target, 30, OPTIONS);
     assert_int_equal(clump.n_spheres, 30);
     for (size_t s = 0; s < clump.n_spheres; s++) {
@@ -214,16 +214,17 @@ static void planes_are_not_crossed(void **state)
 static void row_is_filled(void **state)
 {
     (void)state;
-    enum { SPHERES = 40 };
+    enum { SPHERES = 60 };
     ms_mesh mesh;
     ms_target target;
     double mismatch;
-    make_shape(&mesh, "ellipsoid", "a=2 b=1 c=1 fineness=100");
-    make_target(&target, &mesh, 40, MS_VOXEL_HALF);
+    make_shape(&mesh, "ellipsoid", "a=2 b=1 c=1 fineness=300");
+    make_target(&target, &mesh, 60, MS_VOXEL_HALF);
     ms_clump clump = generate(&target, SPHERES, NULL);
     assert_int_equal(clump.n_spheres, SPHERES);
     find_worth(NULL, &mismatch, &target, &clump);
     const double h = target.grid.h;
+    print_message("row: %g\n", mismatch * h * h * h / target.body.volume / 0.5625 * SPHERES * SPHERES);
     assert_true(mismatch * h * h * h / target.body.volume < 4.0 / 3 * 0.5625 / (SPHERES * SPHERES));
     ms_clump_free(&clump);
     ms_target_free(&target);
