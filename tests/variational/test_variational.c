@@ -194,7 +194,7 @@ static void planes_are_not_crossed(void **state)
     ms_target target;
     static const char *const OPTIONS[] = {"plane", "1,0,0,0.25", "plane", "0,0,2,0", NULL};
     make_shape(&mesh, "cube", "a=1");
-    make_target(&target, &mesh, 60, MS_VOXEL_HALF);
+    make_target(&target, &mesh, 40, MS_VOXEL_HALF);
     ms_clump clump = generate(&target, 30, OPTIONS), by_mss = generate_by(&ms_generator_mss, &target, 30, OPTIONS);
     assert_int_equal(clump.n_spheres, 30);
     for (size_t s = 0; s < clump.n_spheres; s++) {
