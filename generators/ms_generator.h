@@ -63,6 +63,7 @@ typedef struct ms_generator {
     int nested;               /* nonzero: the first k spheres of a run are the clump of k spheres */
     const char *unnested_by;  /* a FLAG among its options under which a nested one is not; NULL if there is none */
     double bytes_per_voxel;   /* that a run takes beyond the target's at its peak; 0: as ms_target_bytes */
+    double kept_bytes;        /* of those, a voxel: stay with the target for runs to come */
     int baseline;             /* nonzero: something plain to compare with, by name; promises no quality */
     const ms_option *options; /* ends with a NULL name */
     /**

@@ -7,6 +7,7 @@
 
 #include "mesh/ms_closest.h"
 #include "ms_distance.h"
+#include "ms_signed_distance.h"
 #include "ms_tally.h"
 
 double ms_target_bytes(const double n[3], double method)
@@ -57,14 +58,15 @@ static ms_tally tally_grid(const ms_grid *grid)
     return sum;
 }
 
-/* What follows from the voxels; the body where no mesh gave it. */
-static void sum_up(ms_target *target)
+/* What follows from the voxels, the body where no mesh gave it; the place for signed distances. */
+static ms_status sum_up(ms_target *target, ms_error *err)
 {
     const ms_tally sum = tally_grid(&target->grid);
     target->voxels = (size_t)sum.inside;
     if (!(target->body.volume > 0)) {
         ms_tally_body(&target->body, &sum, &target->grid);
     }
+    return ms_signed_distance_store_alloc(&target->signed_distance, err);
 }
 
 ms_status ms_target_add_distance(ms_target *target, ms_error *err)
@@ -93,7 +95,9 @@ ms_status ms_target_voxels_from_solid(ms_target *target, const ms_mesh *mesh, co
     ms_status status = solid ? ms_voxelize(&target->grid, mesh, h, rule, err)
                              : ms_voxelize_open(&target->grid, &target->disagree, mesh, h, err);
     if (status == MS_OK) {
-        sum_up(target);
+        status = sum_up(target, err);
+    }
+    if (status == MS_OK) {
         status = ms_closest_build(&target->closest, mesh, err);
     }
     if (status != MS_OK) {
@@ -187,7 +191,9 @@ ms_status ms_target_voxels_from_volume(ms_target *target, const ms_volume *volum
     if (status == MS_OK) {
         target->closed = 1;
         copy_label(&target->grid, volume, label, lo, hi);
-        sum_up(target);
+        status = sum_up(target, err);
+    }
+    if (status == MS_OK) {
         status = ms_grid_pieces(&target->pieces, &target->largest_piece, &target->grid, err);
     }
     if (status != MS_OK) {
@@ -206,6 +212,7 @@ void ms_target_free(ms_target *target)
 {
     if (target) {
         ms_closest_free(target->closest);
+        ms_signed_distance_store_free(target->signed_distance);
         ms_grid_free(&target->grid);
         free(target->distance);
         free(target->descriptors);

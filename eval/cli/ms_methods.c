@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "clump/formats/ms_read.h"
+#include "voxel/ms_target.h"
 
 /* Room for one more, with its two texts. */
 static ms_status begin_method(ms_method **out, ms_methods *methods, const char *name, size_t length,
@@ -112,12 +113,27 @@ ms_status ms_methods_list_files(ms_files *files, const ms_methods *methods, ms_e
     return status;
 }
 
+/* What runs of the other methods may have left with the target, a voxel. */
+static double find_kept_bytes(const ms_methods *methods, const ms_generator *of)
+{
+    double most = 0;
+    for (size_t m = 0; m < methods->count; m++) {
+        const ms_generator *other = methods->method[m].generator;
+        most = other && other != of && other->kept_bytes > most ? other->kept_bytes : most;
+    }
+    return most;
+}
+
 double ms_methods_bytes(const ms_methods *methods)
 {
     double most = 0;
     for (size_t m = 0; m < methods->count; m++) {
         const ms_generator *generator = methods->method[m].generator;
-        most = generator && generator->bytes_per_voxel > most ? generator->bytes_per_voxel : most;
+        if (generator) {
+            const double own = generator->bytes_per_voxel > 0 ? generator->bytes_per_voxel : MS_TARGET_METHOD_BYTES;
+            const double bytes = own + find_kept_bytes(methods, generator);
+            most = bytes > most ? bytes : most;
+        }
     }
     return most;
 }

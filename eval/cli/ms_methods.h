@@ -41,7 +41,7 @@ ms_status ms_methods_check(ms_methods *methods, ms_error *err);
 /** Adds the files that methods read: clumps of other tools, and those to start from. @return MS_OK; MS_ERR_NOMEM */
 ms_status ms_methods_list_files(ms_files *files, const ms_methods *methods, ms_error *err);
 
-/** Bytes a voxel of the one that takes most (ms_generator); 0: as ms_target_bytes. */
+/** Bytes a voxel of the one that takes most, with what others leave with the target (ms_generator); 0: no generator. */
 double ms_methods_bytes(const ms_methods *methods);
 
 /** Number of clumps among them. */

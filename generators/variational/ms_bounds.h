@@ -2,9 +2,9 @@
 #ifndef MS_BOUNDS_H
 #define MS_BOUNDS_H
 
-#include "ms_signed_distance.h"
 #include "shared/ms_planes.h"
 #include "voxel/ms_raster.h"
+#include "voxel/ms_signed_distance.h"
 
 /** Lengths in voxels. */
 typedef struct ms_bounds {

@@ -88,7 +88,7 @@ static ms_status find_losses(double *loss, const ms_ball *ball, size_t count, co
                              const ms_surface_fit *fit, ms_error *err)
 {
     const double cell = (double)view->step * view->step * view->step;
-    double *fine = malloc((count + 1) * sizeof *fine);
+    ms_surface_worth *fine = malloc((count + 1) * sizeof *fine);
     ms_status status = fine ? count_losses(loss, ball, count, view, &fit->mirror, err)
                             : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", count);
     const int exact = is_surface_sharper(fit);
@@ -96,7 +96,7 @@ static ms_status find_losses(double *loss, const ms_ball *ball, size_t count, co
         status = ms_surface_tally(fine, NULL, fit, ball, count, err);
     }
     for (size_t b = 0; b < count && status == MS_OK; b++) {
-        loss[b] = exact && fabs(loss[b]) < FEW ? fine[b] : loss[b] * cell;
+        loss[b] = exact && fabs(loss[b]) < FEW ? fine[b].loss : loss[b] * cell;
     }
     free(fine);
     return status;
@@ -168,14 +168,14 @@ ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_
 }
 
 /* Once; a sphere that stays may become idle when a later one goes. Returns how many went. */
-static size_t drop_idle(ms_ball *ball, size_t *count, ms_coverage_count *o, const double *loss, double least,
+static size_t drop_idle(ms_ball *ball, size_t *count, ms_coverage_count *o, const ms_surface_worth *worth, double least,
                         const ms_coarse_view *view, const ms_mirror *m)
 {
     size_t kept = 0;
     for (size_t b = 0; b < *count; b++) {
         ms_ball image[8];
         size_t images;
-        if (loss[b] > least) {
+        if (worth[b].loss > least) {
             ball[kept++] = ball[b];
         } else if (take_away(o, image, &images, &ball[b], view, m) > 0) {
             put_back(o, image, images);
@@ -191,19 +191,20 @@ static size_t drop_idle(ms_ball *ball, size_t *count, ms_coverage_count *o, cons
 ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_surface_fit *fit, ms_error *err)
 {
     const ms_coarse_view whole = {.step = 1, .grid = fit->field->target->grid}; /* borrows the voxels */
-    double *loss = calloc(*count + 1, sizeof *loss), mismatch = 0;
+    ms_surface_worth *worth = calloc(*count + 1, sizeof *worth);
+    double mismatch = 0;
     size_t all, gone = 1;
     ms_coverage_count o = {0};
-    ms_status status = loss ? count_all(&o, &all, ball, *count, &whole, &fit->mirror, err)
-                            : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
+    ms_status status = worth ? count_all(&o, &all, ball, *count, &whole, &fit->mirror, err)
+                             : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
     while (status == MS_OK && gone > 0) {
         if (is_surface_sharper(fit)) {
-            status = ms_surface_tally(loss, &mismatch, fit, ball, *count, err);
+            status = ms_surface_tally(worth, &mismatch, fit, ball, *count, err);
         }
         const double least = IDLE * mismatch / (double)*count;
-        gone = status == MS_OK ? drop_idle(ball, count, &o, loss, least, &whole, &fit->mirror) : 0;
+        gone = status == MS_OK ? drop_idle(ball, count, &o, worth, least, &whole, &fit->mirror) : 0;
     }
     ms_coverage_count_close(&o);
-    free(loss);
+    free(worth);
     return status;
 }

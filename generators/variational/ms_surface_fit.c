@@ -229,7 +229,7 @@ static int find_moves(const ms_surface_fit *fit, workspace *work, const ms_ball 
         enough = ms_exposed_alloc(&exposed, fit->lattice, work->window.count);
 #pragma omp for schedule(dynamic, 4)
         for (size_t s = 0; s < count; s++) {
-            if (exposed.block) {
+            if (exposed.block && (!fit->moving || fit->moving[s])) {
                 work->move[s] = find_move(fit, work, &exposed, (uint32_t)s);
             }
         }
@@ -260,6 +260,9 @@ ms_status ms_surface_fit_steps(ms_surface_fit *fit, ms_ball *ball, size_t count,
             share_radius(work.move, ball, count, &fit->mirror);
         }
         for (size_t s = 0; s < count; s++) {
+            if (fit->moving && !fit->moving[s]) {
+                continue;
+            }
             make_move(&ball[s], work.velocity[s], &work.move[s], d);
             ball[s].radius = fmax(ball[s].radius, fit->bounds.least);
         }

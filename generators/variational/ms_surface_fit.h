@@ -12,14 +12,15 @@
 typedef struct ms_surface_fit {
     const ms_signed_distance *field; /* borrowed */
     ms_bounds bounds;
-    ms_mirror mirror;    /* each sphere stands for its images, too; zero: for itself */
-    ms_lattice *lattice; /* borrowed; of the points on each sphere */
-    uint64_t seed;       /* of the turns of the points */
-    uint64_t turns;      /* made so far */
+    ms_mirror mirror;      /* each sphere stands for its images, too; zero: for itself */
+    ms_lattice *lattice;   /* borrowed; of the points on each sphere */
+    uint64_t seed;         /* of the turns of the points */
+    uint64_t turns;        /* made so far */
+    const uint8_t *moving; /* for each sphere: 0: it stays where it is; NULL: all move */
 } ms_surface_fit;
 
 /**
- * Moves all spheres, `steps` times, towards the least |S xor U|.
+ * Moves spheres, `steps` times, towards the least |S xor U|.
  *
  * On each sphere `points` places of a Fibonacci lattice, turned at random for each step. Those
  * inside another sphere are dropped; at each other one, with outward normal u, phi is the signed

@@ -7,22 +7,18 @@
 
 static const double FOUR_PI = 12.566370614359172954;
 
-/* What one sphere adds to the tally. */
-typedef struct worth {
-    double loss, mismatch;
-} worth;
-
 /* Of a cone of radii from..to within the unit ball, per solid angle. */
 static double cone_volume(double from, double to)
 {
     return to > from ? (to * to * to - from * from * from) / 3 : 0;
 }
 
-static worth tally_sphere(const ms_surface_fit *fit, const ms_caps_window *window, ms_exposed *exposed, uint32_t self)
+static ms_surface_worth tally_sphere(const ms_surface_fit *fit, const ms_caps_window *window, ms_exposed *exposed,
+                                     uint32_t self)
 {
     const ms_ball *ball = &window->ball[self];
     const double r = ball->radius;
-    worth sum = {0};
+    ms_surface_worth sum = {0};
     if (!(r > 0)) {
         return sum;
     }
@@ -36,17 +32,17 @@ static worth tally_sphere(const ms_surface_fit *fit, const ms_caps_window *windo
         sum.loss += cone_volume(begin, border) - cone_volume(border, 1);
     }
     const double part = FOUR_PI * r * r / exposed->points;
-    return (worth){.loss = part * r * sum.loss, .mismatch = part * sum.mismatch};
+    return (ms_surface_worth){.loss = part * r * sum.loss, .mismatch = part * sum.mismatch};
 }
 
-ms_status ms_surface_tally(double *loss, double *mismatch, const ms_surface_fit *fit, const ms_ball *ball, size_t count,
-                           ms_error *err)
+ms_status ms_surface_tally(ms_surface_worth *each, double *mismatch, const ms_surface_fit *fit, const ms_ball *ball,
+                           size_t count, ms_error *err)
 {
     const int *across = fit->mirror.across;
     const size_t images = (count << (across[0] + across[1] + across[2])) + 1;
     ms_caps_window window = {.ball = malloc(images * sizeof *window.ball), .end = malloc(images * sizeof *window.end)};
-    worth *each = malloc((count + 1) * sizeof *each);
-    int enough = window.ball && window.end && each;
+    ms_surface_worth *own = each ? NULL : malloc((count + 1) * sizeof *own), *worth = each ? each : own;
+    int enough = window.ball && window.end && worth;
     if (enough) {
         window.count = ms_mirror_expand(window.ball, ball, count, &fit->mirror);
         ms_caps_sort(&window);
@@ -57,7 +53,7 @@ ms_status ms_surface_tally(double *loss, double *mismatch, const ms_surface_fit 
 #pragma omp for schedule(dynamic, 4)
             for (size_t s = 0; s < count; s++) {
                 if (exposed.block) {
-                    each[s] = tally_sphere(fit, &window, &exposed, (uint32_t)s);
+                    worth[s] = tally_sphere(fit, &window, &exposed, (uint32_t)s);
                 }
             }
             ms_exposed_free(&exposed);
@@ -65,16 +61,13 @@ ms_status ms_surface_tally(double *loss, double *mismatch, const ms_surface_fit 
     }
     double sum = 0;
     for (size_t s = 0; enough && s < count; s++) {
-        sum += (double)ms_mirror_images(&fit->mirror, &ball[s]) * each[s].mismatch;
-        if (loss) {
-            loss[s] = each[s].loss;
-        }
+        sum += (double)ms_mirror_images(&fit->mirror, &ball[s]) * worth[s].mismatch;
     }
     if (mismatch) {
         *mismatch = sum;
     }
     free(window.ball);
     free(window.end);
-    free(each);
+    free(own);
     return enough ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory to compare %zu spheres", count);
 }

@@ -10,6 +10,7 @@
 #include "ms_coverage_count.h"
 #include "ms_pattern_search.h"
 #include "ms_prune.h"
+#include "ms_split.h"
 #include "ms_surface_tally.h"
 #include "ms_variational_start.h"
 
@@ -73,7 +74,6 @@ typedef struct solver {
 static void free_solver(solver *s)
 {
     ms_coarse_view_free(&s->coarse);
-    ms_signed_distance_free(&s->field);
     ms_lattice_free(&s->lattice);
     free(s->walled);
     free(s->ball);
@@ -340,8 +340,8 @@ static ms_status begin_solver(solver *s, const ms_run *run, const ms_variational
     }
     ms_status status = given->n_spheres > 0 ? start_from_given(s, given, err) : start_from_cover(s, err);
     if (status == MS_OK) {
-        status = ms_signed_distance_alloc(&s->field, run->target,
-                                          s->coarse.step < FIELD_STEP ? s->coarse.step : FIELD_STEP, err);
+        status = ms_signed_distance_open(&s->field, run->target,
+                                         s->coarse.step < FIELD_STEP ? s->coarse.step : FIELD_STEP, err);
     }
     if (status == MS_OK) {
         status = ms_lattice_alloc(&s->lattice, settings->points, err);
@@ -355,8 +355,43 @@ static ms_status begin_solver(solver *s, const ms_run *run, const ms_variational
     return status;
 }
 
-/* Adds spheres, drops those above the number that is wanted; taken back where it makes the mismatch no smaller. */
+/* Adds spheres, fits, and drops those above the number that is wanted. */
 static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
+{
+    ms_status status = add_to_cover(s, more, err);
+    if (status == MS_OK) {
+        status = fit_spheres(s, DROP_STEPS, 0.8, 0.3, err);
+    }
+    if (status == MS_OK) {
+        status = prune_surplus(s, err);
+    }
+    return status == MS_OK ? fit_spheres(s, LAST_STEPS, 0.5, 0.05, err) : status;
+}
+
+/* Splits spheres, and fits them and those about them. */
+static ms_status split_and_settle(solver *s, size_t more, ms_error *err)
+{
+    const size_t before = s->count, room = s->room - before;
+    uint8_t *moving = malloc(s->room);
+    ms_status status = moving ? ms_split_worst(s->ball, &s->count, more < room ? more : room, &s->fit, err)
+                              : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", s->room);
+    if (status == MS_OK && !s->fit.bounds.equal) {
+        ms_split_mark_near(moving, s->ball, s->count, before);
+        s->fit.moving = moving;
+    }
+    if (status == MS_OK) {
+        status = fit_spheres(s, DROP_STEPS, 0.8, 0.3, err);
+    }
+    if (status == MS_OK) {
+        status = fit_spheres(s, LAST_STEPS, 0.5, 0.05, err);
+    }
+    s->fit.moving = NULL;
+    free(moving);
+    return status;
+}
+
+/* A change that is taken back where it makes the mismatch no smaller. */
+static ms_status try_change(solver *s, ms_status (*change)(solver *, size_t, ms_error *), size_t more, ms_error *err)
 {
     mismatch before = {0}, after = {0};
     const size_t count = s->count;
@@ -365,16 +400,7 @@ static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
         kept ? find_mismatch(&before, s, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);
     if (status == MS_OK) {
         memcpy(kept, s->ball, count * sizeof *kept);
-        status = add_to_cover(s, more, err);
-    }
-    if (status == MS_OK) {
-        status = fit_spheres(s, DROP_STEPS, 0.8, 0.3, err);
-    }
-    if (status == MS_OK) {
-        status = prune_surplus(s, err);
-    }
-    if (status == MS_OK) {
-        status = fit_spheres(s, LAST_STEPS, 0.5, 0.05, err);
+        status = change(s, more, err);
     }
     if (status == MS_OK) {
         status = search_within_bounds(s, err);
@@ -390,12 +416,15 @@ static ms_status add_and_prune(solver *s, size_t more, ms_error *err)
     return status;
 }
 
-/* Puts idle spheres where the union leaves most, and drops those that are idle there, too. */
+/* Puts idle spheres where the union leaves most, and drops those that are idle there, too. Where the surfaces are close
+ * everywhere, no inscribed sphere covers what is left: those that bear most of it are split. */
 static ms_status replace_idle(solver *s, ms_error *err)
 {
+    const int *across = s->settings->mirror.across;
+    const int splits = s->field.cubic && !(across[0] || across[1] || across[2]);
     ms_status status = ms_prune_idle(s->ball, &s->count, &s->fit, err);
     for (int round = 0; round < REPAIRS && status == MS_OK && count_with_images(s) < s->wanted; round++) {
-        status = add_and_prune(s, s->wanted - count_with_images(s), err);
+        status = try_change(s, splits ? split_and_settle : add_and_prune, s->wanted - count_with_images(s), err);
         if (status == MS_OK) {
             status = ms_prune_idle(s->ball, &s->count, &s->fit, err);
         }
@@ -431,7 +460,7 @@ static ms_status run_stages(solver *s, ms_error *err)
         status = search_within_bounds(s, err);
     }
     for (int round = 0; round < s->settings->rounds && status == MS_OK && s->count > 0; round++) {
-        status = add_and_prune(s, (size_t)ceil(ADD[round % ADDS] * (double)s->wanted), err);
+        status = try_change(s, add_and_prune, (size_t)ceil(ADD[round % ADDS] * (double)s->wanted), err);
     }
     return status == MS_OK ? replace_idle(s, err) : status;
 }

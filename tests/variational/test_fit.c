@@ -1,12 +1,14 @@
 /* The parts of the variational generator: signed distances, losses, fits, bounds. */
 #include "support/variational_samples.h"
 
+#include <pthread.h>
 #include <string.h>
 
 #include "variational/ms_coverage_count.h"
 #include "variational/ms_exposed.h"
 #include "variational/ms_pattern_search.h"
 #include "variational/ms_prune.h"
+#include "variational/ms_split.h"
 #include "variational/ms_surface_fit.h"
 #include "variational/ms_surface_tally.h"
 
@@ -24,7 +26,7 @@ static void field_is_the_distance(void **state)
     const ms_ball ball = ms_grid_ball(&target.grid, &unit);
     const double *middle = ball.centre, radius = ball.radius;
     for (int step = 1; step <= 3; step++) {
-        assert_int_equal(ms_signed_distance_alloc(&field, &target, step, &err), MS_OK);
+        assert_int_equal(ms_signed_distance_open(&field, &target, step, &err), MS_OK);
         for (int t = 0; t < 300; t++) {
             const double p[3] = {uniform(-3, 37), uniform(-3, 37), uniform(-3, 37)};
             const double truth = sqrt(ms_squared_distance(p, middle)) - radius;
@@ -35,8 +37,61 @@ static void field_is_the_distance(void **state)
             assert_true(phi > truth - 0.4 * step * step / away - 0.05);
             assert_true(phi < truth + 0.8 * step * step / away + 0.05 + 3 * beyond);
         }
-        ms_signed_distance_free(&field);
     }
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
+enum { RUNS = 4, PLACES = 2000 };
+
+/* A run on a target, beside others. */
+typedef struct side_run {
+    const ms_target *target;
+    int step;
+    float *nodes;
+    double phi[PLACES];
+} side_run;
+
+static void *look_up_places(void *context)
+{
+    side_run *run = context;
+    ms_signed_distance field;
+    ms_error err;
+    assert_int_equal(ms_signed_distance_open(&field, run->target, run->step, &err), MS_OK);
+    run->nodes = field.phi;
+    for (int p = 0; p < PLACES; p++) {
+        const double place[3] = {0.011 * p, 20 - 0.007 * p, 7 + 0.005 * p};
+        run->phi[p] = ms_signed_distance_at(&field, place);
+    }
+    return NULL;
+}
+
+/* Runs side by side share the nodes of their step, and find what a run alone finds. */
+static void field_is_kept_with_its_target(void **state)
+{
+    (void)state;
+    ms_mesh mesh;
+    ms_target target, other;
+    static side_run run[RUNS], alone;
+    pthread_t thread[RUNS];
+    make_shape(&mesh, "ball", "r=1 fineness=60");
+    make_target(&target, &mesh, 30, MS_VOXEL_HALF);
+    make_target(&other, &mesh, 30, MS_VOXEL_HALF);
+    for (int r = 0; r < RUNS; r++) {
+        run[r] = (side_run){.target = &target, .step = r % 2 + 1};
+        assert_int_equal(pthread_create(&thread[r], NULL, look_up_places, &run[r]), 0);
+    }
+    for (int r = 0; r < RUNS; r++) {
+        assert_int_equal(pthread_join(thread[r], NULL), 0);
+    }
+    for (int r = 0; r < RUNS; r++) {
+        assert_ptr_equal(run[r].nodes, run[r % 2].nodes);
+        alone = (side_run){.target = &other, .step = r % 2 + 1};
+        look_up_places(&alone);
+        assert_memory_equal(alone.phi, run[r].phi, sizeof alone.phi);
+    }
+    assert_ptr_not_equal(run[0].nodes, run[1].nodes);
+    ms_target_free(&other);
     ms_target_free(&target);
     ms_mesh_free(&mesh);
 }
@@ -134,7 +189,7 @@ static void step_lowers_the_mismatch(void **state)
     ms_lattice lattice;
     int fell = 0, tried = 0;
     assert_int_equal(ms_lattice_alloc(&lattice, 256, &err), MS_OK);
-    assert_int_equal(ms_signed_distance_alloc(&field, target, 1, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_open(&field, target, 1, &err), MS_OK);
     for (int t = 0; t < 40; t++) {
         ms_ball ball[3], before[3];
         const double damping[2] = {0.3, 0.3};
@@ -158,7 +213,113 @@ static void step_lowers_the_mismatch(void **state)
     assert_true(tried > 30);
     ms_lattice_free(&lattice);
     assert_true(fell >= tried - 2); /* a sphere and its neighbour may both fill the same gap */
-    ms_signed_distance_free(&field);
+}
+
+/* In the target, away from its surface. */
+static void place_at_random(ms_ball *ball, size_t count, const ms_signed_distance *field)
+{
+    for (size_t b = 0; b < count; b++) {
+        do {
+            for (int a = 0; a < 3; a++) {
+                ball[b].centre[a] = uniform(0, field->target->grid.n[a]);
+            }
+        } while (ms_signed_distance_at(field, ball[b].centre) > -2);
+        ball[b].radius = uniform(0.5, 1.1) * -ms_signed_distance_at(field, ball[b].centre);
+    }
+}
+
+static void held_spheres_stay(void **state)
+{
+    const ms_target *target = *state;
+    static const uint8_t MOVING[6] = {1, 0, 1, 0, 0, 1};
+    ms_signed_distance field;
+    ms_lattice lattice;
+    ms_error err;
+    ms_ball ball[6], before[6];
+    const double damping[2] = {0.5, 0.5};
+    assert_int_equal(ms_lattice_alloc(&lattice, 128, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_open(&field, target, 1, &err), MS_OK);
+    place_at_random(ball, 6, &field);
+    memcpy(before, ball, sizeof ball);
+    ms_surface_fit fit = {.field = &field, .bounds = {.protrusion = HUGE_VAL}, .lattice = &lattice, .moving = MOVING};
+    assert_int_equal(ms_surface_fit_steps(&fit, ball, 6, 5, damping, &err), MS_OK);
+    int moved = 0;
+    for (int b = 0; b < 6; b++) {
+        const int is_same = memcmp(&ball[b], &before[b], sizeof ball[b]) == 0;
+        assert_true(is_same || MOVING[b]);
+        moved += !is_same;
+    }
+    assert_true(moved >= 2); /* one may be covered by others */
+    ms_lattice_free(&lattice);
+}
+
+/* The sphere that bears most is now two, a quarter of the way to its nearest and as far the other way. */
+static void worst_sphere_is_split(void **state)
+{
+    const ms_target *target = *state;
+    ms_signed_distance field;
+    ms_lattice lattice;
+    ms_error err;
+    ms_ball ball[8], before[8];
+    ms_surface_worth worth[7];
+    assert_int_equal(ms_lattice_alloc(&lattice, 256, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_open(&field, target, 1, &err), MS_OK);
+    const ms_surface_fit fit = {.field = &field, .lattice = &lattice};
+    for (int t = 0; t < 20; t++) {
+        size_t count = 7, worst = 0, near = 7;
+        place_at_random(ball, 7, &field);
+        memcpy(before, ball, sizeof ball);
+        assert_int_equal(ms_surface_tally(worth, NULL, &fit, ball, 7, &err), MS_OK);
+        for (size_t b = 1; b < 7; b++) {
+            worst = worth[b].mismatch > worth[worst].mismatch ? b : worst;
+        }
+        for (size_t b = 0; b < 7; b++) {
+            const double *of = ball[worst].centre;
+            if (b != worst &&
+                (near == 7 || ms_squared_distance(ball[b].centre, of) < ms_squared_distance(ball[near].centre, of))) {
+                near = b;
+            }
+        }
+        assert_int_equal(ms_split_worst(ball, &count, 1, &fit, &err), MS_OK);
+        assert_int_equal(count, 8);
+        for (size_t b = 0; b < 7; b++) {
+            assert_true(b == worst || memcmp(&ball[b], &before[b], sizeof ball[b]) == 0);
+        }
+        const ms_ball *whole = &before[worst], *to = &before[near];
+        assert_true(fabs(ball[worst].radius - (whole->radius + 0.25 * (to->radius - whole->radius))) < 1e-9);
+        assert_true(fabs(ball[7].radius - (whole->radius - 0.25 * (to->radius - whole->radius))) < 1e-9);
+        for (int c = 0; c < 3; c++) {
+            const double way = 0.25 * (to->centre[c] - whole->centre[c]);
+            assert_true(fabs(ball[worst].centre[c] - (whole->centre[c] + way)) < 1e-9);
+            assert_true(fabs(ball[7].centre[c] - (whole->centre[c] - way)) < 1e-9);
+        }
+    }
+    ms_lattice_free(&lattice);
+}
+
+/* Eight to each new one: as many as those that are no farther from it than one that is marked. */
+static void nearest_spheres_are_marked(void **state)
+{
+    (void)state;
+    enum { COUNT = 40, FIRST = 38 };
+    ms_ball ball[COUNT];
+    uint8_t near[COUNT], brute[COUNT] = {0};
+    for (int b = 0; b < COUNT; b++) {
+        ball[b] = (ms_ball){{uniform(0, 9), uniform(0, 9), uniform(0, 9)}, 1};
+    }
+    ms_split_mark_near(near, ball, COUNT, FIRST);
+    for (int a = FIRST; a < COUNT; a++) {
+        brute[a] = 1;
+        for (int b = 0; b < FIRST; b++) {
+            int nearer = 0;
+            for (int k = 0; k < FIRST; k++) {
+                nearer += ms_squared_distance(ball[k].centre, ball[a].centre) <
+                          ms_squared_distance(ball[b].centre, ball[a].centre);
+            }
+            brute[b] |= nearer < 8;
+        }
+    }
+    assert_memory_equal(near, brute, sizeof near);
 }
 
 static void search_never_raises_the_mismatch(void **state)
@@ -167,7 +328,7 @@ static void search_never_raises_the_mismatch(void **state)
     ms_signed_distance field;
     ms_error err;
     ms_ball ball[8];
-    assert_int_equal(ms_signed_distance_alloc(&field, target, 1, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_open(&field, target, 1, &err), MS_OK);
     ms_surface_fit fit = {.field = &field, .bounds = {.least = 0.5, .protrusion = 1.5}};
     for (int b = 0; b < 8; b++) {
         do {
@@ -190,7 +351,6 @@ static void search_never_raises_the_mismatch(void **state)
         }
     }
     assert_true(before < first);
-    ms_signed_distance_free(&field);
 }
 
 /* Places of each level that lie in no other sphere, and no others. */
@@ -247,25 +407,25 @@ static void tally_is_the_volume(void **state)
     ms_error err;
     make_shape(&mesh, "ball", "r=1 fineness=120");
     make_target(&target, &mesh, 30, MS_VOXEL_HALF);
-    assert_int_equal(ms_signed_distance_alloc(&field, &target, 1, &err), MS_OK);
+    assert_int_equal(ms_signed_distance_open(&field, &target, 1, &err), MS_OK);
     assert_int_equal(ms_lattice_alloc(&lattice, 512, &err), MS_OK);
     field.cubic = 1;
     const ms_surface_fit fit = {.field = &field, .lattice = &lattice};
     const double h = target.grid.h, cell = h * h * h, pi = acos(-1.0);
-    double loss[2], mismatch;
+    ms_surface_worth worth[2];
+    double mismatch;
     const ms_sphere smaller = {.radius = 0.99}, beside = {.centre = {0.05, 0, 0}, .radius = 0.99};
     ms_ball ball[2] = {ms_grid_ball(&target.grid, &smaller), ms_grid_ball(&target.grid, &beside)};
-    assert_int_equal(ms_surface_tally(loss, &mismatch, &fit, ball, 1, &err), MS_OK);
+    assert_int_equal(ms_surface_tally(worth, &mismatch, &fit, ball, 1, &err), MS_OK);
     assert_true(fabs(mismatch * cell / (4 * pi * 0.99 * 0.99 * 0.01) - 1) < 0.03);
-    assert_true(fabs(loss[0] * cell / (4 * pi / 3 * 0.99 * 0.99 * 0.99) - 1) < 0.01);
+    assert_true(fabs(worth[0].loss * cell / (4 * pi / 3 * 0.99 * 0.99 * 0.99) - 1) < 0.01);
     /* Moved by d, a lune of pi r^2 d - pi d^3 / 12 is added: what lies outside of the shape, all but the shell between,
      * counts against it. */
-    assert_int_equal(ms_surface_tally(loss, &mismatch, &fit, ball, 2, &err), MS_OK);
+    assert_int_equal(ms_surface_tally(worth, &mismatch, &fit, ball, 2, &err), MS_OK);
     const double lune = pi * (0.99 * 0.99 * 0.05 - 0.05 * 0.05 * 0.05 / 12);
-    assert_true(-loss[1] * cell < lune && -loss[1] * cell > lune - 2 * 2 * pi * 0.01);
-    assert_true(loss[0] * cell > 0.95 * lune && loss[0] * cell < 1.01 * lune);
+    assert_true(-worth[1].loss * cell < lune && -worth[1].loss * cell > lune - 2 * 2 * pi * 0.01);
+    assert_true(worth[0].loss * cell > 0.95 * lune && worth[0].loss * cell < 1.01 * lune);
     ms_lattice_free(&lattice);
-    ms_signed_distance_free(&field);
     ms_target_free(&target);
     ms_mesh_free(&mesh);
 }
@@ -276,9 +436,13 @@ int main(void)
         cmocka_unit_test(exposed_places_are_those_of_brute_force),
         cmocka_unit_test(tally_is_the_volume),
         cmocka_unit_test(field_is_the_distance),
+        cmocka_unit_test(field_is_kept_with_its_target),
         cmocka_unit_test(losses_are_those_of_brute_force),
         cmocka_unit_test(spheres_are_dropped_by_their_loss),
         cmocka_unit_test(step_lowers_the_mismatch),
+        cmocka_unit_test(held_spheres_stay),
+        cmocka_unit_test(worst_sphere_is_split),
+        cmocka_unit_test(nearest_spheres_are_marked),
         cmocka_unit_test(search_never_raises_the_mismatch),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

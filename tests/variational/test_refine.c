@@ -3,21 +3,28 @@
 
 #include <string.h>
 
+static void write_clump(const char *path, const ms_clump *clump)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        const ms_sphere *sphere = &clump->sphere[s];
+        fprintf(file, "%.17g,%.17g,%.17g,%.17g\n", sphere->centre[0], sphere->centre[1], sphere->centre[2],
+                sphere->radius);
+    }
+    fclose(file);
+}
+
 /* A clump read from a file comes back better, with as many spheres as asked for. */
 static void refining_improves(void **state)
 {
     const ms_target *target = *state;
     static const char PATH[] = "test_variational_refine.csv";
     ms_clump first = generate(target, 8, NULL);
-    FILE *file = fopen(PATH, "w");
-    assert_non_null(file);
     for (size_t s = 0; s < first.n_spheres; s++) {
-        ms_sphere *sphere = &first.sphere[s];
-        sphere->radius *= 0.8;
-        fprintf(file, "%.17g,%.17g,%.17g,%.17g\n", sphere->centre[0], sphere->centre[1], sphere->centre[2],
-                sphere->radius);
+        first.sphere[s].radius *= 0.8;
     }
-    fclose(file);
+    write_clump(PATH, &first);
     const char *const options[] = {"refine", PATH, NULL};
     const double before = dice_of(target, &first);
     for (size_t n = 5; n <= 11; n += 3) {
@@ -28,6 +35,49 @@ static void refining_improves(void **state)
     }
     remove(PATH);
     ms_clump_free(&first);
+}
+
+static int64_t count_mismatch(const ms_target *target, const ms_clump *clump)
+{
+    ms_ball ball[16];
+    assert_true(clump->n_spheres <= 16);
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        ball[s] = ms_grid_ball(&target->grid, &clump->sphere[s]);
+    }
+    return brute_mismatch(&target->grid, ball, clump->n_spheres);
+}
+
+/* Whatever the spheres to start from, as many of them have no more voxels amiss, run after run. */
+static void objective_never_rises(void **state)
+{
+    const ms_target *target = *state;
+    static const char PATH[] = "test_variational_rises.csv";
+    for (int t = 0; t < 2; t++) {
+        const char *const options[] = {"refine", PATH, "effort", t % 2 ? "1" : "0", NULL};
+        ms_clump clump = {0};
+        ms_error err;
+        for (int s = 0; s < 8; s++) {
+            const double *c = target->body.centroid, r = ms_target_equivalent_radius(target);
+            const ms_sphere sphere = {
+                .centre = {c[0] + uniform(-0.5, 0.5) * r, c[1] + uniform(-0.5, 0.5) * r, c[2] + uniform(-0.5, 0.5) * r},
+                .radius = uniform(0.1, 0.7) * r};
+            assert_int_equal(ms_clump_add(&clump, &sphere, &err), MS_OK);
+        }
+        int64_t before = count_mismatch(target, &clump);
+        const int64_t first = before;
+        for (int run = 0; run < 3; run++) {
+            write_clump(PATH, &clump);
+            const size_t n = clump.n_spheres;
+            ms_clump_free(&clump);
+            clump = generate(target, n, options);
+            const int64_t after = count_mismatch(target, &clump);
+            assert_true(after <= before);
+            before = after;
+        }
+        assert_true(before < first);
+        ms_clump_free(&clump);
+    }
+    remove(PATH);
 }
 
 static void keep_remark(void *context, const char *sentence)
@@ -118,6 +168,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(refining_improves),
+        cmocka_unit_test(objective_never_rises),
         cmocka_unit_test(spheres_outside_are_not_refined),
         cmocka_unit_test(all_formats_of_clumps_are_refined),
     };

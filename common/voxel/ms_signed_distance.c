@@ -1,18 +1,46 @@
 #include "ms_signed_distance.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "mesh/ms_closest.h"
-#include "voxel/ms_distance.h"
+#include "ms_distance.h"
 
-void ms_signed_distance_free(ms_signed_distance *field)
+/* The nodes of one step. */
+typedef struct nodes {
+    int step;
+    float *phi;
+    struct nodes *next;
+} nodes;
+
+struct ms_signed_distance_store {
+    pthread_mutex_t lock; /* of the list; its nodes are each on their own */
+    nodes *first;
+};
+
+ms_status ms_signed_distance_store_alloc(ms_signed_distance_store **out, ms_error *err)
 {
-    if (field) {
-        free(field->phi);
-        memset(field, 0, sizeof *field);
+    *out = calloc(1, sizeof **out);
+    if (*out && pthread_mutex_init(&(*out)->lock, NULL) != 0) {
+        free(*out);
+        *out = NULL;
     }
+    return *out ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for the signed distances of a target");
+}
+
+void ms_signed_distance_store_free(ms_signed_distance_store *store)
+{
+    while (store && store->first) {
+        nodes *gone = store->first;
+        store->first = gone->next;
+        free(gone->phi);
+        free(gone);
+    }
+    if (store) {
+        pthread_mutex_destroy(&store->lock);
+    }
+    free(store);
 }
 
 int ms_signed_distance_is_exact(const ms_signed_distance *field)
@@ -59,26 +87,54 @@ static ms_status fill_from_voxels(ms_signed_distance *field, ms_error *err)
     return status;
 }
 
-ms_status ms_signed_distance_alloc(ms_signed_distance *field, const ms_target *target, int step, ms_error *err)
+/* The nodes of the field's step, as yet unknown or from the voxels; NULL on failure. */
+static nodes *make_nodes(ms_signed_distance *field, ms_error *err)
 {
+    const size_t count = (size_t)field->n[0] * (size_t)field->n[1] * (size_t)field->n[2];
+    nodes *made = malloc(sizeof *made);
+    field->phi = malloc(count * sizeof *field->phi);
+    ms_status status = MS_OK;
+    if (!made || !field->phi) {
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory for signed distances at %zu nodes; use fewer cells", count);
+    } else if (ms_signed_distance_is_exact(field)) {
+        for (size_t v = 0; v < count; v++) {
+            field->phi[v] = NAN;
+        }
+    } else {
+        status = fill_from_voxels(field, err);
+    }
+    if (status != MS_OK) {
+        free(field->phi);
+        free(made);
+        return NULL;
+    }
+    *made = (nodes){.step = field->step, .phi = field->phi};
+    return made;
+}
+
+ms_status ms_signed_distance_open(ms_signed_distance *field, const ms_target *target, int step, ms_error *err)
+{
+    ms_signed_distance_store *store = target->signed_distance;
     *field = (ms_signed_distance){.target = target, .step = step};
-    size_t nodes = 1;
     for (int a = 0; a < 3; a++) {
         field->n[a] = (target->grid.n[a] + step - 2) / step + 1;
-        nodes *= (size_t)field->n[a];
     }
-    field->phi = malloc(nodes * sizeof *field->phi);
-    if (!field->phi) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for signed distances at %zu nodes; use fewer cells", nodes);
+    pthread_mutex_lock(&store->lock);
+    nodes *found = store->first;
+    while (found && found->step != step) {
+        found = found->next;
     }
-    for (size_t v = 0; v < nodes; v++) {
-        field->phi[v] = NAN;
+    if (!found && (found = make_nodes(field, err)) != NULL) {
+        found->next = store->first;
+        store->first = found;
     }
-    const ms_status status = ms_signed_distance_is_exact(field) ? MS_OK : fill_from_voxels(field, err);
-    if (status != MS_OK) {
-        ms_signed_distance_free(field);
+    pthread_mutex_unlock(&store->lock);
+    if (!found) {
+        *field = (ms_signed_distance){0};
+        return MS_ERR_NOMEM;
     }
-    return status;
+    field->phi = found->phi;
+    return MS_OK;
 }
 
 /* Farther from the surface than half a voxel's diagonal, all of the voxel about a node is on one side. */
