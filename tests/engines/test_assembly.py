@@ -17,7 +17,7 @@ from test_engines import apply, numbers, rotation, times, transpose
 
 SIZE = (30, 26, 24)
 MM = 1e-3
-# Centre, half edges, quaternion of boxes in a volume: they do not touch.
+# Centre, half edges, quaternion of boxes in a volume: they do not touch, nor do spheres inscribed in them.
 BOXES = {3: ((8, 9, 9), (6, 4, 3), (0.8, 0.4, -0.4, 0.2)), 5: ((20, 14, 12), (5, 3.4, 6), (0.9, -0.1, 0.4, -0.141421)),
          6: ((9, 19, 17), (4, 3, 5), (0.1, 0.7, 0.1, 0.7))}
 
@@ -42,7 +42,7 @@ class Assembly(engines.Clump):
         self.folder = folder
         with open(self.path("scan.npy"), "wb") as f:
             f.write(volume())
-        self.mskit("grains", "scan.npy", "-g", "mss", "-n", "12", "--density", str(engines.DENSITY), "--unit", "mm",
+        self.mskit("grains", "scan.npy", "-g", "mss", "--variant", "paper", "-n", "12", "--density", str(engines.DENSITY), "--unit", "mm",
                    "--format", "csv", "--format", "liggghts", "--format", "lammps", "--format", "yade", "--assembly",
                    "--most-overlap", "1", "-o", "out")
         self.folder = os.path.join(folder, "out")
