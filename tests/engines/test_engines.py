@@ -237,9 +237,10 @@ class Engine(unittest.TestCase):
         self.assertGreater(lowest, -0.02 * clump.reach, "sank into the plane")
         self.assertLess(lowest, clump.reach, "has not fallen")
         i, j, k = clump.three
+        printed = 2e-6 * max(abs(x) for s in spheres for x in s[:3])  # six digits of each of the two places
         for a, b in ((i, j), (j, k), (k, i)):
             self.assertAlmostEqual(math.dist(spheres[a][:3], spheres[b][:3]),
-                                   math.dist(clump.spheres[a][:3], clump.spheres[b][:3]), delta=1e-5 * clump.reach)
+                                   math.dist(clump.spheres[a][:3], clump.spheres[b][:3]), delta=1e-5 * clump.reach + printed)
 
 
 class Liggghts(Engine):
