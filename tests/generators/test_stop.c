@@ -136,7 +136,10 @@ static void goals_of_the_table_are_known(void **state)
     (void)state;
     ms_mesh mesh;
     ms_target target = cube_target(&mesh);
-    const ms_tally whole = lower_part(10, 0);
+    const ms_cut_cells cells = {.total = 1000};
+    ms_tally whole = lower_part(10, 0);
+    whole.cut = cells.total;
+    target.grid.cells = &cells;
     for (const ms_measure *m = ms_measures; m->name; m++) {
         ms_stop stop = {0};
         const int goal = m->kind == MS_MEASURE_KIND_GOAL;

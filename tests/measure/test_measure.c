@@ -31,7 +31,7 @@ static void each_row_gives_its_own_field(void **state)
 {
     (void)state;
     const ms_metrics metrics = {
-        .score = {.eta = 1, .dice = 2, .coverage = 3, .overshoot = 4, .off_volume = 5, .inertia = 12},
+        .score = {.eta = 1, .dice = 2, .coverage = 3, .overshoot = 4, .off_volume = 5, .inertia = 12, .coverage_cut = 13},
         .protrusion_max = 6,
         .protrusion_rms = 7,
         .gap_max = 8,
@@ -63,11 +63,11 @@ static void goals_are_found_by_name(void **state)
         const ms_measure *found = ms_measure_find_goal(m->name, &err);
         assert_ptr_equal(found, m->kind == MS_MEASURE_KIND_GOAL ? m : NULL);
         if (!found) {
-            assert_non_null(strstr(err.text, "choose from eta, dice, coverage, inertia"));
+            assert_non_null(strstr(err.text, "choose from eta, dice, coverage, inertia, coverage_cut"));
         }
     }
-    assert_string_equal(MS_MEASURE_GOAL_NAMES, "eta, dice, coverage, inertia, ");
-    assert_string_equal(MS_MEASURE_CURVE_NAMES, ",eta,dice,coverage,overshoot");
+    assert_string_equal(MS_MEASURE_GOAL_NAMES, "eta, dice, coverage, inertia, coverage_cut, ");
+    assert_string_equal(MS_MEASURE_CURVE_NAMES, ",eta,dice,coverage,overshoot,coverage_cut");
 }
 
 /* In a table of Markdown a bar is escaped. */

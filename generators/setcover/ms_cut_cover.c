@@ -1,0 +1,188 @@
+#include "ms_cut_cover.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/ms_vector.h"
+
+/* A candidate and what it would cover. */
+typedef struct bound {
+    int64_t weight;   /* exact when it was counted, an upper bound before and since */
+    uint32_t counted; /* how many balls had been taken by then, and one; 0: never */
+    int waits;        /* it overlaps no ball taken so far (connected) */
+} bound;
+
+struct ms_cut_cover {
+    ms_cut_cells left; /* not yet covered */
+    const ms_ball *candidate;
+    size_t count;
+    int connected;
+    uint32_t n_taken;
+    uint8_t *covered; /* room for a mark on each cell, 0 between calls */
+    bound *bound;     /* of each candidate */
+    uint32_t *winner; /* a tournament: winner[m] of winner[2 m] and winner[2 m + 1]; the last `leaves` are candidates */
+    size_t leaves;
+};
+
+static int64_t bound_of(const ms_cut_cover *cover, uint32_t c)
+{
+    return c < cover->count && !cover->bound[c].waits ? cover->bound[c].weight : 0;
+}
+
+static uint32_t find_better(const ms_cut_cover *cover, uint32_t a, uint32_t b)
+{
+    const int64_t one = bound_of(cover, a), other = bound_of(cover, b);
+    if (one != other) {
+        return one > other ? a : b;
+    }
+    if (one > 0 && cover->candidate[a].radius != cover->candidate[b].radius) {
+        return cover->candidate[a].radius > cover->candidate[b].radius ? a : b;
+    }
+    return a < b ? a : b;
+}
+
+static void play(ms_cut_cover *cover, size_t match)
+{
+    cover->winner[match] = find_better(cover, cover->winner[2 * match], cover->winner[2 * match + 1]);
+}
+
+/* The bound of a candidate has changed. */
+static void replay(ms_cut_cover *cover, uint32_t c)
+{
+    for (size_t match = (cover->leaves + c) / 2; match > 0; match /= 2) {
+        play(cover, match);
+    }
+}
+
+static int do_overlap(const ms_ball *a, const ms_ball *b)
+{
+    const double reach = a->radius + b->radius;
+    return ms_squared_distance(a->centre, b->centre) < reach * reach;
+}
+
+/* After the first ball all others wait for one that they overlap. */
+static void admit_overlapping(ms_cut_cover *cover, const ms_ball *ball)
+{
+    for (size_t c = 0; c < cover->count; c++) {
+        bound *one = &cover->bound[c];
+        one->waits = (one->waits || cover->n_taken == 1) && !do_overlap(&cover->candidate[c], ball);
+    }
+    for (size_t match = cover->leaves - 1; match > 0; match--) {
+        play(cover, match);
+    }
+}
+
+/* Takes out what a ball covers, so that later counts pass over what is left only. */
+static void take_cells(ms_cut_cover *cover, const ms_ball *ball)
+{
+    ms_cut_cells *left = &cover->left;
+    const size_t rows = (size_t)left->n[1] * (size_t)left->n[2];
+    size_t kept = 0, at = 0;
+    left->total -= ms_cut_cells_cover(left, cover->covered, ball);
+    for (size_t row = 0; row < rows; row++) {
+        for (const size_t end = left->row[row + 1]; at < end; at++) {
+            if (!cover->covered[at]) {
+                left->cell[kept++] = left->cell[at];
+            }
+        }
+        left->row[row + 1] = kept;
+    }
+    memset(cover->covered, 0, left->count);
+    left->count = kept;
+}
+
+int64_t ms_cut_cover_next(size_t *which, ms_cut_cover *cover)
+{
+    uint32_t best;
+    while (bound_of(cover, best = cover->winner[1]) > 0) {
+        bound *first = &cover->bound[best];
+        const int64_t weight = first->weight;
+        if (first->counted != cover->n_taken + 1) {
+            first->weight = ms_cut_cells_count(&cover->left, cover->covered, &cover->candidate[best]);
+            first->counted = cover->n_taken + 1;
+            replay(cover, best);
+            continue;
+        }
+        take_cells(cover, &cover->candidate[best]);
+        first->weight = 0;
+        cover->n_taken++;
+        replay(cover, best);
+        if (cover->connected) {
+            admit_overlapping(cover, &cover->candidate[best]);
+        }
+        *which = best;
+        return weight;
+    }
+    return 0;
+}
+
+/* As much as a ball can hold: its cells lie in a ball larger by a voxel's diagonal. */
+static int64_t find_most(const ms_ball *ball)
+{
+    return ball->radius > 0 ? (int64_t)fmin(4.2 * pow(ball->radius + 1.74, 3) * MS_CUT_WHOLE, 9e18) : 0;
+}
+
+static int copy_cells(ms_cut_cells *copy, const ms_cut_cells *cells)
+{
+    const size_t rows = (size_t)cells->n[1] * (size_t)cells->n[2] + 1;
+    *copy = *cells;
+    copy->row = malloc(rows * sizeof *copy->row);
+    copy->cell = malloc((cells->count + 1) * sizeof *copy->cell);
+    if (!copy->row || !copy->cell) {
+        return 0;
+    }
+    memcpy(copy->row, cells->row, rows * sizeof *copy->row);
+    memcpy(copy->cell, cells->cell, cells->count * sizeof *copy->cell);
+    return 1;
+}
+
+ms_status ms_cut_cover_build(ms_cut_cover **out, const ms_cut_cells *cells, const ms_ball *candidate, size_t count,
+                             int connected, ms_error *err)
+{
+    size_t leaves = 2;
+    *out = NULL;
+    if (count >= UINT32_MAX / 2) {
+        return ms_fail(err, MS_ERR_LIMIT, "%zu candidates for spheres are too many to compare; use fewer cells", count);
+    }
+    while (leaves < count) {
+        leaves *= 2;
+    }
+    ms_cut_cover *cover = calloc(1, sizeof *cover);
+    if (cover) {
+        *cover = (ms_cut_cover){.candidate = candidate,
+                                .count = count,
+                                .connected = connected,
+                                .covered = calloc(cells->count + 1, 1),
+                                .bound = calloc(count + 1, sizeof *cover->bound),
+                                .winner = malloc(2 * leaves * sizeof *cover->winner),
+                                .leaves = leaves};
+    }
+    if (!cover || !copy_cells(&cover->left, cells) || !cover->covered || !cover->bound || !cover->winner) {
+        ms_cut_cover_free(cover);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres; use fewer cells", count);
+    }
+    for (size_t c = 0; c < leaves; c++) {
+        cover->winner[leaves + c] = (uint32_t)c;
+        if (c < count) {
+            cover->bound[c].weight = find_most(&candidate[c]);
+        }
+    }
+    for (size_t match = leaves - 1; match > 0; match--) {
+        play(cover, match);
+    }
+    *out = cover;
+    return MS_OK;
+}
+
+void ms_cut_cover_free(ms_cut_cover *cover)
+{
+    if (cover) {
+        free(cover->left.row);
+        free(cover->left.cell);
+        free(cover->covered);
+        free(cover->bound);
+        free(cover->winner);
+        free(cover);
+    }
+}
