@@ -38,7 +38,8 @@ typedef struct piece {
 typedef struct worker {
     const ms_grid *grid;
     const ms_mesh *mesh;
-    int fine[2]; /* cells along x and y */
+    uint8_t *whole; /* of each voxel of the grid */
+    int fine[2];    /* cells along x and y */
     int plane;
     int32_t *piece_of; /* of each cell of the plane, -1: none */
     piece *piece;
@@ -229,23 +230,13 @@ static void cut_row(worker *w, plane_cells *out, int j)
             centroid[part][2] = w->plane + 0.5 * (z + centroid[part][2]) - 0.5;
         }
         if (whole > 1 - NOTHING) {
-            add_cell(w, out, (double[]){i, j, w->plane}, 1);
+            w->whole[ms_grid_index(w->grid, i, j, w->plane)] = 1;
             continue;
         }
         for (int part = 0; part < 8; part++) {
             if (volume[part] > NOTHING) {
                 add_cell(w, out, centroid[part], volume[part] / 8);
             }
-        }
-    }
-}
-
-static void take_voxels(worker *w, plane_cells *out, int j)
-{
-    const uint8_t *inside = w->grid->inside + ms_grid_index(w->grid, 0, j, w->plane);
-    for (int i = 0; i < w->grid->n[0]; i++) {
-        if (inside[i]) {
-            add_cell(w, out, (double[]){i, j, w->plane}, 1);
         }
     }
 }
@@ -306,9 +297,7 @@ static void cut_plane(worker *w, plane_cells *out, size_t *row_end, const plane_
         add_triangle(w, lists->list[t]);
     }
     for (int j = 0; j < w->grid->n[1] && !w->failed; j++) {
-        if (!w->mesh) {
-            take_voxels(w, out, j);
-        } else if (end > first) {
+        if (end > first) {
             cut_row(w, out, j);
         }
         row_end[j] = out->count;
@@ -321,7 +310,11 @@ static int cut_planes(plane_cells *planes, ms_cut_cells *cells, const ms_grid *g
     int failed = !list_triangles(&lists, grid, mesh);
 #pragma omp parallel reduction(| : failed) if (ms_grid_voxels(grid) >= MS_GRID_THREADS_FROM)
     {
-        worker w = {.grid = grid, .mesh = mesh, .fine = {2 * grid->n[0], 2 * grid->n[1]}, .failed = failed};
+        worker w = {.grid = grid,
+                    .whole = cells->whole,
+                    .mesh = mesh,
+                    .fine = {2 * grid->n[0], 2 * grid->n[1]},
+                    .failed = failed};
         w.piece_of = malloc((size_t)w.fine[0] * (size_t)w.fine[1] * 2 * sizeof *w.piece_of);
         w.failed |= !w.piece_of;
 #pragma omp for schedule(dynamic, 1)
@@ -338,6 +331,11 @@ static int cut_planes(plane_cells *planes, ms_cut_cells *cells, const ms_grid *g
     free(lists.start);
     free(lists.list);
     return !failed;
+}
+
+static size_t voxels_of(const ms_cut_cells *cells)
+{
+    return (size_t)cells->n[0] * (size_t)cells->n[1] * (size_t)cells->n[2];
 }
 
 /* Puts the planes one after the other. */
@@ -358,6 +356,9 @@ static int join_planes(ms_cut_cells *cells, const plane_cells *planes)
             cells->total += planes[k].cell[c].weight;
         }
     }
+    for (size_t v = 0, voxels = voxels_of(cells); v < voxels; v++) {
+        cells->total += cells->whole[v] ? MS_CUT_WHOLE : 0;
+    }
     return cells->cell != NULL;
 }
 
@@ -371,7 +372,12 @@ ms_status ms_cut_cells_build(ms_cut_cells **out, const ms_grid *grid, const ms_m
         memcpy(cells->n, grid->n, sizeof cells->n);
         memcpy(cells->origin, grid->origin, sizeof cells->origin);
         cells->row = calloc((size_t)grid->n[1] * (size_t)grid->n[2] + 1, sizeof *cells->row);
-        complete = cells->row && cut_planes(planes, cells, grid, mesh) && join_planes(cells, planes);
+        cells->whole = calloc(ms_grid_voxels(grid), 1);
+        complete = cells->row && cells->whole && cut_planes(planes, cells, grid, mesh);
+        if (complete && !mesh) {
+            memcpy(cells->whole, grid->inside, ms_grid_voxels(grid));
+        }
+        complete = complete && join_planes(cells, planes);
     }
     for (int k = 0; planes && k < grid->n[2]; k++) {
         free(planes[k].cell);
@@ -400,9 +406,9 @@ static size_t find_in_row(const ms_cut_cells *cells, size_t from, size_t to, dou
     return from;
 }
 
-/* What a row adds; covers it, if `mark` is where the cells are marked. */
-static int64_t count_row(const ms_cut_cells *cells, const uint8_t *covered, uint8_t *mark, const ms_ball *ball,
-                         size_t row, double chord)
+/* What is left of the cut cells of a row; covers it, if `mark` is `left`. */
+static int64_t count_cells(const ms_cut_cells *cells, const uint8_t *left, uint8_t *mark, const ms_ball *ball,
+                           size_t row, double chord)
 {
     const double *centre = ball->centre, square = ball->radius * ball->radius + ON_SURFACE;
     const size_t end = cells->row[row + 1];
@@ -414,14 +420,37 @@ static int64_t count_row(const ms_cut_cells *cells, const uint8_t *covered, uint
         if (dx > chord + 1) {
             break;
         }
-        if (dx * dx + dy * dy + dz * dz <= square && !covered[c]) {
+        if (left[c] && dx * dx + dy * dy + dz * dz <= square) {
             sum += cell->weight;
             if (mark) {
-                mark[c] = 1;
+                mark[c] = 0;
             }
         }
     }
     return sum;
+}
+
+/* What is left of the whole voxels (., j, k). */
+static int64_t count_voxels(const ms_cut_cells *cells, const uint8_t *left, uint8_t *mark, const ms_ball *ball, int j,
+                            int k)
+{
+    const double x = ball->centre[0], dy = j - ball->centre[1], dz = k - ball->centre[2];
+    const double rest = ball->radius * ball->radius + ON_SURFACE - dy * dy - dz * dz;
+    if (!(rest >= 0)) {
+        return 0;
+    }
+    const double chord = sqrt(rest);
+    const size_t row = (size_t)cells->n[0] * ((size_t)j + (size_t)cells->n[1] * (size_t)k), first = cells->count + row;
+    const int from = (int)fmin(fmax(ceil(x - chord), 0), cells->n[0]);
+    const int to = (int)fmin(fmax(floor(x + chord) + 1, from), cells->n[0]);
+    int sum = 0;
+    for (int i = from; i < to; i++) {
+        sum += left[first + (size_t)i];
+    }
+    if (mark) {
+        memset(mark + first + from, 0, (size_t)(to - from));
+    }
+    return (int64_t)sum * MS_CUT_WHOLE;
 }
 
 /* The rows from..to-1 that may hold something within `reach`. */
@@ -431,7 +460,7 @@ static void find_rows(int *from, int *to, double centre, double reach, int n)
     *to = (int)fmin(fmax(floor(centre + reach + 0.5) + 1, *from), n);
 }
 
-static int64_t count_ball(const ms_cut_cells *cells, const uint8_t *covered, uint8_t *mark, const ms_ball *ball)
+static int64_t count_ball(const ms_cut_cells *cells, const uint8_t *left, uint8_t *mark, const ms_ball *ball)
 {
     const double reach = ball->radius + ON_SURFACE;
     int64_t sum = 0;
@@ -441,25 +470,37 @@ static int64_t count_ball(const ms_cut_cells *cells, const uint8_t *covered, uin
         for (find_rows(&j, &rows, ball->centre[1], disc, cells->n[1]); j < rows; j++) {
             const double dy = fmax(0, fabs(j - ball->centre[1]) - 0.5);
             const double chord = sqrt(fmax(0, disc * disc - dy * dy)) + ON_SURFACE;
-            sum += count_row(cells, covered, mark, ball, (size_t)j + (size_t)cells->n[1] * (size_t)k, chord);
+            sum += count_cells(cells, left, mark, ball, (size_t)j + (size_t)cells->n[1] * (size_t)k, chord);
+            sum += count_voxels(cells, left, mark, ball, j, k);
         }
     }
     return sum;
 }
 
-int64_t ms_cut_cells_count(const ms_cut_cells *cells, const uint8_t *covered, const ms_ball *ball)
+uint8_t *ms_cut_cells_left(const ms_cut_cells *cells)
 {
-    return count_ball(cells, covered, NULL, ball);
+    uint8_t *left = malloc(cells->count + voxels_of(cells));
+    if (left) {
+        memset(left, 1, cells->count);
+        memcpy(left + cells->count, cells->whole, voxels_of(cells));
+    }
+    return left;
 }
 
-int64_t ms_cut_cells_cover(const ms_cut_cells *cells, uint8_t *covered, const ms_ball *ball)
+int64_t ms_cut_cells_count(const ms_cut_cells *cells, const uint8_t *left, const ms_ball *ball)
 {
-    return count_ball(cells, covered, covered, ball);
+    return count_ball(cells, left, NULL, ball);
+}
+
+int64_t ms_cut_cells_cover(const ms_cut_cells *cells, uint8_t *left, const ms_ball *ball)
+{
+    return count_ball(cells, left, left, ball);
 }
 
 void ms_cut_cells_free(ms_cut_cells *cells)
 {
     if (cells) {
+        free(cells->whole);
         free(cells->row);
         free(cells->cell);
         free(cells);

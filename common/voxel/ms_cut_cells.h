@@ -23,10 +23,11 @@ typedef struct ms_cut_cell {
 typedef struct ms_cut_cells {
     int n[3]; /* extents of the grid, its origin and its voxel */
     double origin[3], h;
-    size_t *row; /* cells row[j + n[1] k] to row[j + n[1] k + 1] - 1 are of the voxels (., j, k), by i */
+    uint8_t *whole; /* of each voxel: 1 if it lies in the body */
+    size_t *row;    /* cells row[j + n[1] k] to row[j + n[1] k + 1] - 1 are of the voxels (., j, k), by i */
     ms_cut_cell *cell;
     size_t count;
-    int64_t total; /* of the weights */
+    int64_t total; /* of the weights, those of whole voxels among them */
 } ms_cut_cells;
 
 /**
@@ -44,22 +45,26 @@ typedef struct ms_cut_cells {
  * @param      mesh closed, wound outward; NULL: the voxels inside the grid are the body (of a volume, an open mesh)
  * @return MS_OK; MS_ERR_NOMEM
  *
- * Cost: O(voxels + triangles + cells that they pass through), all cores, the same bits at any number of threads; 16
- * bytes a cell.
+ * Cost: O(voxels + triangles + cells that they pass through), all cores, the same bits at any number of threads; 1
+ * byte a voxel, 16 a cut cell.
  */
 MS_API ms_status ms_cut_cells_build(ms_cut_cells **out, const ms_grid *grid, const ms_mesh *mesh, ms_error *err);
 
-/**
- * The weight of the cells not covered yet whose centroids a ball holds (on its surface counts).
- *
- * @param covered one per cell: nonzero if it is
- * @param ball    in voxels
- * Cost: a test for each cell in the ball.
- */
-MS_API int64_t ms_cut_cells_count(const ms_cut_cells *cells, const uint8_t *covered, const ms_ball *ball);
+/** What is not covered yet: a byte for each cell, behind them for each voxel; all of it. The caller frees it. NULL without
+ * memory. */
+MS_API uint8_t *ms_cut_cells_left(const ms_cut_cells *cells);
 
-/** The same, and covers them. */
-MS_API int64_t ms_cut_cells_cover(const ms_cut_cells *cells, uint8_t *covered, const ms_ball *ball);
+/**
+ * The weight of what is left and whose centroid a ball holds (on its surface counts).
+ *
+ * @param left as ms_cut_cells_left
+ * @param ball in voxels
+ * Cost: a test for each cut cell in the ball, and a byte for each voxel.
+ */
+MS_API int64_t ms_cut_cells_count(const ms_cut_cells *cells, const uint8_t *left, const ms_ball *ball);
+
+/** The same, and covers it. */
+MS_API int64_t ms_cut_cells_cover(const ms_cut_cells *cells, uint8_t *left, const ms_ball *ball);
 
 MS_API void ms_cut_cells_free(ms_cut_cells *cells);
 

