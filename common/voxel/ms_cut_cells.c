@@ -212,12 +212,33 @@ static double cut_cell(double centroid[3], double face[3], const piece *sums)
     return fmin(fmax(volume, 0), 1);
 }
 
+/* Of a voxel that no triangle passes through: 1 whole, 0 empty, -1 to be looked at in its parts. */
+static int find_uncut(const worker *w, double face[4][3], int i, int j)
+{
+    double least = face[0][0], most = face[0][0];
+    for (int row = 0; row < 4; row++) {
+        const size_t y = (size_t)(2 * j + (row & 1)), z = (size_t)(row >> 1);
+        const int32_t *both = w->piece_of + (size_t)(2 * i) + (size_t)w->fine[0] * (y + (size_t)w->fine[1] * z);
+        if (both[0] >= 0 || both[1] >= 0) {
+            return -1;
+        }
+        least = fmin(least, face[row][0]);
+        most = fmax(most, face[row][0]);
+    }
+    return most < NOTHING ? 0 : least > 1 - NOTHING ? 1 : -1;
+}
+
 /* The voxels of a row, or their eight parts. */
 static void cut_row(worker *w, plane_cells *out, int j)
 {
     double face[4][3] = {{0}};
     for (int i = 0; i < w->grid->n[0] && !w->failed; i++) {
         double volume[8], centroid[8][3], whole = 8;
+        const int uncut = find_uncut(w, face, i, j);
+        if (uncut >= 0) {
+            w->whole[ms_grid_index(w->grid, i, j, w->plane)] = (uint8_t)uncut;
+            continue;
+        }
         for (int part = 0; part < 8; part++) {
             const int x = part & 1, row = part >> 1, y = row & 1, z = row >> 1;
             const size_t at =
@@ -411,16 +432,22 @@ static int64_t count_cells(const ms_cut_cells *cells, const uint8_t *left, uint8
                            size_t row, double chord)
 {
     const double *centre = ball->centre, square = ball->radius * ball->radius + ON_SURFACE;
-    const size_t end = cells->row[row + 1];
+    const size_t start = cells->row[row], end = cells->row[row + 1];
     int64_t sum = 0;
-    for (size_t c = find_in_row(cells, cells->row[row], end, centre[0] - chord); c < end; c++) {
+    if (start == end) {
+        return 0;
+    }
+    for (size_t c = find_in_row(cells, start, end, centre[0] - chord); c < end; c++) {
         const ms_cut_cell *cell = &cells->cell[c];
-        const double dx = (double)cell->at[0] - centre[0], dy = (double)cell->at[1] - centre[1],
-                     dz = (double)cell->at[2] - centre[2];
+        const double dx = (double)cell->at[0] - centre[0];
         if (dx > chord + 1) {
             break;
         }
-        if (left[c] && dx * dx + dy * dy + dz * dz <= square) {
+        if (!left[c]) {
+            continue;
+        }
+        const double dy = (double)cell->at[1] - centre[1], dz = (double)cell->at[2] - centre[2];
+        if (dx * dx + dy * dy + dz * dz <= square) {
             sum += cell->weight;
             if (mark) {
                 mark[c] = 0;
