@@ -11,7 +11,7 @@ row() {
     name=$1 deq=$2
     shift 2
     for shape in spheroid:900 tablet:500; do
-        "$mskit" generate ${shape%:*}.stl -g setcover --deq "$deq" -n ${shape#*:} "$@" --curve curve.csv -o clump.csv \
+        "$mskit" generate ${shape%:*}.stl -g setcover --deq "$deq" -n ${shape#*:} "$@" --cut --curve curve.csv -o clump.csv \
             2>/dev/null >/dev/null
         awk -F, -v name="$name, d_eq/$deq, ${shape%:*}" '
             NR > 1 { for (m = 1; m <= 2; m++) { value = m == 1 ? $4 : $6

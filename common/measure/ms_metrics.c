@@ -171,7 +171,7 @@ ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_targ
     ms_target cut = *target;
     ms_cut_cells *cells = NULL;
     ms_status status = MS_OK;
-    if (!cut.grid.cells) {
+    if (target->count_cut && !cut.grid.cells) {
         status = ms_cut_cells_build(&cells, &target->grid, target->closed ? target->mesh : NULL, err);
         cut.grid.cells = cells;
     }

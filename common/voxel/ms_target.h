@@ -20,6 +20,7 @@ typedef struct ms_target {
     float *distance;            /* E, MSS eq. 8, in voxels */
     size_t voxels;              /* sum of S */
     ms_body body;               /* of a closed mesh by ms_solid_mesh, else of the voxels */
+    int count_cut;              /* nonzero: ms_metrics_compute counts coverage_cut, too; 0 unless set */
     size_t disagree;            /* voxels on which the axes did not agree (open mesh) */
     size_t pieces;              /* of a volume, ms_grid_pieces; 0 for a mesh */
     size_t largest_piece;       /* its voxels */
