@@ -48,7 +48,8 @@ void ms_report_metrics(FILE *stream, const ms_metrics *m, const ms_target *targe
             print_pieces(stream, measure, m);
         } else if (code == MS_MEASURE_INERTIA) {
             print_inertia(stream, measure, m);
-        } else if (code != MS_MEASURE_PROTRUSION_RMS && code != MS_MEASURE_GAP_RMS) {
+        } else if (code != MS_MEASURE_PROTRUSION_RMS && code != MS_MEASURE_GAP_RMS &&
+                   !(code == MS_MEASURE_COVERAGE_CUT && isnan(measure->of_metrics(m)))) { /* not asked for */
             fprintf(stream, "  %-34s %.*f\n", measure->label, measure->digits, measure->of_metrics(m));
         }
     }
