@@ -61,7 +61,8 @@ typedef struct ms_metrics {
 
 /**
  * Measures a clump against a target, by the target's voxel rule; coverage_cut is NAN unless the
- * target's grid has cut cells or its count_cut is set: they are cut here then, which takes as long as all else. Where spheres reach beyond
+ * target's grid has cut cells or its count_cut is set: they are cut here then, which takes as long as all else.
+ * Where spheres reach beyond
  * the target's grid the union is counted on a larger one. Lengths are in the mesh's unit;
  * protrusion and gap are NAN for a volume, protrusion for an open mesh too, the inertia error
  * for spheres so small that they cover no voxel.

@@ -31,7 +31,8 @@ static void each_row_gives_its_own_field(void **state)
 {
     (void)state;
     const ms_metrics metrics = {
-        .score = {.eta = 1, .dice = 2, .coverage = 3, .overshoot = 4, .off_volume = 5, .inertia = 12, .coverage_cut = 13},
+        .score =
+            {.eta = 1, .dice = 2, .coverage = 3, .overshoot = 4, .off_volume = 5, .inertia = 12, .coverage_cut = 13},
         .protrusion_max = 6,
         .protrusion_rms = 7,
         .gap_max = 8,
