@@ -30,7 +30,8 @@ typedef struct ms_score {
 
 struct ms_tally;
 
-/** From the sums over the union (ms_tally.h) and the number of voxels of the target; all but inertia and coverage_cut. */
+/** From the sums over the union (ms_tally.h) and the number of voxels of the target; all but inertia and
+ * coverage_cut. */
 MS_API ms_score ms_metrics_score(const struct ms_tally *sum, size_t target_voxels);
 
 /** The same with the inertia, which is NAN where the union covers no voxel, and where the target's grid has cut cells
