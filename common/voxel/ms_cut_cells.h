@@ -50,8 +50,8 @@ typedef struct ms_cut_cells {
  */
 MS_API ms_status ms_cut_cells_build(ms_cut_cells **out, const ms_grid *grid, const ms_mesh *mesh, ms_error *err);
 
-/** What is not covered yet: a byte for each cell, behind them for each voxel; all of it. The caller frees it. NULL without
- * memory. */
+/** What is not covered yet: a byte for each cell, behind them for each voxel; all of it. The caller frees it.
+ * NULL without memory. */
 MS_API uint8_t *ms_cut_cells_left(const ms_cut_cells *cells);
 
 /**
