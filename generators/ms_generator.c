@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "voxel/ms_cut_cells.h"
 #include "voxel/ms_raster.h"
 
 void ms_generator_stage(const ms_run *run, const char *stage, double share)
@@ -76,8 +77,15 @@ ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_gen
     }
     ms_settings defaults = {0};
     ms_run all = *run;
+    ms_target cut = *run->target;
+    ms_cut_cells *cells = NULL;
     ms_status status = MS_OK;
-    if (!run->settings) {
+    if (stop->coverage_cut > 0 && !cut.grid.cells) {
+        status = ms_cut_cells_build(&cells, &cut.grid, cut.closed ? cut.mesh : NULL, err);
+        cut.grid.cells = cells;
+        all.target = &cut;
+    }
+    if (status == MS_OK && !run->settings) {
         status = ms_option_settings_init(&defaults, generator->options, err);
         all.settings = &defaults;
     }
@@ -85,6 +93,7 @@ ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_gen
         status = generator->generate(clump, reason, &all, err);
     }
     ms_option_settings_free(&defaults);
+    ms_cut_cells_free(cells);
     if (status == MS_OK && clump->n_spheres == 0) {
         status = ms_fail(err, MS_ERR_SHAPE, "%s placed no sphere (%s); use more cells or a smaller least radius",
                          generator->name, ms_stop_name(*reason));

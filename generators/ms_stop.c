@@ -115,8 +115,9 @@ ms_stop_reason ms_stop_reached(const ms_stop *stop, const ms_target *target, con
         return MS_STOP_NOT;
     }
     /* the inertia takes the axes of the union, and few ask for it */
-    const ms_score score =
-        stop->inertia > 0 ? ms_metrics_full_score(sum, &target->grid, target) : ms_metrics_score(sum, target->voxels);
+    const ms_score score = stop->inertia > 0 || stop->coverage_cut > 0
+                               ? ms_metrics_full_score(sum, &target->grid, target)
+                               : ms_metrics_score(sum, target->voxels);
     for (size_t g = 0; g < N_GOALS; g++) {
         const ms_measure *measure = &ms_measures[GOALS[g].measure];
         const double asked = get_asked(stop, &GOALS[g]);

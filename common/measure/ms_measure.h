@@ -72,6 +72,10 @@ MS_C_BEGIN
       "their weighted mean (Yuan)", "Yuan 4, eps_w", \
       "sum of |I_k(union) - I_k(shape)| / sum of I_k(shape), I_k the principal moments; "  \
       "in JSON `inertia_error.weighted_mean`", "inertia_union", "inertia_error") \
+    X(GOAL, COVERAGE_CUT, coverage_cut, MORE, 5, 1, NULL, NULL, \
+      "coverage of cut cells", "Yuan 3.1, V_cl / V_p", \
+      "the same of cells that the surface cuts: each weighs what is inside, and is covered where its centroid is", \
+      NULL, NULL) \
     X(DESCRIPTOR, VOXEL_LIMIT, voxel_limit, LESS, 5, 0, NULL, NULL, \
       "voxel limit of D", "mskit", \
       "A h / (4 V) of the shape, h the size of a voxel: a D below it is below what voxels can tell", NULL, NULL) \

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "ms_surface.h"
+#include "voxel/ms_cut_cells.h"
 #include "voxel/ms_raster.h"
 
 ms_score ms_metrics_score(const ms_tally *sum, size_t target_voxels)
@@ -17,6 +18,7 @@ ms_score ms_metrics_score(const ms_tally *sum, size_t target_voxels)
         .overshoot = outside / target,
         .off_volume = (inside + outside) / target,
         .inertia = (double)NAN,
+        .coverage_cut = (double)NAN,
     };
 }
 
@@ -87,6 +89,9 @@ ms_score ms_metrics_full_score(const ms_tally *sum, const ms_grid *grid, const m
     ms_tally_body(&body, sum, grid);
     if (body.volume > 0 && ms_metrics_compare_inertia(&error, &body, &target->body, NULL) == MS_OK) {
         score.inertia = error.weighted;
+    }
+    if (target->grid.cells) {
+        score.coverage_cut = (double)sum->cut / (double)target->grid.cells->total;
     }
     return score;
 }
@@ -194,7 +199,18 @@ static ms_status describe(ms_metrics *metrics, const ms_target *target, const ms
 ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
                              size_t max_voxels, ms_error *err)
 {
-    ms_status status = count_on_fitting_grid(metrics, curve, target, clump, max_voxels, err);
+    ms_target cut = *target;
+    ms_cut_cells *cells = NULL;
+    ms_status status = MS_OK;
+    memset(metrics, 0, sizeof *metrics);
+    if (target->count_cut && !cut.grid.cells) {
+        status = ms_cut_cells_build(&cells, &target->grid, target->closed ? target->mesh : NULL, err);
+        cut.grid.cells = cells;
+    }
+    if (status == MS_OK) {
+        status = count_on_fitting_grid(metrics, curve, &cut, clump, max_voxels, err);
+    }
+    ms_cut_cells_free(cells);
     if (status == MS_OK) {
         metrics->spheres = clump->n_spheres;
         metrics->smallest_radius_ratio = ms_clump_smallest_radius(clump) / ms_target_equivalent_radius(target);

@@ -24,17 +24,20 @@ MS_C_BEGIN
 #define MS_METRICS_FIELD_DESCRIPTOR(name) double name;
 #define MS_METRICS_FIELD(kind, CODE, name, ...) MS_METRICS_FIELD_##kind(name)
 
-/** Measures of S (target) and U (union) on the grid: eta, dice, ... Inertia is NAN unless ms_metrics_compute set it. */
+/** Measures of S (target) and U (union) on the grid: eta, dice, ... Inertia and coverage_cut are NAN
+ * unless they are asked for (ms_metrics_full_score). */
 typedef struct ms_score {
     MS_MEASURE_LIST(MS_SCORE_FIELD)
 } ms_score;
 
 struct ms_tally;
 
-/** From the sums over the union (ms_tally.h) and the number of voxels of the target; all but the inertia. */
+/** From the sums over the union (ms_tally.h) and the number of voxels of the target; all but inertia and
+ * coverage_cut. */
 MS_API ms_score ms_metrics_score(const struct ms_tally *sum, size_t target_voxels);
 
-/** The same with the inertia; that is NAN where the union covers no voxel. @param grid that of the sums */
+/** The same with the inertia, which is NAN where the union covers no voxel, and where the target's grid has cut cells
+ * coverage_cut. @param grid that of the sums */
 MS_API ms_score ms_metrics_full_score(const struct ms_tally *sum, const ms_grid *grid, const ms_target *target);
 
 /** How the inertia of one body differs from that of another, both of unit density. */
@@ -60,7 +63,9 @@ typedef struct ms_metrics {
 } ms_metrics;
 
 /**
- * Measures a clump against a target, by the target's voxel rule. Where spheres reach beyond
+ * Measures a clump against a target, by the target's voxel rule; coverage_cut is NAN unless the
+ * target's grid has cut cells or its count_cut is set: they are cut here then, which takes as long as all else.
+ * Where spheres reach beyond
  * the target's grid the union is counted on a larger one. Lengths are in the mesh's unit;
  * protrusion and gap are NAN for a volume, protrusion for an open mesh too, the inertia error
  * for spheres so small that they cover no voxel, descriptors as ms_descriptors.h has it.

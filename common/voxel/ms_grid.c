@@ -58,6 +58,7 @@ ms_status ms_grid_enlarge(ms_grid *out, const ms_grid *grid, const double lo[3],
     if (status != MS_OK) {
         return status;
     }
+    out->cells = grid->cells;
     for (int k = 0; k < grid->n[2]; k++) {
         for (int j = 0; j < grid->n[1]; j++) {
             memcpy(out->inside + ms_grid_index(out, (int)before[0], j + (int)before[1], k + (int)before[2]),

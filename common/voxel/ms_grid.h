@@ -20,12 +20,15 @@ enum { MS_GRID_HULL = 2 };
 /* The most voxels along an axis: squared distances then fit 32 bits. */
 enum { MS_GRID_MAX_EXTENT = 32767 };
 
+struct ms_cut_cells;
+
 /** A regular grid. Voxel (i, j, k) is at index i + n[0]*(j + n[1]*k); x is fastest. */
 typedef struct ms_grid {
-    int n[3];         /* extents */
-    double h;         /* lattice constant, in the mesh's unit of length */
-    double origin[3]; /* centre of voxel (0, 0, 0), in the mesh's frame */
-    uint8_t *inside;  /* 1 inside the shape, 0 background */
+    int n[3];                         /* extents */
+    double h;                         /* lattice constant, in the mesh's unit of length */
+    double origin[3];                 /* centre of voxel (0, 0, 0), in the mesh's frame */
+    uint8_t *inside;                  /* 1 inside the shape, 0 background */
+    const struct ms_cut_cells *cells; /* borrowed; NULL: none are counted (ms_tally's cut) */
 } ms_grid;
 
 /** Number of voxels. */

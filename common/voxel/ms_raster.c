@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/ms_vector.h"
+#include "ms_cut_cells.h"
 
 /* Half the diagonal of a voxel: a ball's surface farther from the centre misses the voxel. */
 static const double HALF_DIAGONAL = 0.86602540378443871;
@@ -25,7 +26,8 @@ ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule 
     raster->rule = rule;
     raster->first = malloc(voxels * sizeof *raster->first);
     raster->partial = calloc((size_t)grid->n[2], sizeof *raster->partial);
-    if (!raster->first || !raster->partial) {
+    raster->cells_left = grid->cells ? ms_cut_cells_left(grid->cells) : NULL;
+    if (!raster->first || !raster->partial || (grid->cells && !raster->cells_left)) {
         ms_raster_free(raster);
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
     }
@@ -39,6 +41,7 @@ void ms_raster_free(ms_raster *raster)
         free(raster->first);
         free(raster->ball);
         free(raster->tally);
+        free(raster->cells_left);
         free(raster->buried);
         for (int k = 0; raster->partial && k < raster->grid->n[2]; k++) {
             free(raster->partial[k].slot);
@@ -390,6 +393,21 @@ static ms_status cover_balls(ms_raster *raster, size_t first_new, ms_error *err)
                : MS_OK;
 }
 
+/* The cells, of the lattice that they were cut on, which a larger grid continues. */
+static void cover_cells(ms_raster *raster, size_t first_new)
+{
+    const ms_grid *grid = raster->grid;
+    for (size_t b = first_new; grid->cells && b < raster->n_balls; b++) {
+        ms_ball ball = raster->ball[b];
+        for (int a = 0; a < 3; a++) {
+            ball.centre[a] += rint((grid->origin[a] - grid->cells->origin[a]) / grid->h);
+        }
+        if (!raster->buried[b]) {
+            raster->tally[b].cut = ms_cut_cells_cover(grid->cells, raster->cells_left, &ball);
+        }
+    }
+}
+
 ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, ms_error *err)
 {
     const size_t first_new = raster->n_balls;
@@ -402,6 +420,7 @@ ms_status ms_raster_add(ms_raster *raster, const ms_ball *balls, size_t count, m
     if (status == MS_OK) {
         find_buried(raster, first_new);
         status = cover_balls(raster, first_new, err);
+        cover_cells(raster, first_new);
     }
     return status;
 }

@@ -6,6 +6,7 @@ void ms_tally_add(ms_tally *sum, const ms_tally *part)
 {
     sum->inside += part->inside;
     sum->outside += part->outside;
+    sum->cut += part->cut;
     for (int m = 0; m < 3; m++) {
         sum->first[m] += part->first[m];
     }

@@ -15,6 +15,7 @@ typedef struct ms_tally {
     int64_t outside;   /* voxels outside the target */
     int64_t first[3];  /* sum of i, j, k over all of them */
     int64_t second[6]; /* sum of ii, jj, kk, jk, ik, ij */
+    int64_t cut;       /* weight of the grid's cut cells (ms_cut_cells.h); 0 without them */
 } ms_tally;
 
 /** Adds the sums of one set to those of another. */

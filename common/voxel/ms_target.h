@@ -22,10 +22,11 @@ typedef struct ms_target {
     struct ms_signed_distance_store *signed_distance; /* what runs have needed of it (ms_signed_distance.h) */
     size_t voxels;                                    /* sum of S */
     ms_body body;                                     /* of a closed mesh by ms_solid_mesh, else of the voxels */
-    size_t disagree;                                  /* voxels on which the axes did not agree (open mesh) */
-    size_t pieces;                                    /* of a volume, ms_grid_pieces; 0 for a mesh */
-    size_t largest_piece;                             /* its voxels */
-    struct ms_descriptors *descriptors;               /* where ms_descriptors_add has put them; else NULL */
+    int count_cut;                      /* nonzero: ms_metrics_compute counts coverage_cut, too; 0 unless set */
+    size_t disagree;                    /* voxels on which the axes did not agree (open mesh) */
+    size_t pieces;                      /* of a volume, ms_grid_pieces; 0 for a mesh */
+    size_t largest_piece;               /* its voxels */
+    struct ms_descriptors *descriptors; /* where ms_descriptors_add has put them; else NULL */
 } ms_target;
 
 /* S: 1, E: 4; a generator, if it does not say: E~ 4, first-cover index 2, flags 1. */

@@ -302,6 +302,7 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
         status = ms_target_voxels_from_solid(&input->target, &input->mesh, input->report.closed ? &input->solid : NULL,
                                              h, flags->rule, &cause);
         status = status == MS_OK ? finish_target(input, start, &cause) : status;
+        input->target.count_cut = status == MS_OK && flags->cut;
         ms_progress_close();
         status = name_file(err, status, input, &cause);
     }
@@ -357,6 +358,7 @@ static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags
         open_line(input, "voxels");
         status = ms_target_voxels_from_volume(&input->target, &input->volume, flags->label, &cause);
         status = status == MS_OK ? finish_target(input, start, &cause) : status;
+        input->target.count_cut = status == MS_OK && flags->cut;
         ms_progress_close();
         status = name_file(err, status, input, &cause);
         input->target.rule = flags->rule; /* for the union; the voxels of the shape are given */

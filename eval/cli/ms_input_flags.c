@@ -91,6 +91,10 @@ ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, con
     if (strcmp(name, "rule") == 0) {
         return parse_rule(&flags->rule, value, err);
     }
+    if (strcmp(name, "cut") == 0) {
+        flags->cut = 1;
+        return MS_OK;
+    }
     if (strcmp(name, "allow-open") == 0) {
         flags->allow_open = 1;
         return MS_OK;

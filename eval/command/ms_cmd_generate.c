@@ -341,6 +341,7 @@ static int execute_generate(const ms_command *command, const generate_arguments 
 static ms_status resolve_generate(generate_arguments *a, ms_error *err)
 {
     ms_until_resolve(&a->stop);
+    a->input.cut |= a->stop.coverage_cut > 0;
     ms_status status = ms_recipe_resolve(&a->recipe, err);
     if (status == MS_OK) {
         a->input.method_bytes = a->recipe.generator->bytes_per_voxel;

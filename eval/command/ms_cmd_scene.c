@@ -352,6 +352,7 @@ static int run_scene(const ms_command *command, int argc, char **argv)
     a.format = a.format ? a.format : ms_write_format_find("csv", &err);
     ms_status status = ms_recipe_resolve(&a.recipe, &err);
     if (status == MS_OK) {
+        a.input.cut |= a.goal.measure == &ms_measures[MS_MEASURE_COVERAGE_CUT];
         a.input.method_bytes = a.recipe.generator->bytes_per_voxel;
         const char *const inputs[] = {a.source, a.recipe.settings.clump_file};
         status = ms_files_check_standard(inputs, 2, &err);

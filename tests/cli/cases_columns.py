@@ -5,7 +5,7 @@ import json
 from support import Case
 
 SCORES = ("spheres eta dice coverage overshoot off_volume protrusion_max protrusion_rms gap_max gap_rms "
-          "smallest_radius_ratio pieces volume inertia_error.moments inertia_error.weighted_mean "
+          "smallest_radius_ratio pieces coverage_cut volume inertia_error.moments inertia_error.weighted_mean "
           "inertia_error.axes_degrees inertia_error.centroid")
 FORM = "equivalent_diameter area sphericity elongation flatness feret_elongation feret_flatness corey convexity".split()
 DESCRIPTORS = ["voxel_limit"] + [which + name for name in FORM for which in ("shape_", "clump_")]
@@ -54,7 +54,7 @@ class Columns(Case):
 
     def test_csv_of_curves(self):
         self.clump()
-        line = "n,eta,dice,coverage,overshoot"
+        line = "n,eta,dice,coverage,overshoot,coverage_cut"
         out = self.mskit("score", "c.csv", "--target", "grain.stl", "--cells", 15, "--curve").out
         self.assertEqual(out.splitlines()[0], line)
         self.mskit("generate", "grain.stl", "-n", 3, "--cells", 15, "-o", "d.csv", "--curve", "k.csv")
@@ -65,7 +65,7 @@ class Columns(Case):
         self.assertEqual(self.header("compare.csv"),
                          "shape,checksum,label,generator,options,seed,cells,n_asked,n,stopped_by,eta,dice,coverage,"
                          "overshoot,off_volume,protrusion_max,protrusion_rms,gap_max,gap_rms,smallest_radius_ratio,"
-                         "pieces,inertia_union," + ",".join(DESCRIPTORS) + ",expected,inertia_corrected,epsilon,"
+                         "pieces,inertia_union,coverage_cut," + ",".join(DESCRIPTORS) + ",expected,inertia_corrected,epsilon,"
                          "products_epsilon,centre_epsilon,voxel_size,"
                          "seconds_read,seconds_voxelize,seconds_distance,seconds_describe,seconds_generate,seconds_score,"
                          "seconds_correct,repeats,peak_memory_kb,threads,beside,version,cause")
@@ -74,7 +74,7 @@ class Columns(Case):
         self.mskit("stability", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10, "--runs", 1, "--perturb", "seed")
         self.assertEqual(self.header("stability.csv"),
                          "shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,status,"
-                         "n,stopped_by,eta,dice,coverage,overshoot,off_volume,inertia_error,smallest_radius_ratio,"
+                         "n,stopped_by,eta,dice,coverage,overshoot,off_volume,inertia_error,coverage_cut,smallest_radius_ratio,"
                          "pieces," + ",".join(DESCRIPTORS) + ",n_until,seconds,beside,spheres_fnv1a,cause")
 
     def test_json_of_generate(self):
@@ -165,5 +165,5 @@ class Columns(Case):
                          "seed max_spheres min_radius goal.knee particles spheres mean_dice least_gain slack".split() +
                          under("even", "each spheres mean_dice") + under("smallest", "radius shape") +
                          under("shapes", "particles tolerance gain smallest_radius") +
-                         under("shapes.scores", "spheres eta dice coverage overshoot off_volume inertia") +
+                         under("shapes.scores", "spheres eta dice coverage overshoot off_volume inertia coverage_cut") +
                          under("shapes.input", TARGET) + ["shapes.curve"])

@@ -1,18 +1,19 @@
 /* The stop rule, and the comparison of inertia that it rests on. */
 #include "ms_stop.h"
 #include "support/clump_samples.h"
+#include "voxel/ms_cut_cells.h"
 #include "voxel/ms_tally.h"
 
 static void reasons_have_names(void **state)
 {
     (void)state;
-    static const char *const names[] = {"not",     "spheres", "eta",        "dice",      "coverage",
-                                        "inertia", "radius",  "off-volume", "exhausted", "interrupted"};
-    for (int reason = 0; reason < 10; reason++) {
+    static const char *const names[] = {"not",          "spheres", "eta",        "dice",      "coverage",   "inertia",
+                                        "coverage_cut", "radius",  "off-volume", "exhausted", "interrupted"};
+    for (int reason = 0; reason < 11; reason++) {
         assert_string_equal(ms_stop_name((ms_stop_reason)reason), names[reason]);
     }
-    assert_int_equal(MS_STOP_INTERRUPTED, 9);
-    assert_string_equal(ms_stop_name((ms_stop_reason)10), "unknown");
+    assert_int_equal(MS_STOP_INTERRUPTED, 10);
+    assert_string_equal(ms_stop_name((ms_stop_reason)11), "unknown");
 }
 
 static void measures_are_set_by_name(void **state)
@@ -51,7 +52,7 @@ static void values_out_of_range_are_refused(void **state)
     for (int u = 0; u < 6; u++) {
         ms_error err = {{0}};
         assert_int_equal(ms_stop_set(&stop, unknown[u], 0.5, &err), MS_ERR_ARG);
-        expect_message(&err, "eta, dice, coverage, inertia, radius");
+        expect_message(&err, "eta, dice, coverage, inertia, coverage_cut, radius");
     }
 }
 
@@ -61,7 +62,7 @@ static ms_tally lower_part(int slices, int64_t outside)
     ms_tally sum = {0};
     for (int v = 0; v < 100 * slices; v++) {
         const int64_t i = 2 + v % 10, j = 2 + v / 10 % 10, k = 2 + v / 100;
-        const ms_tally one = {1, 0, {i, j, k}, {i * i, j * j, k * k, j * k, i * k, i * j}};
+        const ms_tally one = {1, 0, {i, j, k}, {i * i, j * j, k * k, j * k, i * k, i * j}, 0};
         ms_tally_add(&sum, &one);
     }
     sum.outside = outside;
@@ -136,7 +137,10 @@ static void goals_of_the_table_are_known(void **state)
     (void)state;
     ms_mesh mesh;
     ms_target target = cube_target(&mesh);
-    const ms_tally whole = lower_part(10, 0);
+    const ms_cut_cells cells = {.total = 1000};
+    ms_tally whole = lower_part(10, 0);
+    whole.cut = cells.total;
+    target.grid.cells = &cells;
     for (const ms_measure *m = ms_measures; m->name; m++) {
         ms_stop stop = {0};
         const int goal = m->kind == MS_MEASURE_KIND_GOAL;

@@ -31,32 +31,33 @@ static void each_row_gives_its_own_field(void **state)
 {
     (void)state;
     const ms_metrics metrics = {
-        .score = {.eta = 1, .dice = 2, .coverage = 3, .overshoot = 4, .off_volume = 5, .inertia = 12},
+        .score =
+            {.eta = 1, .dice = 2, .coverage = 3, .overshoot = 4, .off_volume = 5, .inertia = 12, .coverage_cut = 13},
         .protrusion_max = 6,
         .protrusion_rms = 7,
         .gap_max = 8,
         .gap_rms = 9,
         .smallest_radius_ratio = 10,
         .pieces = 11,
-        .voxel_limit = 13,
-        .shape_equivalent_diameter = 14,
-        .clump_equivalent_diameter = 15,
-        .shape_area = 16,
-        .clump_area = 17,
-        .shape_sphericity = 18,
-        .clump_sphericity = 19,
-        .shape_elongation = 20,
-        .clump_elongation = 21,
-        .shape_flatness = 22,
-        .clump_flatness = 23,
-        .shape_feret_elongation = 24,
-        .clump_feret_elongation = 25,
-        .shape_feret_flatness = 26,
-        .clump_feret_flatness = 27,
-        .shape_corey = 28,
-        .clump_corey = 29,
-        .shape_convexity = 30,
-        .clump_convexity = 31};
+        .voxel_limit = 14,
+        .shape_equivalent_diameter = 15,
+        .clump_equivalent_diameter = 16,
+        .shape_area = 17,
+        .clump_area = 18,
+        .shape_sphericity = 19,
+        .clump_sphericity = 20,
+        .shape_elongation = 21,
+        .clump_elongation = 22,
+        .shape_flatness = 23,
+        .clump_flatness = 24,
+        .shape_feret_elongation = 25,
+        .clump_feret_elongation = 26,
+        .shape_feret_flatness = 27,
+        .clump_feret_flatness = 28,
+        .shape_corey = 29,
+        .clump_corey = 30,
+        .shape_convexity = 31,
+        .clump_convexity = 32};
     for (int m = 0; m < MS_MEASURES; m++) {
         assert_true(ms_measures[m].of_metrics(&metrics) == m + 1);
         assert_true(!ms_measures[m].of_score || ms_measures[m].of_score(&metrics.score) == m + 1);
@@ -82,11 +83,11 @@ static void goals_are_found_by_name(void **state)
         const ms_measure *found = ms_measure_find_goal(m->name, &err);
         assert_ptr_equal(found, m->kind == MS_MEASURE_KIND_GOAL ? m : NULL);
         if (!found) {
-            assert_non_null(strstr(err.text, "choose from eta, dice, coverage, inertia"));
+            assert_non_null(strstr(err.text, "choose from eta, dice, coverage, inertia, coverage_cut"));
         }
     }
-    assert_string_equal(MS_MEASURE_GOAL_NAMES, "eta, dice, coverage, inertia, ");
-    assert_string_equal(MS_MEASURE_CURVE_NAMES, ",eta,dice,coverage,overshoot");
+    assert_string_equal(MS_MEASURE_GOAL_NAMES, "eta, dice, coverage, inertia, coverage_cut, ");
+    assert_string_equal(MS_MEASURE_CURVE_NAMES, ",eta,dice,coverage,overshoot,coverage_cut");
 }
 
 /* In a table of Markdown a bar is escaped. */

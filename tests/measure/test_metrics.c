@@ -136,7 +136,7 @@ static void a_block_of_voxels_is_a_cuboid(void **state)
         const double side[3] = {0.385 * nx, 0.385 * 2, 0.385 * 5}, m = side[0] * side[1] * side[2];
         for (int v = 0; v < nx * 10; v++) {
             const int64_t i = 3 + v % nx, j = 4 + v / nx % 2, k = 1 + v / nx / 2;
-            const ms_tally one = {v % 2, 1 - v % 2, {i, j, k}, {i * i, j * j, k * k, j * k, i * k, i * j}};
+            const ms_tally one = {v % 2, 1 - v % 2, {i, j, k}, {i * i, j * j, k * k, j * k, i * k, i * j}, 0};
             ms_tally_add(&sum, &one);
         }
         ms_tally_body(&body, &sum, &grid);

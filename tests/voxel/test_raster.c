@@ -76,7 +76,8 @@ static void expect_tallies(const ms_raster *raster)
             const ms_tally one = {raster->grid->inside[v] == 1,
                                   raster->grid->inside[v] == 0,
                                   {i, j, k},
-                                  {i * i, j * j, k * k, j * k, i * k, i * j}};
+                                  {i * i, j * j, k * k, j * k, i * k, i * j},
+                                  0};
             if (raster->first[v] == b) {
                 ms_tally_add(&sum, &one);
             }

@@ -1,0 +1,535 @@
+/*
+ * In a cell with its lower corner at 0 and sides of 1, in (u, v, w), what lies in the body has
+ *
+ *     V   = integral of (u - 1) n_u         over its surface
+ *     M_u = integral of (u^2 - 1) / 2 n_u
+ *     M_v = integral of v (u - 1) n_u,      M_w likewise with w
+ *
+ * n outward. The fields are 0 on the face u = 1, and n_u is 0 on those across v and w: there remain the triangles and
+ * the face u = 0. Of that face the area A in the body and its moments B (of v) and C (of w) are all that is needed, and
+ * those of the next cell's are less by the integrals of n_u, v n_u, w n_u over the triangles of this one.
+ */
+#include "ms_cut_cells.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FACE, FACE_V, FACE_W, VOLUME, MOMENT_U, MOMENT_V, MOMENT_W, INTEGRALS };
+enum { MOST_CORNERS = 12 }; /* of a triangle cut by six planes: nine */
+
+/* Below this part of a cell nothing is in it, or nothing is missing: the sums of a row round to less. */
+static const double NOTHING = 1e-9;
+
+/* Squared distances that are as good as equal, as of ms_raster. */
+static const double ON_SURFACE = 1e-9;
+
+typedef struct cut_polygon {
+    int n;
+    double corner[MOST_CORNERS][3];
+} cut_polygon;
+
+/* The integrals over the triangles in a cell. */
+typedef struct piece {
+    double sum[INTEGRALS];
+} piece;
+
+/* What one thread works with: a plane of voxels, which is two planes of half as large cells, four rows for each row. */
+typedef struct cut_worker {
+    const ms_grid *grid;
+    const ms_mesh *mesh;
+    uint8_t *whole; /* of each voxel of the grid */
+    int fine[2];    /* cells along x and y */
+    int plane;
+    int32_t *piece_of; /* of each cell of the plane, -1: none */
+    piece *piece;
+    size_t n_pieces, piece_room;
+    int failed;
+} cut_worker;
+
+/* What came of a plane. */
+typedef struct plane_cells {
+    ms_cut_cell *cell;
+    size_t count, room;
+} plane_cells;
+
+/* What is on one side of a plane across an axis. */
+static void clip(cut_polygon *out, const cut_polygon *in, int axis, double bound, double sign)
+{
+    out->n = 0;
+    for (int c = 0; c < in->n; c++) {
+        const double *from = in->corner[c], *to = in->corner[c + 1 < in->n ? c + 1 : 0];
+        const double before = sign * (from[axis] - bound), after = sign * (to[axis] - bound);
+        if (before >= 0) {
+            memcpy(out->corner[out->n++], from, sizeof out->corner[0]);
+        }
+        if ((before > 0 && after < 0) || (before < 0 && after > 0)) {
+            double *corner = out->corner[out->n++];
+            for (int a = 0; a < 3; a++) {
+                corner[a] = from[a] + before / (before - after) * (to[a] - from[a]);
+            }
+            corner[axis] = bound;
+        }
+    }
+}
+
+/* The layers of cells that a polygon passes through; of a face between two the upper one. */
+static void find_layers(int *from, int *to, const cut_polygon *p, int axis, int n)
+{
+    double lo = p->corner[0][axis], hi = lo;
+    for (int c = 1; c < p->n; c++) {
+        lo = fmin(lo, p->corner[c][axis]);
+        hi = fmax(hi, p->corner[c][axis]);
+    }
+    *from = (int)fmin(fmax(floor(lo), 0), n - 1);
+    *to = (int)fmin(fmax(ceil(hi), *from + 1), n);
+}
+
+static void clip_to_layer(cut_polygon *out, const cut_polygon *in, int axis, int layer)
+{
+    cut_polygon above;
+    clip(&above, in, axis, layer, 1);
+    clip(out, &above, axis, layer + 1, -1);
+}
+
+/* Adds the integrals over a polygon in a cell, which are of polynomials of degree two: exact by the middles of the
+ * edges of triangles. */
+static void integrate(piece *sums, const cut_polygon *p, const int cell[3])
+{
+    for (int c = 1; c + 1 < p->n; c++) {
+        const double *a = p->corner[0], *b = p->corner[c], *d = p->corner[c + 1];
+        const double third = ((b[1] - a[1]) * (d[2] - a[2]) - (b[2] - a[2]) * (d[1] - a[1])) / 6;
+        const double *edge[3][2] = {{a, b}, {b, d}, {d, a}};
+        for (int e = 0; e < 3; e++) {
+            const double u = 0.5 * (edge[e][0][0] + edge[e][1][0]) - cell[0];
+            const double v = 0.5 * (edge[e][0][1] + edge[e][1][1]) - cell[1];
+            const double w = 0.5 * (edge[e][0][2] + edge[e][1][2]) - cell[2];
+            const double value[INTEGRALS] = {1, v, w, u - 1, 0.5 * (u * u - 1), v * (u - 1), w * (u - 1)};
+            for (int m = 0; m < INTEGRALS; m++) {
+                sums->sum[m] += third * value[m];
+            }
+        }
+    }
+}
+
+static piece *find_piece(cut_worker *w, const int cell[3])
+{
+    const size_t at =
+        (size_t)cell[0] + (size_t)w->fine[0] * ((size_t)cell[1] + (size_t)w->fine[1] * (size_t)(cell[2] & 1));
+    if (w->piece_of[at] < 0) {
+        if (w->n_pieces == w->piece_room) {
+            const size_t room = 2 * w->piece_room + 1024;
+            piece *more = realloc(w->piece, room * sizeof *more);
+            if (!more) {
+                w->failed = 1;
+                return NULL;
+            }
+            w->piece = more;
+            w->piece_room = room;
+        }
+        w->piece_of[at] = (int32_t)w->n_pieces;
+        w->piece[w->n_pieces++] = (piece){{0}};
+    }
+    return &w->piece[w->piece_of[at]];
+}
+
+/* A polygon in one row of cells. */
+static void add_to_row(cut_worker *w, const cut_polygon *p, int cell[3])
+{
+    int from, to;
+    find_layers(&from, &to, p, 0, w->fine[0]);
+    for (cell[0] = from; cell[0] < to; cell[0]++) {
+        cut_polygon part;
+        const cut_polygon *whole = p;
+        if (to - from > 1) {
+            clip_to_layer(&part, p, 0, cell[0]);
+            whole = &part;
+        }
+        piece *sums = whole->n > 2 ? find_piece(w, cell) : NULL;
+        if (sums) {
+            integrate(sums, whole, cell);
+        }
+    }
+}
+
+static void cut_triangle(cut_worker *w, uint32_t triangle)
+{
+    cut_polygon whole = {.n = 3};
+    for (int c = 0; c < 3; c++) {
+        double at[3];
+        ms_grid_at(at, w->grid, w->mesh->vertex[w->mesh->triangle[triangle][c]]);
+        for (int a = 0; a < 3; a++) {
+            whole.corner[c][a] = 2 * at[a] + 1;
+        }
+    }
+    for (int half = 0; half < 2; half++) {
+        cut_polygon slab, row;
+        int from, to, cell[3] = {0, 0, 2 * w->plane + half};
+        clip_to_layer(&slab, &whole, 2, cell[2]);
+        if (slab.n < 3) {
+            continue;
+        }
+        find_layers(&from, &to, &slab, 1, w->fine[1]);
+        for (cell[1] = from; cell[1] < to; cell[1]++) {
+            clip_to_layer(&row, &slab, 1, cell[1]);
+            if (row.n > 2) {
+                add_to_row(w, &row, cell);
+            }
+        }
+    }
+}
+
+static void add_cell(cut_worker *w, plane_cells *out, const double at[3], double volume)
+{
+    const double weight = rint(volume * MS_CUT_WHOLE);
+    if (out->count == out->room) {
+        const size_t room = 2 * out->room + 1024;
+        ms_cut_cell *more = realloc(out->cell, room * sizeof *more);
+        if (!more) {
+            w->failed = 1;
+            return;
+        }
+        out->cell = more;
+        out->room = room;
+    }
+    if (weight > 0) {
+        out->cell[out->count++] = (ms_cut_cell){{(float)at[0], (float)at[1], (float)at[2]}, (uint32_t)weight};
+    }
+}
+
+/* Volume and centroid of the body in a cell, behind a face of area and moments face[0..2], which become those of the
+ * next cell's. */
+static double cut_cell(double centroid[3], double face[3], const piece *sums)
+{
+    static const piece NONE = {{0}};
+    const double *sum = sums ? sums->sum : NONE.sum;
+    const double volume = face[0] + sum[VOLUME];
+    const double moment[3] = {face[0] / 2 + sum[MOMENT_U], face[1] + sum[MOMENT_V], face[2] + sum[MOMENT_W]};
+    for (int a = 0; a < 3; a++) {
+        centroid[a] = volume < 1 - NOTHING && volume > NOTHING ? fmin(fmax(moment[a] / volume, 0), 1) : 0.5;
+        face[a] -= sum[FACE + a];
+    }
+    return fmin(fmax(volume, 0), 1);
+}
+
+/* Of a voxel that no triangle passes through: 1 whole, 0 empty, -1 to be looked at in its parts. */
+static int find_uncut(const cut_worker *w, double face[4][3], int i, int j)
+{
+    double least = face[0][0], most = face[0][0];
+    for (int row = 0; row < 4; row++) {
+        const size_t y = (size_t)(2 * j + (row & 1)), z = (size_t)(row >> 1);
+        const int32_t *both = w->piece_of + (size_t)(2 * i) + (size_t)w->fine[0] * (y + (size_t)w->fine[1] * z);
+        if (both[0] >= 0 || both[1] >= 0) {
+            return -1;
+        }
+        least = fmin(least, face[row][0]);
+        most = fmax(most, face[row][0]);
+    }
+    return most < NOTHING ? 0 : least > 1 - NOTHING ? 1 : -1;
+}
+
+/* The voxels of a row, or their eight parts. */
+static void cut_row(cut_worker *w, plane_cells *out, int j)
+{
+    double face[4][3] = {{0}};
+    for (int i = 0; i < w->grid->n[0] && !w->failed; i++) {
+        double volume[8], centroid[8][3], whole = 8;
+        const int uncut = find_uncut(w, face, i, j);
+        if (uncut >= 0) {
+            w->whole[ms_grid_index(w->grid, i, j, w->plane)] = (uint8_t)uncut;
+            continue;
+        }
+        for (int part = 0; part < 8; part++) {
+            const int x = part & 1, row = part >> 1, y = row & 1, z = row >> 1;
+            const size_t at =
+                (size_t)(2 * i + x) + (size_t)w->fine[0] * ((size_t)(2 * j + y) + (size_t)w->fine[1] * (size_t)z);
+            const int32_t index = w->piece_of[at];
+            volume[part] = cut_cell(centroid[part], face[row], index < 0 ? NULL : &w->piece[index]);
+            whole = fmin(whole, volume[part]);
+            centroid[part][0] = i + 0.5 * (x + centroid[part][0]) - 0.5;
+            centroid[part][1] = j + 0.5 * (y + centroid[part][1]) - 0.5;
+            centroid[part][2] = w->plane + 0.5 * (z + centroid[part][2]) - 0.5;
+        }
+        if (whole > 1 - NOTHING) {
+            w->whole[ms_grid_index(w->grid, i, j, w->plane)] = 1;
+            continue;
+        }
+        for (int part = 0; part < 8; part++) {
+            if (volume[part] > NOTHING) {
+                add_cell(w, out, centroid[part], volume[part] / 8);
+            }
+        }
+    }
+}
+
+/* The triangles of each plane of voxels, start[k] to start[k + 1] - 1 of `list`. */
+typedef struct plane_lists {
+    size_t *start;
+    uint32_t *list;
+} plane_lists;
+
+static void find_planes(int *from, int *to, const ms_grid *grid, const ms_mesh *mesh, size_t triangle)
+{
+    double at[3], lo = HUGE_VAL, hi = -HUGE_VAL;
+    for (int c = 0; c < 3; c++) {
+        ms_grid_at(at, grid, mesh->vertex[mesh->triangle[triangle][c]]);
+        lo = fmin(lo, at[2]);
+        hi = fmax(hi, at[2]);
+    }
+    *from = (int)fmin(fmax(floor(lo + 0.5), 0), grid->n[2] - 1);
+    *to = (int)fmin(fmax(floor(hi + 0.5) + 1, *from + 1), grid->n[2]);
+}
+
+static int list_triangles(plane_lists *lists, const ms_grid *grid, const ms_mesh *mesh)
+{
+    int from, to;
+    lists->start = calloc((size_t)grid->n[2] + 2, sizeof *lists->start);
+    if (!lists->start) {
+        return 0;
+    }
+    for (size_t t = 0; mesh && t < mesh->n_triangles; t++) {
+        find_planes(&from, &to, grid, mesh, t);
+        for (int k = from; k < to; k++) {
+            lists->start[k + 2]++;
+        }
+    }
+    for (int k = 2; k < grid->n[2] + 2; k++) {
+        lists->start[k] += lists->start[k - 1];
+    }
+    lists->list = malloc((lists->start[grid->n[2] + 1] + 1) * sizeof *lists->list);
+    for (size_t t = 0; lists->list && mesh && t < mesh->n_triangles; t++) {
+        find_planes(&from, &to, grid, mesh, t);
+        for (int k = from; k < to; k++) {
+            lists->list[lists->start[k + 1]++] = (uint32_t)t;
+        }
+    }
+    return lists->list != NULL;
+}
+
+/* row_end: of each row of the plane, how many cells there are up to its end */
+static void cut_plane(cut_worker *w, plane_cells *out, size_t *row_end, const plane_lists *lists)
+{
+    const size_t first = lists->start[w->plane], end = lists->start[w->plane + 1];
+    if (w->mesh && end > first) {
+        memset(w->piece_of, 0xff, (size_t)w->fine[0] * (size_t)w->fine[1] * 2 * sizeof *w->piece_of);
+        w->n_pieces = 0;
+    }
+    for (size_t t = first; t < end && !w->failed; t++) {
+        cut_triangle(w, lists->list[t]);
+    }
+    for (int j = 0; j < w->grid->n[1] && !w->failed; j++) {
+        if (end > first) {
+            cut_row(w, out, j);
+        }
+        row_end[j] = out->count;
+    }
+}
+
+static int cut_planes(plane_cells *planes, ms_cut_cells *cells, const ms_grid *grid, const ms_mesh *mesh)
+{
+    plane_lists lists = {0};
+    int failed = !list_triangles(&lists, grid, mesh);
+#pragma omp parallel reduction(| : failed) if (ms_grid_voxels(grid) >= MS_GRID_THREADS_FROM)
+    {
+        cut_worker w = {.grid = grid,
+                        .whole = cells->whole,
+                        .mesh = mesh,
+                        .fine = {2 * grid->n[0], 2 * grid->n[1]},
+                        .failed = failed};
+        w.piece_of = malloc((size_t)w.fine[0] * (size_t)w.fine[1] * 2 * sizeof *w.piece_of);
+        w.failed |= !w.piece_of;
+#pragma omp for schedule(dynamic, 1)
+        for (int k = 0; k < grid->n[2]; k++) {
+            w.plane = k;
+            if (!w.failed) {
+                cut_plane(&w, &planes[k], cells->row + 1 + (size_t)grid->n[1] * (size_t)k, &lists);
+            }
+        }
+        free(w.piece_of);
+        free(w.piece);
+        failed |= w.failed;
+    }
+    free(lists.start);
+    free(lists.list);
+    return !failed;
+}
+
+static size_t voxels_of(const ms_cut_cells *cells)
+{
+    return (size_t)cells->n[0] * (size_t)cells->n[1] * (size_t)cells->n[2];
+}
+
+/* Puts the planes one after the other. */
+static int join_cut_planes(ms_cut_cells *cells, const plane_cells *planes)
+{
+    const int rows = cells->n[1];
+    for (int k = 0; k < cells->n[2]; k++) {
+        for (int j = 0; j < rows; j++) {
+            cells->row[1 + (size_t)j + (size_t)rows * (size_t)k] += cells->count;
+        }
+        cells->count += planes[k].count;
+    }
+    cells->cell = malloc((cells->count + 1) * sizeof *cells->cell);
+    size_t at = 0;
+    for (int k = 0; cells->cell && k < cells->n[2]; k++) {
+        for (size_t c = 0; c < planes[k].count; c++) {
+            cells->cell[at++] = planes[k].cell[c];
+            cells->total += planes[k].cell[c].weight;
+        }
+    }
+    for (size_t v = 0, voxels = voxels_of(cells); v < voxels; v++) {
+        cells->total += cells->whole[v] ? MS_CUT_WHOLE : 0;
+    }
+    return cells->cell != NULL;
+}
+
+ms_status ms_cut_cells_build(ms_cut_cells **out, const ms_grid *grid, const ms_mesh *mesh, ms_error *err)
+{
+    ms_cut_cells *cells = calloc(1, sizeof *cells);
+    plane_cells *planes = calloc((size_t)grid->n[2], sizeof *planes);
+    int complete = cells && planes;
+    if (complete) {
+        *cells = (ms_cut_cells){.h = grid->h};
+        memcpy(cells->n, grid->n, sizeof cells->n);
+        memcpy(cells->origin, grid->origin, sizeof cells->origin);
+        cells->row = calloc((size_t)grid->n[1] * (size_t)grid->n[2] + 1, sizeof *cells->row);
+        cells->whole = calloc(ms_grid_voxels(grid), 1);
+        complete = cells->row && cells->whole && cut_planes(planes, cells, grid, mesh);
+        if (complete && !mesh) {
+            memcpy(cells->whole, grid->inside, ms_grid_voxels(grid));
+        }
+        complete = complete && join_cut_planes(cells, planes);
+    }
+    for (int k = 0; planes && k < grid->n[2]; k++) {
+        free(planes[k].cell);
+    }
+    free(planes);
+    *out = cells;
+    if (!complete) {
+        ms_cut_cells_free(cells);
+        *out = NULL;
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to cut %zu voxels; use fewer cells", ms_grid_voxels(grid));
+    }
+    return MS_OK;
+}
+
+/* The first cell of a row that may lie beyond x; cells of one voxel are in no order. */
+static size_t find_in_row(const ms_cut_cells *cells, size_t from, size_t to, double x)
+{
+    while (from < to) {
+        const size_t middle = from + (to - from) / 2;
+        if ((double)cells->cell[middle].at[0] < x - 1) {
+            from = middle + 1;
+        } else {
+            to = middle;
+        }
+    }
+    return from;
+}
+
+/* What is left of the cut cells of a row; covers it, if `mark` is `left`. */
+static int64_t count_cells(const ms_cut_cells *cells, const uint8_t *left, uint8_t *mark, const ms_ball *ball,
+                           size_t row, double chord)
+{
+    const double *centre = ball->centre, square = ball->radius * ball->radius + ON_SURFACE;
+    const size_t start = cells->row[row], end = cells->row[row + 1];
+    int64_t sum = 0;
+    if (start == end) {
+        return 0;
+    }
+    for (size_t c = find_in_row(cells, start, end, centre[0] - chord); c < end; c++) {
+        const ms_cut_cell *cell = &cells->cell[c];
+        const double dx = (double)cell->at[0] - centre[0];
+        if (dx > chord + 1) {
+            break;
+        }
+        if (!left[c]) {
+            continue;
+        }
+        const double dy = (double)cell->at[1] - centre[1], dz = (double)cell->at[2] - centre[2];
+        if (dx * dx + dy * dy + dz * dz <= square) {
+            sum += cell->weight;
+            if (mark) {
+                mark[c] = 0;
+            }
+        }
+    }
+    return sum;
+}
+
+/* What is left of the whole voxels (., j, k). */
+static int64_t count_uncut_voxels(const ms_cut_cells *cells, const uint8_t *left, uint8_t *mark, const ms_ball *ball,
+                                  int j, int k)
+{
+    const double x = ball->centre[0], dy = j - ball->centre[1], dz = k - ball->centre[2];
+    const double rest = ball->radius * ball->radius + ON_SURFACE - dy * dy - dz * dz;
+    if (!(rest >= 0)) {
+        return 0;
+    }
+    const double chord = sqrt(rest);
+    const size_t row = (size_t)cells->n[0] * ((size_t)j + (size_t)cells->n[1] * (size_t)k), first = cells->count + row;
+    const int from = (int)fmin(fmax(ceil(x - chord), 0), cells->n[0]);
+    const int to = (int)fmin(fmax(floor(x + chord) + 1, from), cells->n[0]);
+    int sum = 0;
+    for (int i = from; i < to; i++) {
+        sum += left[first + (size_t)i];
+    }
+    if (mark) {
+        memset(mark + first + from, 0, (size_t)(to - from));
+    }
+    return (int64_t)sum * MS_CUT_WHOLE;
+}
+
+/* The rows from..to-1 that may hold something within `reach`. */
+static void find_cut_rows(int *from, int *to, double centre, double reach, int n)
+{
+    *from = (int)fmin(fmax(ceil(centre - reach - 0.5), 0), n);
+    *to = (int)fmin(fmax(floor(centre + reach + 0.5) + 1, *from), n);
+}
+
+static int64_t weigh_ball(const ms_cut_cells *cells, const uint8_t *left, uint8_t *mark, const ms_ball *ball)
+{
+    const double reach = ball->radius + ON_SURFACE;
+    int64_t sum = 0;
+    int k, planes, j, rows;
+    for (find_cut_rows(&k, &planes, ball->centre[2], reach, cells->n[2]); k < planes; k++) {
+        const double dz = fmax(0, fabs(k - ball->centre[2]) - 0.5), disc = sqrt(fmax(0, reach * reach - dz * dz));
+        for (find_cut_rows(&j, &rows, ball->centre[1], disc, cells->n[1]); j < rows; j++) {
+            const double dy = fmax(0, fabs(j - ball->centre[1]) - 0.5);
+            const double chord = sqrt(fmax(0, disc * disc - dy * dy)) + ON_SURFACE;
+            sum += count_cells(cells, left, mark, ball, (size_t)j + (size_t)cells->n[1] * (size_t)k, chord);
+            sum += count_uncut_voxels(cells, left, mark, ball, j, k);
+        }
+    }
+    return sum;
+}
+
+uint8_t *ms_cut_cells_left(const ms_cut_cells *cells)
+{
+    uint8_t *left = malloc(cells->count + voxels_of(cells));
+    if (left) {
+        memset(left, 1, cells->count);
+        memcpy(left + cells->count, cells->whole, voxels_of(cells));
+    }
+    return left;
+}
+
+int64_t ms_cut_cells_count(const ms_cut_cells *cells, const uint8_t *left, const ms_ball *ball)
+{
+    return weigh_ball(cells, left, NULL, ball);
+}
+
+int64_t ms_cut_cells_cover(const ms_cut_cells *cells, uint8_t *left, const ms_ball *ball)
+{
+    return weigh_ball(cells, left, left, ball);
+}
+
+void ms_cut_cells_free(ms_cut_cells *cells)
+{
+    if (cells) {
+        free(cells->whole);
+        free(cells->row);
+        free(cells->cell);
+        free(cells);
+    }
+}

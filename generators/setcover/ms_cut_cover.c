@@ -1,0 +1,153 @@
+#include "ms_cut_cover.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/ms_vector.h"
+
+/* A candidate and what it would cover. */
+typedef struct cut_bound {
+    int64_t weight;   /* exact when it was counted, an upper bound before and since */
+    uint32_t counted; /* how many balls had been taken by then, and one; 0: never */
+    int waits;        /* it overlaps no ball taken so far (connected) */
+} cut_bound;
+
+struct ms_cut_cover {
+    const ms_cut_cells *cells;
+    const ms_ball *candidate;
+    size_t count;
+    int connected;
+    uint32_t n_taken;
+    uint8_t *left;    /* ms_cut_cells_left */
+    cut_bound *bound; /* of each candidate */
+    uint32_t *winner; /* a tournament: winner[m] of winner[2 m] and winner[2 m + 1]; the last `leaves` are candidates */
+    size_t leaves;
+};
+
+static int64_t bound_of(const ms_cut_cover *cover, uint32_t c)
+{
+    return c < cover->count && !cover->bound[c].waits ? cover->bound[c].weight : 0;
+}
+
+static uint32_t find_better(const ms_cut_cover *cover, uint32_t a, uint32_t b)
+{
+    const int64_t one = bound_of(cover, a), other = bound_of(cover, b);
+    if (one != other) {
+        return one > other ? a : b;
+    }
+    if (one > 0 && cover->candidate[a].radius != cover->candidate[b].radius) {
+        return cover->candidate[a].radius > cover->candidate[b].radius ? a : b;
+    }
+    return a < b ? a : b;
+}
+
+static void play(ms_cut_cover *cover, size_t match)
+{
+    cover->winner[match] = find_better(cover, cover->winner[2 * match], cover->winner[2 * match + 1]);
+}
+
+/* The bound of a candidate has changed. */
+static void replay(ms_cut_cover *cover, uint32_t c)
+{
+    for (size_t match = (cover->leaves + c) / 2; match > 0; match /= 2) {
+        play(cover, match);
+    }
+}
+
+static int are_cut_neighbours(const ms_ball *a, const ms_ball *b)
+{
+    const double reach = a->radius + b->radius;
+    return ms_squared_distance(a->centre, b->centre) < reach * reach;
+}
+
+/* After the first ball all others wait for one that they overlap. */
+static void admit_cut_neighbours(ms_cut_cover *cover, const ms_ball *ball)
+{
+    for (size_t c = 0; c < cover->count; c++) {
+        cut_bound *one = &cover->bound[c];
+        one->waits = (one->waits || cover->n_taken == 1) && !are_cut_neighbours(&cover->candidate[c], ball);
+    }
+    for (size_t match = cover->leaves - 1; match > 0; match--) {
+        play(cover, match);
+    }
+}
+
+int64_t ms_cut_cover_next(size_t *which, ms_cut_cover *cover)
+{
+    uint32_t best;
+    while (bound_of(cover, best = cover->winner[1]) > 0) {
+        cut_bound *first = &cover->bound[best];
+        const int64_t weight = first->weight;
+        if (first->counted != cover->n_taken + 1) {
+            first->weight = ms_cut_cells_count(cover->cells, cover->left, &cover->candidate[best]);
+            first->counted = cover->n_taken + 1;
+            replay(cover, best);
+            continue;
+        }
+        ms_cut_cells_cover(cover->cells, cover->left, &cover->candidate[best]);
+        first->weight = 0;
+        cover->n_taken++;
+        replay(cover, best);
+        if (cover->connected) {
+            admit_cut_neighbours(cover, &cover->candidate[best]);
+        }
+        *which = best;
+        return weight;
+    }
+    return 0;
+}
+
+/* As much as a ball can hold: its cells lie in a ball larger by a voxel's diagonal. */
+static int64_t find_most(const ms_ball *ball)
+{
+    return ball->radius > 0 ? (int64_t)fmin(4.2 * pow(ball->radius + 1.74, 3) * MS_CUT_WHOLE, 9e18) : 0;
+}
+
+ms_status ms_cut_cover_build(ms_cut_cover **out, const ms_cut_cells *cells, const ms_ball *candidate, size_t count,
+                             int connected, ms_error *err)
+{
+    size_t leaves = 2;
+    *out = NULL;
+    if (count >= UINT32_MAX / 2) {
+        return ms_fail(err, MS_ERR_LIMIT, "%zu candidates for spheres are too many to compare; use fewer cells", count);
+    }
+    while (leaves < count) {
+        leaves *= 2;
+    }
+    ms_cut_cover *cover = calloc(1, sizeof *cover);
+    if (cover) {
+        *cover = (ms_cut_cover){.cells = cells,
+                                .candidate = candidate,
+                                .count = count,
+                                .connected = connected,
+                                .left = ms_cut_cells_left(cells),
+                                .bound = calloc(count + 1, sizeof *cover->bound),
+                                .winner = malloc(2 * leaves * sizeof *cover->winner),
+                                .leaves = leaves};
+    }
+    if (!cover || !cover->left || !cover->bound || !cover->winner) {
+        ms_cut_cover_free(cover);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres; use fewer cells", count);
+    }
+    for (size_t c = 0; c < leaves; c++) {
+        cover->winner[leaves + c] = (uint32_t)c;
+        if (c < count) {
+            cover->bound[c].weight = find_most(&candidate[c]);
+        }
+    }
+    for (size_t match = leaves - 1; match > 0; match--) {
+        play(cover, match);
+    }
+    *out = cover;
+    return MS_OK;
+}
+
+void ms_cut_cover_free(ms_cut_cover *cover)
+{
+    if (cover) {
+        free(cover->left);
+        free(cover->bound);
+        free(cover->winner);
+        free(cover);
+    }
+}
