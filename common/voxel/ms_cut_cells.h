@@ -48,11 +48,11 @@ typedef struct ms_cut_cells {
  * Cost: O(voxels + triangles + cells that they pass through), all cores, the same bits at any number of threads; 1
  * byte a voxel, 16 a cut cell.
  */
-MS_API ms_status ms_cut_cells_build(ms_cut_cells **out, const ms_grid *grid, const ms_mesh *mesh, ms_error *err);
+ms_status ms_cut_cells_build(ms_cut_cells **out, const ms_grid *grid, const ms_mesh *mesh, ms_error *err);
 
 /** What is not covered yet: a byte for each cell, behind them for each voxel; all of it. The caller frees it.
  * NULL without memory. */
-MS_API uint8_t *ms_cut_cells_left(const ms_cut_cells *cells);
+uint8_t *ms_cut_cells_left(const ms_cut_cells *cells);
 
 /**
  * The weight of what is left and whose centroid a ball holds (on its surface counts).
@@ -61,12 +61,12 @@ MS_API uint8_t *ms_cut_cells_left(const ms_cut_cells *cells);
  * @param ball in voxels
  * Cost: a test for each cut cell in the ball, and a byte for each voxel.
  */
-MS_API int64_t ms_cut_cells_count(const ms_cut_cells *cells, const uint8_t *left, const ms_ball *ball);
+int64_t ms_cut_cells_count(const ms_cut_cells *cells, const uint8_t *left, const ms_ball *ball);
 
 /** The same, and covers it. */
-MS_API int64_t ms_cut_cells_cover(const ms_cut_cells *cells, uint8_t *left, const ms_ball *ball);
+int64_t ms_cut_cells_cover(const ms_cut_cells *cells, uint8_t *left, const ms_ball *ball);
 
-MS_API void ms_cut_cells_free(ms_cut_cells *cells);
+void ms_cut_cells_free(ms_cut_cells *cells);
 
 MS_C_END
 
