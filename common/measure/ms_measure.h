@@ -72,7 +72,7 @@ MS_C_BEGIN
       "their weighted mean (Yuan)", "Yuan 4, eps_w", \
       "sum of |I_k(union) - I_k(shape)| / sum of I_k(shape), I_k the principal moments; "  \
       "in JSON `inertia_error.weighted_mean`", "inertia_union", "inertia_error") \
-    X(GOAL, COVERAGE_CUT, coverage_cut, MORE, 5, 1, NULL, NULL, \
+    X(GOAL, COVERAGE_CUT, coverage_cut, MORE, 5, 0, NULL, NULL, \
       "coverage of cut cells", "Yuan 3.1, V_cl / V_p", \
       "the same of cells that the surface cuts: each weighs what is inside, and is covered where its centroid is", \
       NULL, NULL) \

@@ -54,7 +54,7 @@ class Columns(Case):
 
     def test_csv_of_curves(self):
         self.clump()
-        line = "n,eta,dice,coverage,overshoot,coverage_cut"
+        line = "n,eta,dice,coverage,overshoot"
         out = self.mskit("score", "c.csv", "--target", "grain.stl", "--cells", 15, "--curve").out
         self.assertEqual(out.splitlines()[0], line)
         self.mskit("generate", "grain.stl", "-n", 3, "--cells", 15, "-o", "d.csv", "--curve", "k.csv")

@@ -245,7 +245,7 @@ class Resume(Compare):
         """A limit of the file size stands for it: the rows that fit are whole, and the run can go on."""
         def small():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (1500, 1500))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (2800, 2800))
         args = ("compare", "box.obj", "-g", "mss", "-n", "1,2,3,4,5,6", "--cells", "8", "-j", "1")
         result = self.mskit(*args, code=1, preexec_fn=small)
         self.assert_says(result, "compare.csv", "could not be written", "intact")

@@ -84,7 +84,7 @@ static ms_packing make_packing(size_t count, double side)
 /* By all pairs of all spheres. */
 static ms_overlap measure_all(const ms_packing *packing, size_t a, size_t b)
 {
-    ms_overlap overlap = {a, b, -INFINITY, 0, 0};
+    ms_overlap overlap = {a, b, -HUGE_VAL, 0, 0};
     for (size_t i = 0; i < packing->placed[a].clump.n_spheres; i++) {
         for (size_t j = 0; j < packing->placed[b].clump.n_spheres; j++) {
             const ms_sphere s = ms_packing_sphere(&packing->placed[a], i),
