@@ -125,7 +125,7 @@ class Shells(Case):
         ("mskit generate x.stl --max-m", "mskit generate x.stl --max-memory "),
         ("mskit generate x.stl -g vari", "mskit generate x.stl -g variational "),
         ("mskit generate x.stl --rule=c", "mskit generate x.stl --rule=centre "),
-        ("mskit generate x.stl --until cov", "mskit generate x.stl --until coverage="),
+        ("mskit generate x.stl --until dic", "mskit generate x.stl --until dice="),
         ("mskit shape torus fin", "mskit shape torus fineness="),
         ("mskit info gra", "mskit info grain.stl "),
         ("mskit score c.csv --target=gra", "mskit score c.csv --target=grain.stl "),
