@@ -216,10 +216,10 @@ class Runs(Assembly):
     def test_rows_of_other_masses(self):
         self.grains("scan.npy", "-g", "mss", "-n", "9")
         go_on = ("--assembly", "-o", "out", "--resume")
-        self.assert_says(self.mskit("grains", *self.ARGS, *go_on, code=1), "without masses")
+        self.assert_says(self.mskit("grains", *self.ARGS, *go_on, code=1), "another run")
         self.grains(*self.ARGS, out="two")
         self.assert_says(self.mskit("grains", *self.ARGS, "--density", "1000", "--assembly", "-o", "two", "--resume",
-                                    code=1), "another density")
+                                    code=1), "another run")
 
 
 class Scan(Assembly):
