@@ -65,16 +65,9 @@ static ms_status take_mending_flag(int *taken, ms_mesh_mending *mending, const c
     return status;
 }
 
-ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, const char *value, ms_error *err)
+/* Takes a flag if it is one of the grid. */
+static ms_status take_grid_flag(int *taken, ms_input_flags *flags, const char *name, const char *value, ms_error *err)
 {
-    double number;
-    ms_status status = take_mending_flag(taken, &flags->mending, name, value, err);
-    if (!*taken) {
-        status = ms_input_volume_flag(taken, &flags->scan, name, value, err);
-    }
-    if (*taken) {
-        return status;
-    }
     *taken = 1;
     if (strcmp(name, "cells") == 0) {
         return ms_flags_whole(&flags->cells, name, value, 1, MS_GRID_MAX_EXTENT, err);
@@ -91,6 +84,24 @@ ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, con
     if (strcmp(name, "rule") == 0) {
         return parse_rule(&flags->rule, value, err);
     }
+    *taken = 0;
+    return MS_OK;
+}
+
+ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, const char *value, ms_error *err)
+{
+    double number;
+    ms_status status = take_mending_flag(taken, &flags->mending, name, value, err);
+    if (!*taken) {
+        status = ms_input_volume_flag(taken, &flags->scan, name, value, err);
+    }
+    if (!*taken) {
+        status = take_grid_flag(taken, flags, name, value, err);
+    }
+    if (*taken) {
+        return status;
+    }
+    *taken = 1;
     if (strcmp(name, "cut") == 0) {
         flags->cut = 1;
         return MS_OK;

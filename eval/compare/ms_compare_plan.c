@@ -13,20 +13,20 @@ void ms_compare_plan_checksum(char out[20], uint64_t checksum)
     snprintf(out, 20, "%016llx", (unsigned long long)checksum);
 }
 
-ms_compare_row ms_compare_plan_row(const ms_comparison *a, const ms_compare_stage *stage, const ms_method *method,
-                                   double asked, const char *checksum)
+ms_compare_row ms_compare_plan_row(const ms_comparison *comparison, const ms_compare_stage *stage,
+                                   const ms_method *method, double asked, const char *checksum)
 {
     ms_compare_row row = ms_compare_empty();
     row.text[MS_COLUMN_SHAPE] = stage->shape;
     row.text[MS_COLUMN_CHECKSUM] = checksum;
-    row.text[MS_COLUMN_LABEL] = a->label;
+    row.text[MS_COLUMN_LABEL] = comparison->label;
     row.text[MS_COLUMN_GENERATOR] = method->name;
     row.text[MS_COLUMN_OPTIONS] = method->generator ? method->options : ms_file_name(method->options);
     row.number[MS_COLUMN_CELLS] = stage->cells;
     if (method->generator) {
-        row.number[MS_COLUMN_SEED] = a->seed;
+        row.number[MS_COLUMN_SEED] = comparison->seed;
         row.number[MS_COLUMN_ASKED] = asked;
-        row.number[MS_COLUMN_REPEATS] = a->repeats;
+        row.number[MS_COLUMN_REPEATS] = comparison->repeats;
     }
     row.text[MS_COLUMN_VERSION] = MS_VERSION;
     return row;
@@ -149,16 +149,16 @@ static size_t count_runs(const ms_comparison *a)
     return runs;
 }
 
-ms_status ms_compare_plan_make(ms_compare_plan *plan, const ms_comparison *a, const ms_csv *csv, ms_error *err)
+ms_status ms_compare_plan_make(ms_compare_plan *plan, const ms_comparison *comparison, const ms_csv *csv, ms_error *err)
 {
-    const size_t stages = a->n_shapes * a->cells.count;
-    compare_planner p = {.plan = plan, .a = a, .csv = csv};
+    const size_t stages = comparison->n_shapes * comparison->cells.count;
+    compare_planner p = {.plan = plan, .a = comparison, .csv = csv};
     *plan = (ms_compare_plan){.stage = calloc(stages, sizeof *plan->stage),
-                              .run = calloc(stages, count_runs(a) * sizeof *plan->run)};
+                              .run = calloc(stages, count_runs(comparison) * sizeof *plan->run)};
     ms_status status =
         plan->stage && plan->run ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu stages of runs", stages);
-    for (size_t s = 0; s < a->n_shapes && status == MS_OK; s++) {
-        status = plan_shape(&p, a->shape[s], err);
+    for (size_t s = 0; s < comparison->n_shapes && status == MS_OK; s++) {
+        status = plan_shape(&p, comparison->shape[s], err);
     }
     if (status == MS_OK && plan->n_rows < csv->n_rows) {
         status = ms_fail(err, MS_ERR_ARG, "%s: holds %zu rows of another comparison behind these; name another file",

@@ -256,16 +256,16 @@ static ms_status list_charts(ms_files *files, const ms_comparison *a, size_t s, 
     return status == MS_OK ? ms_compare_charts_list(files, a->charts, name, err) : status;
 }
 
-ms_status ms_compare_list_files(ms_files *files, const ms_comparison *a, ms_error *err)
+ms_status ms_compare_list_files(ms_files *files, const ms_comparison *comparison, ms_error *err)
 {
     ms_status status = MS_OK;
-    for (size_t s = 0; s < a->n_shapes && status == MS_OK; s++) {
-        status = ms_files_add_shape(files, a->shape[s], err);
-        if (status == MS_OK && a->charts) {
-            status = list_charts(files, a, s, err);
+    for (size_t s = 0; s < comparison->n_shapes && status == MS_OK; s++) {
+        status = ms_files_add_shape(files, comparison->shape[s], err);
+        if (status == MS_OK && comparison->charts) {
+            status = list_charts(files, comparison, s, err);
         }
     }
-    return status == MS_OK ? ms_methods_list_files(files, &a->methods, err) : status;
+    return status == MS_OK ? ms_methods_list_files(files, &comparison->methods, err) : status;
 }
 
 /* Times are the result where they are charted or the median of several. */
@@ -283,7 +283,7 @@ static ms_status walk_plan(compare_walk *w, ms_error *err)
                             .context = w,
                             .work = work_run,
                             .take = take_rows};
-    w->result = calloc(plan->n_runs + 1, sizeof *w->result); /* of none, too */
+    w->result = calloc(plan->n_runs + 1, sizeof(compare_result *)); /* of none, too */
     if (!w->result) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu runs", plan->n_runs);
     }

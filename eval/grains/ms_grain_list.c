@@ -106,7 +106,7 @@ static ms_status need_source(ms_grain_source **source, ms_grain_list *list, cons
     if (access(path, R_OK) != 0) {
         return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s; check the path", path, strerror(errno));
     }
-    ms_grain_source **grown = realloc(list->source, (list->n_sources + 1) * sizeof *grown);
+    ms_grain_source **grown = realloc(list->source, (list->n_sources + 1) * sizeof(ms_grain_source *));
     list->source = grown ? grown : list->source;
     *source = malloc(sizeof **source);
     if (!grown || !*source) {
@@ -213,7 +213,7 @@ static ms_status need_own(const ms_grain_how **how, const manifest_context *c, c
     if (row->n_flags == 0) {
         return MS_OK;
     }
-    ms_grain_how **grown = realloc(list->own, (list->n_own + 1) * sizeof *grown);
+    ms_grain_how **grown = realloc(list->own, (list->n_own + 1) * sizeof(ms_grain_how *));
     list->own = grown ? grown : list->own;
     ms_grain_how *own = malloc(sizeof *own);
     if (!grown || !own) {
@@ -266,13 +266,13 @@ static int compare_grains(const void *a, const void *b)
 /* Two of one name would write the same files. */
 static ms_status check_names(const ms_grain_list *list, ms_error *err)
 {
-    const ms_grain **sorted = malloc((list->count + 1) * sizeof *sorted);
+    const ms_grain **sorted = malloc((list->count + 1) * sizeof(const ms_grain *));
     ms_status status = sorted ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for the names of the grains");
     for (size_t g = 0; g < list->count && sorted; g++) {
         sorted[g] = &list->grain[g];
     }
     if (sorted) {
-        qsort(sorted, list->count, sizeof *sorted, compare_grains);
+        qsort(sorted, list->count, sizeof(const ms_grain *), compare_grains);
     }
     for (size_t g = 1; g < list->count && status == MS_OK; g++) {
         if (strcmp(sorted[g - 1]->name, sorted[g]->name) == 0) {

@@ -60,7 +60,7 @@ static char *find_way(const char *from, const char *to)
     const char *down = strlen(to) > same ? to + same : "";
     char *way = malloc(3 * up + strlen(down) + 2);
     for (size_t u = 0; u < up && way; u++) {
-        memcpy(way + 3 * u, "../", 3);
+        strcpy(way + 3 * u, "../");
     }
     if (way) {
         sprintf(way + 3 * up, "%s%s", down, down[0] ? "/" : "");
@@ -177,7 +177,7 @@ static ms_status place_row(merge_parts *m, const merge_part *part, char *row, ms
         m->grains = grains;
         strcpy(m->run, run);
         m->row = calloc(grains, sizeof *m->row);
-        m->of = calloc(grains, sizeof *m->of);
+        m->of = calloc(grains, sizeof(const merge_part *));
         if (!m->row || !m->of) {
             return ms_fail(err, MS_ERR_NOMEM, "no memory for the rows of %zu grains", grains);
         }

@@ -215,24 +215,24 @@ class Stability(Case):
             self.skipTest("gnuplot is not installed here")
         rows = self.rows("speck", "cube", "-g", "mss:variant=paper", "-n", "3", "--cells", "8", "--runs", "3", "--perturb",
                          "noise", "--perturb", "seed", "--charts", "charts")
-        stems = ("1-mss-order-gain-all", "1-mss-order-gain-noise")
+        stems = ("1-mss-variant-paper-all", "1-mss-variant-paper-noise")
         self.assertEqual(sorted(os.listdir(self.path("charts"))),
                          sorted(stem + ending for stem in stems for ending in (".dat", ".gp", ".png", ".svg")))
         unchanged = {row["shape"]: float(row["dice"]) for row in rows if row["perturbation"] == "none"}
-        blocks = self.blocks("charts/1-mss-order-gain-all.dat")
+        blocks = self.blocks("charts/1-mss-variant-paper-all.dat")
         self.assertEqual([(name, len(points)) for name, points in blocks], [("none", 2), ("noise", 6), ("seed", 6)])
         for name, points in blocks:
             for (x, y), row in zip(points, [row for row in rows if row["perturbation"] == name], strict=True):
                 self.assert_close(x, unchanged[row["shape"]], 1e-8, "D of the unchanged shape")
                 self.assert_close(y, float(row["dice"]), 1e-8, "D of the changed shape")
-        blocks = self.blocks("charts/1-mss-order-gain-noise.dat")
+        blocks = self.blocks("charts/1-mss-variant-paper-noise.dat")
         self.assertEqual([name for name, _ in blocks], ["speck", "cube"])
         for name, points in blocks:
             own = [row for row in rows if row["shape"] == name and row["perturbation"] == "noise"]
             for (x, y), row in zip(points, own, strict=True):
                 self.assert_close(x, float(row["level"]), 1e-8, "level")
                 self.assert_close(y, float(row["dice"]) / unchanged[name], 1e-8, "ratio")
-        svg = self.read("charts/1-mss-order-gain-noise.svg").decode()
+        svg = self.read("charts/1-mss-variant-paper-noise.svg").decode()
         for word in ("mss:variant=paper", "speck", "cube", "amplitude of the noise / d_eq",
                      "D / D of the unchanged shape"):
             self.assertIn(word, svg)
