@@ -69,6 +69,9 @@ static int compare_voxels(const void *first, const void *second)
 static size_t set_stale_apart(ms_mss_run *m)
 {
     size_t kept = 0;
+    if (m->n_candidates == 0) {
+        return 0;
+    }
     for (size_t c = 0; c < m->n_candidates; c++) {
         if (!ms_mss_maxima_is_stale(&m->field, m->candidates[c].voxel)) {
             const ms_mss_candidate swap = m->candidates[c];
@@ -90,7 +93,9 @@ static ms_status replace_candidates(ms_mss_run *m, size_t stale, const ms_mss_ma
     if (!all) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu maxima; use fewer cells", kept + count);
     }
-    memcpy(all, m->candidates, kept * sizeof *all);
+    if (kept > 0) {
+        memcpy(all, m->candidates, kept * sizeof *all);
+    }
     for (size_t p = 0; p < count; p++) {
         const ms_mss_candidate key = {.voxel = maximum[p].voxel};
         const ms_mss_candidate *before =
