@@ -237,7 +237,8 @@ class Engine(unittest.TestCase):
         self.assertGreater(lowest, -0.02 * clump.reach, "sank into the plane")
         self.assertLess(lowest, clump.reach, "has not fallen")
         i, j, k = clump.three
-        printed = 2e-6 * max(abs(x) for s in spheres for x in s[:3])  # six digits of each of the two places
+        # Six digits are right to 5e-6 of a coordinate at the least; two places have three each.
+        printed = 2 * 3**0.5 * 5e-6 * max(abs(x) for s in spheres for x in s[:3])
         for a, b in ((i, j), (j, k), (k, i)):
             self.assertAlmostEqual(math.dist(spheres[a][:3], spheres[b][:3]),
                                    math.dist(clump.spheres[a][:3], clump.spheres[b][:3]), delta=1e-5 * clump.reach + printed)
