@@ -29,7 +29,7 @@ REFUSED = (
     ("21_bad_header.ply", ("line 2", "format")),
     ("26_points_only.ply", ("no faces", "5 points")),
     ("v1_all_background.npy", ("no label",)),
-    ("v3_grey_float_nan.npy", ("no label", "segment")),
+    ("v3_grey_float_nan.npy", ("no label", "labels of grey values")),
     ("v4_truncated.npy", ("16000", "8872")),
     ("v7_missing_raw.mhd", ("does_not_exist.raw",)),
 )
