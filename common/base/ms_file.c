@@ -369,6 +369,19 @@ ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err)
     return status;
 }
 
+char *ms_file_beside(const char *path, const char *name, size_t length)
+{
+    const char *slash = strrchr(path, '/');
+    const size_t folder = slash && name[0] != '/' ? (size_t)(slash - path) + 1 : 0;
+    char *beside = malloc(folder + length + 1);
+    if (beside) {
+        memcpy(beside, path, folder);
+        memcpy(beside + folder, name, length);
+        beside[folder + length] = '\0';
+    }
+    return beside;
+}
+
 void ms_file_ending(char out[16], const char *path)
 {
     const char *name = strrchr(path, '/');

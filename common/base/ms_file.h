@@ -83,6 +83,14 @@ MS_API ms_status ms_output_open(ms_output *output, const char *path, ms_error *e
  */
 MS_API ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err);
 
+/**
+ * The path of a file that another one names: from the folder of that one, unless it begins at the root.
+ *
+ * @param name   `length` characters
+ * @return the caller frees it; NULL without memory
+ */
+MS_API char *ms_file_beside(const char *path, const char *name, size_t length);
+
 /** The ending of a path after its last dot, in lower case; "" if none or too long for `out`. */
 MS_API void ms_file_ending(char out[16], const char *path);
 

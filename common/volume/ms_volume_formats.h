@@ -104,9 +104,6 @@ ms_status ms_volume_gunzip(ms_bytes *out, const ms_bytes *packed, size_t most, c
 /** The name of the one data file of a header, borrowed; lists and patterns of files are refused. */
 ms_status ms_volume_data_file(ms_word *file, ms_text *value, ms_error *err);
 
-/** Its path, in the folder of the header; the caller frees it; NULL without memory. */
-char *ms_volume_path_beside(const ms_word *file, const char *header);
-
 /**
  * Maps the data file that the present line of a header names, in the folder of the header or below. A path that leads
  * elsewhere, from the root, by "..", or by a symbolic link, is refused.

@@ -97,18 +97,6 @@ static size_t measure_folder(const char *header)
     return slash ? (size_t)(slash + 1 - header) : 0;
 }
 
-char *ms_volume_path_beside(const ms_word *file, const char *header)
-{
-    const size_t folder = measure_folder(header);
-    char *path = malloc(folder + file->length + 1);
-    if (path) {
-        memcpy(path, header, folder);
-        memcpy(path + folder, file->start, file->length);
-        path[folder + file->length] = '\0';
-    }
-    return path;
-}
-
 ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_text *header, ms_error *err)
 {
     ms_error inner = {{0}};
@@ -116,7 +104,7 @@ ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_t
     if (leads_out(file)) {
         return fail_outside(file, header, err);
     }
-    char *path = ms_volume_path_beside(file, header->name);
+    char *path = ms_file_beside(header->name, file->start, file->length);
     if (!path) {
         return ms_fail(err, MS_ERR_NOMEM, "%s: no memory to read its data file", header->name);
     }

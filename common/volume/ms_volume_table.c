@@ -115,7 +115,7 @@ ms_status ms_volume_data_path(char **data, const char *path, ms_error *err)
         return MS_OK;
     }
     if (found->find_data(&file, &bytes, path, NULL) == MS_OK && file.length > 0) {
-        *data = ms_volume_path_beside(&file, path);
+        *data = ms_file_beside(path, file.start, file.length);
     }
     ms_file_free(&bytes);
     return file.length == 0 || *data ? MS_OK

@@ -204,7 +204,7 @@ static ms_status report_sum(const ms_grains_sum *sum, const ms_grain_assembly *a
                                err);
     }
     printf("wrote %s: %zu grains, %zu with a clump, %.0f spheres in all", table, sum->grains, sum->ok, sum->spheres);
-    printf("%s%zu left out, %zu failed%s\n", "; ", sum->left_out, sum->failed,
+    printf("; %zu left out, %zu failed%s\n", sum->left_out, sum->failed,
            sum->failed + sum->left_out ? ": see the column cause" : "");
     if (assembly) {
         print_assembly(assembly, a->folder);

@@ -75,19 +75,6 @@ static ms_status read_label(uint32_t *label, const manifest_reader *m, const cha
     return MS_OK;
 }
 
-/* The path of a shape, from where the program runs. The caller frees it; NULL without memory. */
-static char *join_path(const char *manifest, const char *shape)
-{
-    const char *slash = strrchr(manifest, '/');
-    const size_t folder = slash && shape[0] != '/' ? (size_t)(slash - manifest) + 1 : 0;
-    char *path = malloc(folder + strlen(shape) + 1);
-    if (path) {
-        memcpy(path, manifest, folder);
-        strcpy(path + folder, shape);
-    }
-    return path;
-}
-
 /* The fields of a row; its path is still that of the file. */
 static ms_status read_fields(ms_grain_manifest_row *row, const manifest_reader *m, char **field, ms_error *err)
 {
@@ -124,7 +111,7 @@ static ms_status read_row(const manifest_reader *m, char *line,
     if (status != MS_OK) {
         return status;
     }
-    char *path = join_path(m->path, row.path);
+    char *path = ms_file_beside(m->path, row.path, strlen(row.path));
     row.path = path;
     status = path ? take(context, &row, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the rows of %s", m->path);
     free(path);

@@ -58,20 +58,6 @@ static ms_status read_header(int *columns, ms_text *text, ms_error *err)
                                 ms_text_quote(&line).text);
 }
 
-/* The path of a shape, from where the program runs. The caller frees it; NULL without memory. */
-static char *join(const char *manifest, const ms_word *shape)
-{
-    const char *slash = strrchr(manifest, '/');
-    const size_t folder = slash && shape->start[0] != '/' ? (size_t)(slash - manifest) + 1 : 0;
-    char *path = malloc(folder + shape->length + 1);
-    if (path) {
-        memcpy(path, manifest, folder);
-        memcpy(path + folder, shape->start, shape->length);
-        path[folder + shape->length] = 0;
-    }
-    return path;
-}
-
 static ms_status check_shape(const ms_manifest *manifest, const char *path, const ms_text *text, ms_error *err)
 {
     for (size_t r = 0; r < manifest->count; r++) {
@@ -126,7 +112,8 @@ static ms_status read_row(ms_manifest *manifest, int columns, ms_text *text, ms_
     if (manifest->count == MS_MANIFEST_MAX_SHAPES) {
         return ms_text_fail(err, text, "more than %d shapes", MS_MANIFEST_MAX_SHAPES);
     }
-    ms_manifest_row row = {.path = join(text->name, &field[SHAPE]), .tolerance = (double)NAN};
+    ms_manifest_row row = {.path = ms_file_beside(text->name, field[SHAPE].start, field[SHAPE].length),
+                           .tolerance = (double)NAN};
     if (!row.path) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu shapes", manifest->count + 1);
     }

@@ -96,8 +96,8 @@ class Progress(Case):
     def test_commands_of_many_runs(self):
         grain = self.shape("grain")
         run = ("-n", "40", "--cells", "60", "-j", "1")
-        lines = self.lines("compare", grain, "-g", "variational", "-g", "fcm", *run[2:], "-n", "30,40")
-        self.assert_drawn(lines, r"^grain.stl fcm: .*, \d+ s$", r"^2 of 4 runs, \d+ s left$")
+        lines = self.lines("compare", grain, "-g", "variational", "-g", "mss", "-n", "240,250", "--cells", "110", "-j", "1")
+        self.assert_drawn(lines, r"^grain.stl variational: fit of .* s left$", r"^2 of 3 runs, \d+ s left$")
         lines = self.lines("stability", grain, "-g", "variational", *run, "--perturb", "noise", "--runs", "3")
         self.assert_drawn(lines, r"^2 of 4 runs, \d+ s left$")
         self.shape("grain", "seed=2", name="other.stl")
