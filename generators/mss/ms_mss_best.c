@@ -15,7 +15,7 @@ static const double LEAST_OVER_E = -0.5, FIRST_OVER_E = 0.25, MOST_OVER_E = 1, R
 static const double SHARE = 0.35;
 
 /* w, and delta_min in voxels, to begin with, where they are left to us. With w = 1 smooth bodies run out of maxima that
- * are worth their sphere and end above other codes; 3 to 9 differ by some percent. */
+ * are worth their sphere. */
 static const double FIRST_BOOST = 5, LAST_BOOST = 40, FIRST_SPACING = 3;
 
 /* Half the diagonal of a voxel. */

@@ -5,7 +5,7 @@
 
 #include "base/ms_vector.h"
 
-/* Spheres larger than the mean radius times this are few. Of the time alone: 1.2 to 2.5 no difference seen. */
+/* Spheres larger than the mean radius times this are few. It decides of the time alone. */
 static const double LARGE = 1.5;
 
 /* Of rounding to float, in radii. */

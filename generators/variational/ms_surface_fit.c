@@ -8,28 +8,25 @@
 #include "ms_cholesky.h"
 #include "ms_exposed.h"
 
-/* D below: femur with 70 spheres and bunny with 30, 60 cells, mean of two seeds; 0.0210 and 0.0409 as they are. */
-
-/* Ridge added to the normal equations, as part of the sum of weights. 1e-5: 0.0213, 0.0409; 1e-2: 0.0209, 0.0407. */
+/* Ridge added to the normal equations, as part of the sum of weights: a cap that is nearly flat does not tell a move
+ * of its centre from a change of its radius. */
 static const double RIDGE = 1e-3;
 
-/* No step is longer than this part of the radius. 0.1: 0.0209, 0.0409; 1: 0.0209, 0.0409: not sensitive. */
+/* No step is longer than this part of the radius: the equations are linear. */
 static const double LONGEST_STEP = 0.25;
 
-/* Part of the last step that is made again: chains of spheres settle sooner. 0: 0.0208, 0.0408; 0.8: 0.0210, 0.0408: no
- * gain was seen on these two. */
+/* Part of the last step that is made again: chains of spheres settle sooner. */
 static const double MOMENTUM = 0.5;
 
-/* Weight of places that stick out farther than is allowed. Inscribed, as is 0.0518, 0.0830; 1: 0.0544, 0.0886; 30:
- * 0.0512, 0.0837. */
+/* Weight of places that stick out farther than is allowed: what still does so after the fit is cut away, which costs
+ * more than to fit by it. */
 static const double STIFF = 1000;
 
-/* Distances below this, in voxels, weigh the same. 0.05: 0.0208, 0.0408; 1: 0.0216, 0.0412. */
+/* Distances below this, in voxels, weigh the same: 1 / |phi| has to be bounded. */
 static const double NEAR = 0.25;
 
 /* Part of the points of the first level that have to be exposed, or the next level with twice as many is taken; above
- * the other, the one before. 0.25, 0.6: 0.0212 as here, in 1.2 times the time; 0.06, 0.15: 0.0212, the bunny 0.0451 for
- * 0.0450. */
+ * the other, the one before. More take longer. */
 static const double ENOUGH = 0.12, PLENTY = 0.3;
 
 /* The steps that the spheres want to make. */

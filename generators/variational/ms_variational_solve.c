@@ -14,45 +14,36 @@
 #include "ms_surface_tally.h"
 #include "ms_variational_start.h"
 
-/* What was measured at the numbers below: mean D over four or five seeds of a femur with 70 spheres and a bunny with
- * 30, at 100 cells, one thread. 0.0212 and 0.0417 as they are. */
-
-/* Spheres at the start: so many times those asked for, and some more, with a cover to start from that is a quarter
- * finer than it was: 1.25 and 2 more: 0.0212, 0.0450; 1.15 and 12: 0.0213, 0.0418; 1.15 and 20: 0.0215, 0.0421; 1.25
- * and 8: 0.0214, 0.0432. Which is best depends on the shape. */
+/* Spheres at the start: so many times those asked for, and some more, without which few spheres of a rough shape have
+ * little to be chosen from. Which numbers are best depends on the shape. */
 static const double SURPLUS = 1.25;
 enum { MORE = 12 };
 
-/* Part of the surplus that is dropped at a time. 0.13: 0.0216, 0.0432. */
+/* Part of the surplus that is dropped at a time: what goes at once is chosen without knowing of the rest. */
 static const double DROP = 0.1;
 
-/* Part of the spheres that a round adds, one round after the other: what one cannot better, another may.
- * Effort 2 at 60 cells, one seed: 0.0209 and 0.0405 in turn, 0.0209 and 0.0401 to 0.0405 with one of them alone: no
- * gain was seen on these two. */
+/* Part of the spheres that a round adds, one round after the other: what one cannot better, another may. */
 static const double ADD[] = {0.1, 0.05, 0.2, 0.025};
 enum { ADDS = sizeof ADD / sizeof *ADD };
 
-/* Radii that become smaller, in voxels, say nothing about the shape. 0.1 or 1: not a bit of difference there. */
+/* Radii that become smaller, in voxels, say nothing about the shape. */
 static const double LEAST_RADIUS = 0.5;
 
-/* Of the field at most, in voxels. By 1 at 150 cells: as good, in 1.8 to 2.1 times the time; by 4: as good to 0.5 %, in
- * 0.8 of it. */
+/* Of the field at most, in voxels: its look-up is off by far less than a voxel, and finer ones take longer. */
 enum { FIELD_STEP = 2 };
 
 /* Mean distance between the surfaces of spheres and shape, in voxels, below which voxels are too coarse: the field is
  * looked up by cubic polynomials, and the mismatch is the one by the exposed surface. */
 static const double FINE = 0.1;
 
-/* Of the fits, and of the search within bounds. Twice as many in the first two: 0.0211; 100 and 60 in the last two: D
- * within 0.5 %. 10 rounds of the search with protrusion 0: D 0.0507 and not 0.0502, 40: the same as 20. */
+/* Of the fits, and of the search within bounds: so many that more change little. */
 enum { START_STEPS = 40, DROP_STEPS = 15, LONG_STEPS = 80, LAST_STEPS = 50, SEARCH_ROUNDS = 20 };
 
-/* Of idle spheres. Ellipsoid with 100 spheres at 60 cells: none 0.00049 in 0.71 s, three 0.00048 in 0.95 s. */
+/* Of idle spheres: those put elsewhere may come to be idle there, too. */
 enum { REPAIRS = 3 };
 
-/* A sphere whose centre is nearer to a plane of symmetry, as part of its radius, moves onto it. With symmetry xyz,
- * 40 spheres: without, an ellipsoid has D 0.18 and not 0.0017, a tablet 0.031 and not 0.028; 0.15 and 0.6: within 5
- * %. */
+/* A sphere whose centre is nearer to a plane of symmetry, as part of its radius, moves onto it: it and its
+ * image would be two spheres for one place. */
 static const double SNAP = 0.3;
 
 /* A run for one number of spheres. */

@@ -6,16 +6,13 @@
 #include "shared/ms_cover.h"
 
 /* A voxel lies on the ridge unless the distance rises by this much of the way to a neighbour: no
- * direction is more than 27 degrees from one. Femur with 70 and bunny with 30 spheres, 60 cells, mean of two seeds:
- * 0.0210, 0.0428; 0.7: 0.0210, 0.0429; 0.95: the same spheres. */
+ * direction is more than 27 degrees from one. */
 static const double RISING = 0.85;
 
-/* Coarse voxels per edge of the cube that is a sphere's share of the volume, about. With 8 the bunny has 0.0439 by 30
- * spheres, with 12 0.0418. */
+/* Coarse voxels per edge of the cube that is a sphere's share of the volume, about. */
 static const double RESOLUTION = 10;
 
-/* Of the coarse grid at most, in voxels. At 250 cells, by 2 and not 4: 0.0213 as before in 6.2 s and not 3.0, and
- * 0.0413 and not 0.0443 in 4.4 and not 2.3. */
+/* Of the coarse grid at most, in voxels. A finer one may cover better, and takes longer. */
 enum { MAX_STEP = 4 };
 
 int ms_variational_start_step(const ms_target *target, size_t n)
@@ -26,7 +23,7 @@ int ms_variational_start_step(const ms_target *target, size_t n)
         deepest = fmax(deepest, (double)target->distance[v]);
     }
     const double step = fmin(cbrt((double)target->voxels / (double)n) / RESOLUTION, deepest / 4);
-    /* A cover by all voxels takes up to ten times as long as by every second one, and gains 3 % at most. */
+    /* A cover by all voxels takes many times as long as by every second one, and gains little. */
     return step < 1.5 ? 1 : (int)fmin(fmax(step, 2), MAX_STEP);
 }
 
