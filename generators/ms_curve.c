@@ -31,6 +31,16 @@ static void free_clumps(ms_clump *each, size_t count)
     }
 }
 
+/* What a run for one number of spheres has of that for all; it says no stage: the share told is that of all runs. */
+static ms_run copy_for_one(const ms_run *run, const ms_settings *settings)
+{
+    ms_run one = *run;
+    one.settings = settings;
+    one.stop = (ms_stop){.radius = run->stop.radius};
+    one.stage = NULL;
+    return one;
+}
+
 /*
  * A run for each number of spheres, from the largest down. Where a generator gives fewer spheres than asked for, their
  * score stands for both numbers. Without `each` a clump is freed when the next has started from it.
@@ -39,15 +49,11 @@ static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump
                           const ms_run *run, size_t max_voxels, ms_error *err)
 {
     ms_settings defaults = {0}, settings;
-    ms_run one = *run;
+    ms_run one = copy_for_one(run, &settings);
     ms_clump last = {0};
     const ms_clump *larger = clump;
     ms_score score;
     ms_stop_reason reason;
-    one.settings = &settings;
-    one.stop = (ms_stop){0};
-    one.stop.radius = run->stop.radius;
-    one.stage = NULL; /* the share told is that of all runs */
     ms_status status = ms_option_settings_init(&defaults, generator->options, err);
     settings = run->settings ? *run->settings : defaults;
     if (status == MS_OK) {

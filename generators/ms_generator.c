@@ -60,12 +60,9 @@ int ms_generator_is_nested(const ms_generator *generator, const ms_settings *set
     return generator->nested && settings->value[flag - generator->options] == 0;
 }
 
-ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator, const ms_run *run,
-                           ms_error *err)
+static ms_status check_run(const ms_generator *generator, const ms_run *run, ms_error *err)
 {
     const ms_stop *stop = &run->stop;
-    memset(clump, 0, sizeof *clump);
-    *reason = MS_STOP_NOT;
     if (!run->target || (run->settings && run->settings->options != generator->options)) {
         return ms_fail(err, MS_ERR_ARG, "%s needs a target, and settings of its own options only", generator->name);
     }
@@ -75,12 +72,23 @@ ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_gen
     if (stop->spheres > MS_CLUMP_MAX_SPHERES) {
         return ms_fail(err, MS_ERR_LIMIT, "%zu spheres are more than %d", stop->spheres, MS_CLUMP_MAX_SPHERES);
     }
+    return MS_OK;
+}
+
+ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator, const ms_run *run,
+                           ms_error *err)
+{
+    memset(clump, 0, sizeof *clump);
+    *reason = MS_STOP_NOT;
+    ms_status status = check_run(generator, run, err);
+    if (status != MS_OK) {
+        return status;
+    }
     ms_settings defaults = {0};
     ms_run all = *run;
     ms_target cut = *run->target;
     ms_cut_cells *cells = NULL;
-    ms_status status = MS_OK;
-    if (stop->coverage_cut > 0 && !cut.grid.cells) {
+    if (run->stop.coverage_cut > 0 && !cut.grid.cells) {
         status = ms_cut_cells_build(&cells, &cut.grid, cut.closed ? cut.mesh : NULL, err);
         cut.grid.cells = cells;
         all.target = &cut;

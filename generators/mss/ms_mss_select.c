@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/ms_vector.h"
+#include "shared/ms_overlap.h"
 
 /* Ranks and distances of mirror images agree but for rounding. */
 static const double EQUAL = 1e-6;
@@ -93,8 +94,7 @@ static void keep_apart_now(ms_mss_candidate *c, size_t count, const ms_ball *sph
 static void put_off_overlapping(ms_mss_candidate *c, size_t count, const ms_ball *sphere)
 {
     for (size_t m = 0; m < count; m++) {
-        const double reach = c[m].ball.radius + sphere->radius;
-        if (ms_squared_distance(c[m].ball.centre, sphere->centre) < reach * reach) {
+        if (ms_overlap(&c[m].ball, sphere)) {
             c[m].now = 0;
         }
     }

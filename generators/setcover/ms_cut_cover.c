@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/ms_vector.h"
+#include "shared/ms_overlap.h"
 
 /* A candidate and what it would cover. */
 typedef struct cut_bound {
@@ -54,18 +54,12 @@ static void replay(ms_cut_cover *cover, uint32_t c)
     }
 }
 
-static int are_cut_neighbours(const ms_ball *a, const ms_ball *b)
-{
-    const double reach = a->radius + b->radius;
-    return ms_squared_distance(a->centre, b->centre) < reach * reach;
-}
-
 /* After the first ball all others wait for one that they overlap. */
 static void admit_cut_neighbours(ms_cut_cover *cover, const ms_ball *ball)
 {
     for (size_t c = 0; c < cover->count; c++) {
         cut_bound *one = &cover->bound[c];
-        one->waits = (one->waits || cover->n_taken == 1) && !are_cut_neighbours(&cover->candidate[c], ball);
+        one->waits = (one->waits || cover->n_taken == 1) && !ms_overlap(&cover->candidate[c], ball);
     }
     for (size_t match = cover->leaves - 1; match > 0; match--) {
         play(cover, match);

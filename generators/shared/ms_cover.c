@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ms_vector.h"
 #include "ms_cover_bits.h"
+#include "ms_overlap.h"
 
 enum { MOST_AT_ONCE = 64 };
 
@@ -172,17 +172,11 @@ static void drop_first(ms_cover *cover)
     }
 }
 
-static int do_overlap(const ms_ball *a, const ms_ball *b)
-{
-    const double reach = a->radius + b->radius;
-    return ms_squared_distance(a->centre, b->centre) < reach * reach;
-}
-
 /* Those that wait and overlap the ball enter the heap. */
 static void admit_overlapping(ms_cover *cover, const ms_ball *ball)
 {
     for (size_t e = cover->n_heap; e < cover->n_entries; e++) {
-        if (do_overlap(&cover->candidate[cover->entry[e].index], ball)) {
+        if (ms_overlap(&cover->candidate[cover->entry[e].index], ball)) {
             const heap_entry swap = cover->entry[e];
             cover->entry[e] = cover->entry[cover->n_heap];
             cover->entry[cover->n_heap] = swap;

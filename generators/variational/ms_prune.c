@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/ms_vector.h"
 #include "ms_surface_tally.h"
+#include "shared/ms_overlap.h"
 
 /* Voxels of the view up to which a count says less than the exposed surface. */
 static const double FEW = 100;
@@ -120,12 +120,6 @@ static void move_nearest_onto_plane(ms_ball *ball, size_t count, const ms_mirror
     }
 }
 
-static int do_dropped_overlap(const ms_ball *a, const ms_ball *b)
-{
-    const double reach = a->radius + b->radius;
-    return ms_squared_distance(a->centre, b->centre) < reach * reach;
-}
-
 /* The cheapest sphere that overlaps none of those dropped already and has no more than that many images. */
 static size_t find_cheapest(const ms_ball *ball, size_t count, const double *loss, size_t images, const ms_mirror *m,
                             const ms_ball *dropped, size_t n_dropped)
@@ -134,7 +128,7 @@ static size_t find_cheapest(const ms_ball *ball, size_t count, const double *los
     for (size_t b = 0; b < count; b++) {
         int passed = (best != SIZE_MAX && loss[b] >= loss[best]) || ms_mirror_images(m, &ball[b]) > images;
         for (size_t d = 0; d < n_dropped && !passed; d++) {
-            passed = do_dropped_overlap(&ball[b], &dropped[d]);
+            passed = ms_overlap(&ball[b], &dropped[d]);
         }
         if (!passed) {
             best = b;
