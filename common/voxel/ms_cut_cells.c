@@ -328,14 +328,15 @@ static void cut_plane(cut_worker *w, plane_cells *out, size_t *row_end, const pl
 static int cut_planes(plane_cells *planes, ms_cut_cells *cells, const ms_grid *grid, const ms_mesh *mesh)
 {
     plane_lists lists = {0};
-    int failed = !list_triangles(&lists, grid, mesh);
+    const int listed = list_triangles(&lists, grid, mesh);
+    int failed = !listed;
 #pragma omp parallel reduction(| : failed) if (ms_grid_voxels(grid) >= MS_GRID_THREADS_FROM)
     {
         cut_worker w = {.grid = grid,
                         .whole = cells->whole,
                         .mesh = mesh,
                         .fine = {2 * grid->n[0], 2 * grid->n[1]},
-                        .failed = failed};
+                        .failed = !listed}; /* of `failed` each thread has its own, which is 0 here */
         w.piece_of = malloc((size_t)w.fine[0] * (size_t)w.fine[1] * 2 * sizeof *w.piece_of);
         w.failed |= !w.piece_of;
 #pragma omp for schedule(dynamic, 1)
