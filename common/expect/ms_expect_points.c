@@ -58,12 +58,7 @@ static void order_triangles(curve_place *order, const ms_mesh *mesh)
 static void cross_triangle(double out[3], const ms_mesh *mesh, size_t triangle)
 {
     const uint32_t *corner = mesh->triangle[triangle];
-    double u[3], v[3];
-    for (int a = 0; a < 3; a++) {
-        u[a] = mesh->vertex[corner[1]][a] - mesh->vertex[corner[0]][a];
-        v[a] = mesh->vertex[corner[2]][a] - mesh->vertex[corner[0]][a];
-    }
-    ms_cross(out, u, v);
+    ms_vector_triangle(out, mesh->vertex[corner[0]], mesh->vertex[corner[1]], mesh->vertex[corner[2]]);
 }
 
 /* The triangles at vertex v are triangle[start[v]] to triangle[start[v + 1] - 1]. */

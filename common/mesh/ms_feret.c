@@ -63,21 +63,16 @@ static void try_direction(calipers *c, const double direction[3])
 /* @return 0 for a triangle without area */
 static int find_facet_normal(double normal[3], const ms_mesh *mesh, size_t triangle)
 {
-    double u[3], v[3];
     const uint32_t *t = mesh->triangle[triangle];
-    for (int a = 0; a < 3; a++) {
-        u[a] = mesh->vertex[t[1]][a] - mesh->vertex[t[0]][a];
-        v[a] = mesh->vertex[t[2]][a] - mesh->vertex[t[0]][a];
-    }
-    ms_cross(normal, u, v);
+    const double *a = mesh->vertex[t[0]], *b = mesh->vertex[t[1]], *c = mesh->vertex[t[2]];
+    ms_vector_triangle(normal, a, b, c);
     const double length = sqrt(ms_dot(normal, normal));
-    const double size = sqrt(fmax(ms_dot(u, u), ms_dot(v, v)));
-    if (!(length > 1e-12 * size * size)) {
+    if (!(length > 1e-12 * fmax(ms_squared_distance(a, b), ms_squared_distance(a, c)))) {
         memset(normal, 0, 3 * sizeof *normal);
         return 0;
     }
-    for (int a = 0; a < 3; a++) {
-        normal[a] /= length;
+    for (int k = 0; k < 3; k++) {
+        normal[k] /= length;
     }
     return 1;
 }

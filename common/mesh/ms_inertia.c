@@ -160,15 +160,9 @@ double ms_mesh_area(const ms_mesh *mesh)
     sum area = {0};
     for (size_t t = 0; t < mesh->n_triangles; t++) {
         const uint32_t *corner = mesh->triangle[t];
-        double ab[3], ac[3];
-        for (int k = 0; k < 3; k++) {
-            ab[k] = mesh->vertex[corner[1]][k] - mesh->vertex[corner[0]][k];
-            ac[k] = mesh->vertex[corner[2]][k] - mesh->vertex[corner[0]][k];
-        }
-        double x = ab[1] * ac[2] - ab[2] * ac[1];
-        double y = ab[2] * ac[0] - ab[0] * ac[2];
-        double z = ab[0] * ac[1] - ab[1] * ac[0];
-        add_term(&area, sqrt(x * x + y * y + z * z) / 2);
+        double cross[3];
+        ms_vector_triangle(cross, mesh->vertex[corner[0]], mesh->vertex[corner[1]], mesh->vertex[corner[2]]);
+        add_term(&area, sqrt(ms_dot(cross, cross)) / 2);
     }
     return read_sum(&area);
 }

@@ -42,6 +42,12 @@ static inline uint32_t ms_side_opposite(const ms_mesh *mesh, uint32_t side)
     return mesh->triangle[side / 3][(side % 3 + 2) % 3];
 }
 
+/** Nonzero if an odd number of triangles meet at the edge. */
+static inline int ms_mesh_edges_is_open(const ms_edges *edges, size_t e)
+{
+    return (edges->start[e + 1] - edges->start[e]) % 2 == 1;
+}
+
 /** Nonzero if the side runs from the vertex of lower number to the other. */
 static inline int ms_side_rises(const ms_mesh *mesh, uint32_t side)
 {

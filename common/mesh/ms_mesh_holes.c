@@ -31,7 +31,7 @@ static size_t count_open(uint32_t *first, const ms_mesh *mesh, const ms_edges *e
     size_t n = 0;
     for (size_t e = 0; e < edges->n; e++) {
         const uint32_t side = edges->side[edges->start[e]];
-        if ((edges->start[e + 1] - edges->start[e]) % 2 == 1) {
+        if (ms_mesh_edges_is_open(edges, e)) {
             first[ms_mesh_edges_side_from(mesh, side) + 1]++;
             first[ms_side_to(mesh, side) + 1]++;
             n++;
@@ -48,7 +48,7 @@ static void list_open(rim_walk *w, const ms_edges *edges)
 {
     for (size_t e = 0; e < edges->n; e++) {
         const uint32_t side = edges->side[edges->start[e]];
-        if ((edges->start[e + 1] - edges->start[e]) % 2 == 1) {
+        if (ms_mesh_edges_is_open(edges, e)) {
             const uint32_t from = ms_mesh_edges_side_from(w->mesh, side), to = ms_side_to(w->mesh, side);
             const uint32_t a = w->first[from] + w->place[from]++, b = w->first[to] + w->place[to]++;
             w->rim[a] = (rim){.side = side, .twin = b, .other = to};

@@ -176,7 +176,7 @@ static int is_open_shell(const ms_shell *shell, const shell_walk *w, const ms_ed
     for (uint32_t i = 0; i < shell->n && !open; i++) {
         for (uint32_t side = 3 * w->shells.order[shell->first + i], k = 0; k < 3; k++) {
             const uint32_t e = edges->edge_of[side + k];
-            open |= (edges->start[e + 1] - edges->start[e]) % 2 == 1;
+            open |= ms_mesh_edges_is_open(edges, e);
         }
     }
     return open;

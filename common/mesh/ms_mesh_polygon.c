@@ -25,12 +25,8 @@ static void find_normal(double normal[3], const uint32_t (*fan)[3], size_t n, co
 {
     normal[0] = normal[1] = normal[2] = 0;
     for (size_t t = 0; t < n; t++) {
-        double ab[3], ac[3], cross[3];
-        for (int k = 0; k < 3; k++) {
-            ab[k] = vertex[fan[t][1]][k] - vertex[fan[t][0]][k];
-            ac[k] = vertex[fan[t][2]][k] - vertex[fan[t][0]][k];
-        }
-        ms_cross(cross, ab, ac);
+        double cross[3];
+        ms_vector_triangle(cross, vertex[fan[t][0]], vertex[fan[t][1]], vertex[fan[t][2]]);
         for (int k = 0; k < 3; k++) {
             normal[k] += cross[k];
         }

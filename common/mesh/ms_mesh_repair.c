@@ -320,7 +320,7 @@ static int has_odd_edge(const ms_edges *edges)
 {
     int odd = 0;
     for (size_t e = 0; e < edges->n && !odd; e++) {
-        odd = (edges->start[e + 1] - edges->start[e]) % 2 == 1;
+        odd = ms_mesh_edges_is_open(edges, e);
     }
     return odd;
 }

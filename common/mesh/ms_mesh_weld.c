@@ -60,11 +60,6 @@ static size_t hash_cell(const double cell[3])
     return (size_t)hash;
 }
 
-static int is_open(const ms_edges *edges, size_t e)
-{
-    return (edges->start[e + 1] - edges->start[e]) % 2 == 1;
-}
-
 /* Marks the vertices of open edges in `number`, and counts them. */
 static uint32_t mark_open(uint32_t *number, const ms_mesh *mesh, const ms_edges *edges)
 {
@@ -73,7 +68,7 @@ static uint32_t mark_open(uint32_t *number, const ms_mesh *mesh, const ms_edges 
     for (size_t e = 0; e < edges->n; e++) {
         const uint32_t side = edges->side[edges->start[e]];
         const uint32_t end[2] = {ms_mesh_edges_side_from(mesh, side), ms_side_to(mesh, side)};
-        for (int k = 0; k < 2 && is_open(edges, e); k++) {
+        for (int k = 0; k < 2 && ms_mesh_edges_is_open(edges, e); k++) {
             n += number[end[k]] == NONE;
             number[end[k]] = 0;
         }

@@ -5,10 +5,12 @@
 
 enum { FIRST_SLOTS = 256 };
 
-/* Multiplicative hashing (Knuth, vol. 3, 6.4); n_slots is a power of two. */
+/* Multiplicative hashing (Knuth, vol. 3, 6.4); n_slots is a power of two. The high bits of the product depend on all
+ * of the label, the low ones on its low ones alone. */
 static size_t hash_label(const ms_labels *labels, uint32_t label)
 {
-    return (size_t)(label * 2654435761u) & (labels->n_slots - 1);
+    const uint32_t product = label * 2654435761u;
+    return (size_t)(product ^ product >> 16) & (labels->n_slots - 1);
 }
 
 /* Where a label stands or would stand. */

@@ -28,7 +28,10 @@ static ms_status finish(ms_scan *scan, const ms_bytes *bytes, const ms_scan_opti
     const size_t size = store->stored.header.sample.size;
     set_spacing(&store->stored.header, options->spacing);
     store->source = find_source(store, bytes);
-    ms_status status = ms_scan_store_lattice(scan, err);
+    ms_status status = ms_volume_check_geometry(&store->stored.header, store->path, err);
+    if (status == MS_OK) {
+        status = ms_scan_store_lattice(scan, err);
+    }
     if (status == MS_OK && options->values != MS_SCAN_LABELS) {
         status = ms_scan_store_segment(scan, options, max_voxels, err);
     }

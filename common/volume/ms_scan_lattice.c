@@ -8,6 +8,9 @@
 /* Spacings that programs have written with six digits still count as equal. */
 #define CUBE_TOLERANCE 1e-5
 
+/* Along an axis whose voxels are replaced by cubes: the header of a small file can claim edges of any ratio. */
+enum { MOST_CUBES = 1 << 22 };
+
 /* One axis of the file. */
 typedef struct file_axis {
     size_t n, stride; /* voxels, and bytes from one to the next */
@@ -79,7 +82,7 @@ ms_status ms_scan_store_lattice(ms_scan *scan, ms_error *err)
         const file_axis axis = describe_axis(header, a);
         const double length = axis.spacing * (double)axis.n;
         const double n = scan->is_resampled ? fmax(1, round(length / scan->spacing)) : (double)axis.n;
-        if (!(n <= INT_MAX)) {
+        if (!(n <= (scan->is_resampled ? MOST_CUBES : INT_MAX))) {
             return ms_fail(err, MS_ERR_LIMIT,
                            "%s: its voxels are %g x %g x %g, which makes %.3g cubes along one axis; resample it",
                            scan->store->path, s[0], s[1], s[2], n);

@@ -7,7 +7,8 @@
 
 typedef enum ms_volume_coding { MS_CODING_RAW, MS_CODING_DEFLATE, MS_CODING_TEXT } ms_volume_coding;
 
-/** What the header of any format says; filled by its parser and believed only after the checks of ms_volume_store. */
+/** What the header of any format says; filled by its parser and believed only after the checks of ms_volume_store, and
+ * its geometry after those of ms_volume_check_geometry. */
 typedef struct ms_volume_header {
     int64_t n[3]; /* along the axes of the file; the first is the fastest in memory */
     double spacing[3];
@@ -80,6 +81,9 @@ int ms_volume_header_set_axes(ms_volume_header *header, const double direction[3
  */
 ms_status ms_volume_store(ms_stored *stored, const ms_volume_header *header, const uint8_t *data, size_t size,
                           const char *path, ms_error *err);
+
+/** Spacings and origin, once they are those that count. @return MS_OK; MS_ERR_FORMAT */
+ms_status ms_volume_check_geometry(const ms_volume_header *header, const char *path, ms_error *err);
 
 /** Nonzero if this machine stores the highest byte first. */
 int ms_volume_is_big_endian(void);

@@ -40,7 +40,7 @@ ms_status ms_volume_data_size(size_t *size, const ms_volume_header *header, cons
     return MS_OK;
 }
 
-static ms_status check_geometry(const ms_volume_header *header, const char *path, ms_error *err)
+ms_status ms_volume_check_geometry(const ms_volume_header *header, const char *path, ms_error *err)
 {
     for (int axis = 0; axis < 3; axis++) {
         const double spacing = header->spacing[axis], origin = header->origin[header->axis[axis]];
@@ -175,9 +175,6 @@ ms_status ms_volume_store(ms_stored *stored, const ms_volume_header *header, con
     size_t data_size = 0;
     *stored = (ms_stored){.header = *header};
     ms_status status = ms_volume_data_size(&data_size, header, path, err);
-    if (!status) {
-        status = check_geometry(header, path, err);
-    }
     if (!status) {
         status = unpack(stored, data, size, data_size, path, err);
     }

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/ms_vector.h"
+
 /* How far the voxels are that a normal is made of, from the middle of the face, and the width of their weights. Chosen
  * on digitised planes and balls: narrower, normals follow the steps of the voxels; wider, they cut off edges. */
 static const double REACH = 3.5, SIGMA = 1.35;
@@ -69,7 +71,7 @@ static double cosine_at(const ms_grid *grid, const window *w, const int voxel[3]
             }
         }
     }
-    const double length = sqrt(pull[0] * pull[0] + pull[1] * pull[1] + pull[2] * pull[2]);
+    const double length = sqrt(ms_dot(pull, pull));
     return length > 0 ? fabs(pull[axis]) / length : 1;
 }
 

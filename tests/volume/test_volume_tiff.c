@@ -188,6 +188,14 @@ static void imagej_says_spacings(void **state)
     assert_true(v.spacing == 0.5);
     ms_volume_free(&v);
     made.size = 0;
+    f.description = "ImageJ=1.53t\nimages=4\nslices=4\nunit=micron\nspacing=1e-8\n";
+    put_tiff(&made, &f, NZ);
+    expect_volume_refused(ms_volume_parse_tiff, &made, MS_ERR_LIMIT, "cubes along one axis; resample it");
+    made.size = 0;
+    f.description = "ImageJ=1.53t\nimages=4\nslices=4\nunit=micron\nspacing=1e-60\n";
+    put_tiff(&made, &f, NZ);
+    expect_volume_refused(ms_volume_parse_tiff, &made, MS_ERR_FORMAT, "spacings must be from 1e-50");
+    made.size = 0;
     put_tiff(&made, &f, NZ - 1);
     expect_volume_refused(ms_volume_parse_tiff, &made, MS_ERR_FORMAT, "ImageJ wrote 4 slices and pages for 3");
     made.size = 0;
