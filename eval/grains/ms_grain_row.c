@@ -140,8 +140,7 @@ static void print_results(FILE *stream, const ms_grain_row *row)
 static void print_header(FILE *stream)
 {
     fputs("grain,grains,run,source,checksum,label,generator,options,seed,n_asked,until,status,file,n,stopped_by,voxels,"
-          "pieces,"
-          "cut_by_border,voxel_size,volume,equivalent_diameter",
+          "shape_pieces,cut_by_border,voxel_size,volume,equivalent_diameter",
           stream);
     for (const ms_measure *m = ms_measures; m->name; m++) {
         fprintf(stream, ",%s", ms_measure_column(m, m->in_compare));
