@@ -112,7 +112,8 @@ static void print_results(FILE *stream, const ms_grain_row *row)
         ms_grain_row_path(path, sizeof path, "", row);
         snprintf(path + strlen(path), sizeof path - strlen(path), ".%s", row->ending);
     }
-    fprintf(stream, "%s,%s", STATUS[row->status], path);
+    fprintf(stream, "%s,", STATUS[row->status]);
+    ms_escape_csv_path(stream, path);
     put_number(stream, r ? (double)r->clump.n_spheres : (double)NAN);
     fprintf(stream, ",%s", r ? ms_stop_name(r->reason) : "");
     put_number(stream, entry ? (double)entry->voxels : (double)NAN);
