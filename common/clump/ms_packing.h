@@ -8,7 +8,7 @@
 /** A clump in its place. */
 typedef struct ms_placed {
     size_t number;        /* what messages call it */
-    char *name;           /* of its template, without ending, from the folder of the packing; owned */
+    char *name;           /* of its template, without ending, from the folder of the packing; fits scripts; owned */
     ms_clump clump;       /* in the frame of the template, metres; owned */
     ms_particle particle; /* of the template: mass and a diagonal inertia; zeros where masses are not known */
     double centre[3];     /* of mass, metres */

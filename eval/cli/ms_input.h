@@ -54,6 +54,14 @@ void ms_input_defaults(ms_input_flags *flags);
 /** Takes a flag if it is one of MS_INPUT_FLAGS. @param[out] taken 0 if it is not */
 ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, const char *value, ms_error *err);
 
+/** Flags as words, for the rows of a table. */
+typedef struct ms_input_text {
+    char text[768];
+} ms_input_text;
+
+/** Those that change what is measured and are not at their defaults, as "weld=0.001 allow-open"; not the label. */
+ms_input_text ms_input_flags_text(const ms_input_flags *flags);
+
 /** A shape that was read. */
 typedef struct ms_input {
     const char *path;  /* "standard input" for "-" */

@@ -1,4 +1,5 @@
 /* Flags about the shape and its grid. */
+#include <stdio.h>
 #include <string.h>
 
 #include "base/ms_choice.h"
@@ -123,6 +124,63 @@ ms_status ms_input_flag(int *taken, ms_input_flags *flags, const char *name, con
         *taken = 0;
     }
     return status;
+}
+
+/* Adds a word, with its value if it has one. */
+static void add_word(ms_input_text *to, int is_given, const char *name, const char *value)
+{
+    const size_t used = strlen(to->text);
+    if (is_given) {
+        snprintf(to->text + used, sizeof to->text - used, "%s%s%s%s", used ? " " : "", name, value ? "=" : "",
+                 value ? value : "");
+    }
+}
+
+static void add_number(ms_input_text *to, double value, double usual, const char *name)
+{
+    add_word(to, value != usual, name, ms_text_of_number(value).text);
+}
+
+static void add_three(ms_input_text *to, const double value[3], const char *name)
+{
+    char text[128];
+    snprintf(text, sizeof text, "%s,%s,%s", ms_text_of_number(value[0]).text, ms_text_of_number(value[1]).text,
+             ms_text_of_number(value[2]).text);
+    add_word(to, value[0] > 0, name, text);
+}
+
+static void add_scan(ms_input_text *to, const ms_scan_options *scan)
+{
+    static const char KINDS[] = {
+        [MS_SAMPLE_BOOL] = 'b', [MS_SAMPLE_UNSIGNED] = 'u', [MS_SAMPLE_SIGNED] = 'i', [MS_SAMPLE_FLOAT] = 'f'};
+    const double raw_n[3] = {(double)scan->raw_n[0], (double)scan->raw_n[1], (double)scan->raw_n[2]};
+    char type[32];
+    snprintf(type, sizeof type, "%c%d%s", KINDS[scan->raw_sample.kind], 8 * (int)scan->raw_sample.size,
+             scan->raw_big_endian ? "be" : "");
+    add_word(to, scan->values == MS_SCAN_THRESHOLD, "threshold", ms_text_of_number(scan->threshold).text);
+    add_word(to, scan->values == MS_SCAN_OTSU, "otsu", NULL);
+    add_number(to, scan->connectivity, ms_scan_defaults().connectivity, "connectivity");
+    add_three(to, scan->spacing, "voxel-spacing");
+    add_three(to, raw_n, "raw-size");
+    add_word(to, scan->raw_sample.size > 0, "raw-type", type);
+    add_number(to, (double)scan->raw_skip, 0, "raw-skip");
+}
+
+ms_input_text ms_input_flags_text(const ms_input_flags *flags)
+{
+    ms_input_text to = {""};
+    add_number(&to, flags->cells, 0, "cells");
+    add_number(&to, flags->deq, 0, "deq");
+    add_number(&to, flags->voxel_size, 0, "voxel-size");
+    add_number(&to, flags->max_voxels, 0, "max-voxels");
+    add_word(&to, flags->rule == MS_VOXEL_CENTRE, "rule", "centre");
+    add_word(&to, flags->allow_open, "allow-open", NULL);
+    add_word(&to, flags->cut, "cut", NULL);
+    add_number(&to, flags->mending.weld, MS_MESH_WELD, "weld");
+    add_number(&to, (double)flags->mending.fill_holes, 0, "fill-holes");
+    add_number(&to, flags->mending.drop_bodies, 0, "drop-bodies");
+    add_scan(&to, &flags->scan);
+    return to;
 }
 
 ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flags, ms_error *err)

@@ -191,6 +191,7 @@ static ms_status resolve_compare(ms_comparison *c, ms_error *err)
     if (c->input.label) {
         snprintf(c->label, sizeof c->label, "%lu", (unsigned long)c->input.label);
     }
+    c->flags = ms_input_flags_text(&c->input);
     const ms_status status = check_standard(c, err);
     return status == MS_OK ? ms_methods_check(&c->methods, err) : status;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/ms_file.h"
+#include "base/ms_text.h"
 #include "chart/ms_csv.h"
 #include "cli/ms_methods.h"
 #include "cli/ms_outputs.h"
@@ -89,6 +90,17 @@ static ms_status take_stability_flag(void *context, const char *name, const char
     return MS_OK;
 }
 
+static ms_input_text say_flags(const stability_arguments *a)
+{
+    ms_input_text said = ms_input_flags_text(&a->input);
+    const size_t used = strlen(said.text);
+    if (a->plan.until_dice > 0) {
+        snprintf(said.text + used, sizeof said.text - used, "%suntil-dice=%s", used ? " " : "",
+                 ms_text_of_number(a->plan.until_dice).text);
+    }
+    return said;
+}
+
 /* What follows from all flags together. */
 static ms_status resolve_stability(stability_arguments *a, const char *const *shape, size_t n_shapes, ms_error *err)
 {
@@ -107,6 +119,7 @@ static ms_status resolve_stability(stability_arguments *a, const char *const *sh
     a->plan.seed = (uint64_t)a->seed;
     a->plan.runs = (int)a->runs;
     a->plan.flags = &a->input;
+    a->plan.said = say_flags(a);
     for (int c = 0; ms_changes[c].name; c++) {
         any |= a->plan.wanted[c];
     }

@@ -19,6 +19,7 @@
     X(SEED, "seed") \
     X(CELLS, "cells") \
     X(ASKED, "n_asked") \
+    X(FLAGS, "flags") \
     X(SPHERES, "n") \
     X(STOPPED, "stopped_by")
 #define MS_COLUMN_LIST_BEHIND(X) \

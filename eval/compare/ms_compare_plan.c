@@ -28,6 +28,7 @@ ms_compare_row ms_compare_plan_row(const ms_comparison *comparison, const ms_com
         row.number[MS_COLUMN_ASKED] = asked;
         row.number[MS_COLUMN_REPEATS] = comparison->repeats;
     }
+    row.text[MS_COLUMN_FLAGS] = comparison->flags.text;
     row.text[MS_COLUMN_VERSION] = MS_VERSION;
     return row;
 }
@@ -50,8 +51,8 @@ static ms_status check_row(const compare_planner *p, const ms_compare_run *run, 
         status = ms_fail(err, MS_ERR_NOMEM, "no memory for a row");
     } else if (strncmp(p->csv->row[p->plan->n_rows], key, strlen(key)) != 0) {
         status = ms_fail(err, MS_ERR_ARG,
-                         "%s: line %zu is of another comparison; it should begin with '%.300s'; --resume takes the "
-                         "shapes, methods and numbers as they were",
+                         "%s: line %zu is of another comparison; it should begin with '%.300s'; --resume takes "
+                         "shapes, methods, numbers and flags as they were",
                          p->csv->path, p->plan->n_rows + 2, key);
     }
     free(key);

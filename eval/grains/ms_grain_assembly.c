@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "base/ms_quaternion.h"
 #include "base/ms_text.h"
@@ -150,6 +151,11 @@ static ms_status add_placed(ms_packing *packing, const ms_grain_found *found, co
     if (status != MS_OK) {
         return status;
     }
+    if (!ms_escape_fits_liggghts(found->file)) { /* into which it goes, and into lines of others */
+        return ms_fail(err, MS_ERR_FORMAT,
+                       "grain %.0f: its file '%.60s' has a name that no script can hold; mend the table", found->number,
+                       found->file);
+    }
     *placed = (ms_placed){.number = (size_t)found->number, .scale = 1, .name = make_stem(found->file, g)};
     if (!placed->name) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the name of a template");
@@ -199,8 +205,11 @@ static void print_overlaps(FILE *stream, const ms_packing *packing, const ms_ove
     for (size_t o = 0; o < overlaps->count; o++) {
         const ms_overlap *pair = &overlaps->pair[o];
         const ms_placed *a = &packing->placed[pair->first], *b = &packing->placed[pair->second];
-        fprintf(stream, "%zu,%zu,%s,%s,%s", a->number, b->number, a->name, b->name,
-                ms_text_of_number(pair->depth / scale).text);
+        fprintf(stream, "%zu,%zu,", a->number, b->number);
+        ms_escape_csv_path(stream, a->name);
+        fputc(',', stream);
+        ms_escape_csv_path(stream, b->name);
+        fprintf(stream, ",%s", ms_text_of_number(pair->depth / scale).text);
         fprintf(stream, ",%s,%zu", ms_text_of_number(pair->relative).text, pair->contacts);
         fprintf(stream, ",%s", ms_text_of_number(a->scale).text);
         fprintf(stream, ",%s\n", ms_text_of_number(b->scale).text);

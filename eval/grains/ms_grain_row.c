@@ -112,7 +112,8 @@ static void print_results(FILE *stream, const ms_grain_row *row)
         ms_grain_row_path(path, sizeof path, "", row);
         snprintf(path + strlen(path), sizeof path - strlen(path), ".%s", row->ending);
     }
-    fprintf(stream, "%s,%s", STATUS[row->status], path);
+    fprintf(stream, "%s,", STATUS[row->status]);
+    ms_escape_csv_path(stream, path);
     put_number(stream, r ? (double)r->clump.n_spheres : (double)NAN);
     fprintf(stream, ",%s", r ? ms_stop_name(r->reason) : "");
     put_number(stream, entry ? (double)entry->voxels : (double)NAN);
@@ -140,8 +141,7 @@ static void print_results(FILE *stream, const ms_grain_row *row)
 static void print_header(FILE *stream)
 {
     fputs("grain,grains,run,source,checksum,label,generator,options,seed,n_asked,until,status,file,n,stopped_by,voxels,"
-          "pieces,"
-          "cut_by_border,voxel_size,volume,equivalent_diameter",
+          "shape_pieces,cut_by_border,voxel_size,volume,equivalent_diameter",
           stream);
     for (const ms_measure *m = ms_measures; m->name; m++) {
         fprintf(stream, ",%s", ms_measure_column(m, m->in_compare));

@@ -160,8 +160,9 @@ static void print_header(FILE *stream)
 {
     const ms_measure *listed[MS_MEASURES];
     const size_t count = list_measures(listed);
-    fputs("shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,status,n,stopped_by",
-          stream);
+    fputs(
+        "shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,flags,status,n,stopped_by",
+        stream);
     for (size_t m = 0; m < count; m++) {
         fprintf(stream, ",%s", ms_measure_column(listed[m], listed[m]->in_stability));
     }
@@ -209,7 +210,9 @@ static void print_row(FILE *stream, const ms_stability_run *run)
     put_field(stream, run->level);
     fprintf(stream, ",%" PRIu64, run->seed);
     put_field(stream, run->voxel_size);
-    fprintf(stream, ",%d,%zu,%s", run->threads, run->asked, OUTCOMES[run->outcome]);
+    fprintf(stream, ",%d,%zu,", run->threads, run->asked);
+    ms_escape_csv(stream, run->flags);
+    fprintf(stream, ",%s", OUTCOMES[run->outcome]);
     put_results(stream, run);
     fputc(',', stream);
     ms_escape_csv(stream, run->cause.text);
@@ -243,16 +246,17 @@ static void cut_line(stability_fields *f, char *line)
     f->count = line ? ms_csv_split(f->field, MOST_COLUMNS, line) : 0;
 }
 
-/* Whether a column says what a run is, which is known before it. */
-static int is_key(const char *column)
+/* Whether a column says what a run is, which is known before it: of seeds that of the unchanged shape. */
+static int is_key(const char *column, const ms_stability_run *run)
 {
-    static const char *const KEYS[] = {"shape", "checksum", "generator", "options", "perturbation", "level", "n_asked"};
+    static const char *const KEYS[] = {"shape",        "checksum", "generator", "options",
+                                       "perturbation", "level",    "n_asked",   "flags"};
     for (size_t k = 0; k < sizeof KEYS / sizeof *KEYS; k++) {
         if (strcmp(column, KEYS[k]) == 0) {
             return 1;
         }
     }
-    return 0;
+    return run->change == &ms_changes[0] && strcmp(column, "seed") == 0;
 }
 
 static double read_number(const char *text)
@@ -294,10 +298,11 @@ ms_status ms_stability_read_row(ms_stability_run *run, const char *row, ms_error
     cut_line(&there, strdup(row));
     ms_status status = header.line && own.line && there.line ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "has no memory");
     for (size_t c = 0; c < header.count && status == MS_OK; c++) {
-        if (there.count != header.count || (is_key(header.field[c]) && strcmp(own.field[c], there.field[c]) != 0)) {
+        if (there.count != header.count ||
+            (is_key(header.field[c], run) && strcmp(own.field[c], there.field[c]) != 0)) {
             status = ms_fail(err, MS_ERR_ARG,
-                             "is of another run: %s should be '%.200s'; --resume takes shapes, methods and numbers as "
-                             "they were",
+                             "is of another run: %s should be '%.200s'; --resume takes shapes, methods, numbers and "
+                             "flags as they were",
                              header.field[c], own.field[c]);
         } else {
             take_field(run, header.field[c], there.field[c]);

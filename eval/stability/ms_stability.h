@@ -33,6 +33,7 @@ typedef struct ms_stability {
 typedef struct ms_stability_run {
     const char *shape;       /* borrowed */
     const ms_method *method; /* borrowed */
+    const char *flags;       /* borrowed: what was said of shape and grid, for the row */
     uint64_t shape_checksum;
     double shortest_side; /* of the shape's box */
     const ms_change *change;

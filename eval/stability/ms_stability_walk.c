@@ -113,7 +113,11 @@ static ms_status plan_method(stability_walk *w, ms_stability_run run, ms_shared_
 static ms_status plan_shape(stability_walk *w, size_t s, ms_error *err)
 {
     const ms_stability_plan *plan = w->plan;
-    ms_stability_run run = {.shape = plan->shape[s], .asked = plan->spheres, .until_dice = plan->until_dice};
+    ms_stability_run run = {.shape = plan->shape[s],
+                            .flags = plan->said.text,
+                            .seed = plan->seed,
+                            .asked = plan->spheres,
+                            .until_dice = plan->until_dice};
     ms_status status = MS_OK;
     ms_shared_input_begin(&w->shared[s], plan->shape[s], read_shape, plan->flags, 0);
     if (w->n_runs < w->rows->csv.n_rows) {

@@ -16,6 +16,7 @@ typedef struct ms_stability_plan {
     uint64_t seed;
     int runs; /* of each change */
     const ms_input_flags *flags;
+    ms_input_text said; /* these and until_dice, as text */
 } ms_stability_plan;
 
 /** Where the rows go. */

@@ -63,7 +63,7 @@ class Columns(Case):
     def test_csv_of_compare(self):
         self.mskit("compare", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10)
         self.assertEqual(self.header("compare.csv"),
-                         "shape,checksum,label,generator,options,seed,cells,n_asked,n,stopped_by,eta,dice,coverage,"
+                         "shape,checksum,label,generator,options,seed,cells,n_asked,flags,n,stopped_by,eta,dice,coverage,"
                          "overshoot,off_volume,protrusion_max,protrusion_rms,gap_max,gap_rms,smallest_radius_ratio,"
                          "pieces,inertia_union,coverage_cut," + ",".join(DESCRIPTORS) + ",expected,inertia_corrected,epsilon,"
                          "products_epsilon,centre_epsilon,voxel_size,"
@@ -73,7 +73,7 @@ class Columns(Case):
     def test_csv_of_stability(self):
         self.mskit("stability", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10, "--runs", 1, "--perturb", "seed")
         self.assertEqual(self.header("stability.csv"),
-                         "shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,status,"
+                         "shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,flags,status,"
                          "n,stopped_by,eta,dice,coverage,overshoot,off_volume,inertia_error,coverage_cut,smallest_radius_ratio,"
                          "pieces," + ",".join(DESCRIPTORS) + ",n_until,seconds,beside,spheres_fnv1a,cause")
 

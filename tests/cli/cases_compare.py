@@ -229,6 +229,9 @@ class Resume(Compare):
         for other in (("-n", "3"), ("--cells", "6"), ("--seed", "2"), ("-g", "fcm")):
             self.mskit("compare", "box.obj", *(("-g", "mss") if other[0] != "-g" else ()), "-n", "1", *other,
                        "--cells", "8", "--resume", code=1)
+        for other in (("--weld", "1e-3"), ("--fill-holes", "4"), ("--drop-bodies", "0.1"), ("--allow-open",),
+                      ("--max-voxels", "300")):
+            self.assert_says(self.mskit(*args, *other, "--resume", code=1), "line 2", other[0][2:], "flags")
         self.write("box.obj", box_obj((0, 0, 0), (3, 2, 2)))
         result = self.mskit(*args, "--resume", code=1)
         self.assert_says(result, "line 2", "another comparison")

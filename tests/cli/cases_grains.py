@@ -161,6 +161,17 @@ class Faults(Grains):
             self.assertRegex(name, r"^[\w. ()-]+\.csv$")
         self.assertEqual(len(rows), 3)
 
+    def test_commas_in_names_are_no_columns(self):
+        os.mkdir(self.path("comma"))
+        for name in ("a,b", "c,d"):
+            self.write(f"comma/{name}.obj", self.read("stones/a.obj"))
+        args = ("comma", "-g", "mss", "-n", "1", "--cells", "4")
+        files = ["0000/a,b.csv", "0000/c,d.csv"]
+        self.assertEqual([row["file"] for row in self.grains(*args)], files)
+        self.assertEqual([row["file"] for row in self.grains(*args, "--resume", "--assembly")], files)
+        row, = self.table("out/assembly.csv")
+        self.assertEqual([row[key] + ".csv" for key in ("template", "neighbour_template")], files)
+
     def test_rows_that_are_there_are_not_replaced(self):
         args = ("grains", "stones", "-g", "mss", "-n", "2", "--cells", "6", "-o", "out")
         self.mskit(*args)

@@ -95,7 +95,9 @@ class Stability(Case):
             self.write("cut.csv", text[:size])
             self.assertEqual(self.mskit(*args, "--resume", "-o", "cut.csv").json, one, f"cut after {size} bytes")
             self.assertEqual(known("cut.csv"), known("one.csv"))
-        for other in (("cube",), ("speck", "cube"), ("cube", "speck", "-n", "5"), ("cube", "speck", "--perturb", "seed")):
+        for other in (("cube",), ("speck", "cube"), ("cube", "speck", "-n", "5"), ("cube", "speck", "--perturb", "seed"),
+                      ("cube", "speck", "--rule", "centre"), ("cube", "speck", "--weld", "1e-3"),
+                      ("cube", "speck", "--seed", "7"), ("cube", "speck", "--until-dice", "0.2")):
             more = [word for word in args[1:] if word not in ("cube", "speck")]
             result = self.mskit("stability", *more, *other, "--resume", "-o", "one.csv", code=1)
             self.assert_says(result, "one.csv", "other")

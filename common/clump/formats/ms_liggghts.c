@@ -109,11 +109,14 @@ ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *
 static void write_liggghts_placed(FILE *stream, const ms_placed *placed, size_t k, double speck)
 {
     ms_number a, b;
+    char file[4096];
+    snprintf(file, sizeof file, "%s.liggghts", placed->name);
     fprintf(stream,
             "fix t%zu all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 density constant %s "
-            "nspheres %zu ntry 1000 spheres file \"%s.liggghts\" scale %s type %zu",
-            k, ms_script_number(placed->particle.density, &a), placed->clump.n_spheres, placed->name,
-            ms_script_number(placed->scale, &b), k);
+            "nspheres %zu ntry 1000 spheres file ",
+            k, ms_script_number(placed->particle.density, &a), placed->clump.n_spheres);
+    ms_escape_lammps(stream, file);
+    fprintf(stream, " scale %s type %zu", ms_script_number(placed->scale, &b), k);
     write_liggghts_mass(stream, &placed->particle);
     fprintf(stream, "fix d%zu all particledistribution/discrete 15485867 1 t%zu 1.0\nregion r%zu block", k, k, k);
     for (int axis = 0; axis < 3; axis++) {
