@@ -2,12 +2,14 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include "base/ms_file.h"
+#include "base/ms_text.h"
 
 /* Moves a quoted field to where it begins; `at` is behind its first quote. NULL if it is not closed. */
 static char *unquote(char *to, char *at)
@@ -39,6 +41,18 @@ size_t ms_csv_split(char **field, size_t most, char *row)
         }
         *at++ = '\0';
     }
+}
+
+void ms_csv_put_number(FILE *stream, double value)
+{
+    fprintf(stream, ",%s", isfinite(value) ? ms_text_of_number(value).text : "");
+}
+
+double ms_csv_number(const char *field)
+{
+    double value;
+    const ms_word word = {field, strlen(field)};
+    return word.length > 0 && ms_text_to_double(&value, &word) ? value : (double)NAN;
 }
 
 static ms_status keep_row(ms_csv *csv, const char *row, size_t length, ms_error *err)
@@ -203,7 +217,7 @@ ms_status ms_csv_read(ms_csv *csv, const char *path, const char *header, ms_erro
 {
     *csv = (ms_csv){.path = path, .fd = open(path, O_RDONLY | O_CLOEXEC)};
     if (csv->fd < 0) {
-        return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
+        return ms_file_fail_open(err, path, errno);
     }
     ms_status status = lock(csv, LOCK_SH, err);
     if (status == MS_OK) {

@@ -49,4 +49,10 @@ void ms_csv_close(ms_csv *csv);
  */
 size_t ms_csv_split(char **field, size_t most, char *row);
 
+/** A comma and the number; nothing behind the comma if it is not finite. */
+void ms_csv_put_number(FILE *stream, double value);
+
+/** What a field holds; NAN where it is empty or no number. */
+double ms_csv_number(const char *field);
+
 #endif

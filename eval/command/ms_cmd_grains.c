@@ -46,7 +46,7 @@ static ms_status take_part(ms_grains *g, const char *text, ms_error *err)
     int64_t part = 0, parts = 0;
     const char *slash = strchr(text, '/');
     const ms_word first = {text, slash ? (size_t)(slash - text) : 0},
-                  second = {slash + 1, slash ? strlen(slash + 1) : 0};
+                  second = {slash ? slash + 1 : text, slash ? strlen(slash + 1) : 0};
     if (!slash || !ms_text_to_integer(&part, &first) || !ms_text_to_integer(&parts, &second) || part < 1 ||
         parts < part || parts > 1000000) {
         return ms_fail(err, MS_ERR_ARG, "--part '%.40s' is not of the form K/N, as 3/16, with K from 1 to N", text);

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ms_text.h"
 #include "chart/ms_chart.h"
 #include "ms_compare.h"
 
@@ -23,9 +22,7 @@ typedef struct records {
 
 static double number(const record *r, ms_column column)
 {
-    double value;
-    const ms_word word = {r->field[column], strlen(r->field[column])};
-    return word.length > 0 && ms_text_to_double(&value, &word) ? value : (double)NAN;
+    return ms_csv_number(r->field[column]);
 }
 
 static int same_field(const record *a, const record *b, ms_column column)

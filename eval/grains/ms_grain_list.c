@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/ms_escape.h"
+#include "base/ms_file.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "ms_grain_manifest.h"
 
@@ -104,7 +105,7 @@ static ms_status need_source(ms_grain_source **source, ms_grain_list *list, cons
         return MS_OK;
     }
     if (access(path, R_OK) != 0) {
-        return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s; check the path", path, strerror(errno));
+        return ms_file_fail_open(err, path, errno);
     }
     ms_grain_source **grown = realloc(list->source, (list->n_sources + 1) * sizeof(ms_grain_source *));
     list->source = grown ? grown : list->source;

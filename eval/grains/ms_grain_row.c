@@ -20,12 +20,6 @@ void ms_grain_row_path(char *out, size_t size, const char *folder, const ms_grai
     snprintf(out, size, "%s%s%04zu/%s", folder, folder[0] ? "/" : "", (row->number - 1) / A_THOUSAND, row->grain->name);
 }
 
-/* Empty where there is none. */
-static void put_number(FILE *stream, double value)
-{
-    fprintf(stream, ",%s", isfinite(value) ? ms_text_of_number(value).text : "");
-}
-
 static void put_options(FILE *stream, const ms_recipe *recipe)
 {
     char text[1024] = "";
@@ -66,8 +60,8 @@ static void print_key(FILE *stream, const ms_grain_row *row)
     }
     fprintf(stream, ",%s", how->recipe.generator->name);
     put_options(stream, &how->recipe);
-    put_number(stream, how->recipe.seed);
-    put_number(stream, how->stop.spheres ? (double)how->stop.spheres : (double)NAN);
+    ms_csv_put_number(stream, how->recipe.seed);
+    ms_csv_put_number(stream, how->stop.spheres ? (double)how->stop.spheres : (double)NAN);
     put_until(stream, &how->stop);
     fputc(',', stream);
 }
@@ -75,9 +69,9 @@ static void print_key(FILE *stream, const ms_grain_row *row)
 static void print_masses(FILE *stream, const ms_mass *mass)
 {
     const int corrected = mass && mass->corrected;
-    put_number(stream, corrected ? mass->report.epsilon : (double)NAN);
-    put_number(stream, corrected ? mass->report.products : (double)NAN);
-    put_number(stream, corrected ? mass->report.centre : (double)NAN);
+    ms_csv_put_number(stream, corrected ? mass->report.epsilon : (double)NAN);
+    ms_csv_put_number(stream, corrected ? mass->report.products : (double)NAN);
+    ms_csv_put_number(stream, corrected ? mass->report.centre : (double)NAN);
 }
 
 /* The columns of a place, in the order of its numbers. */
@@ -99,7 +93,7 @@ static void print_place(FILE *stream, const ms_grain_place *place)
 {
     ms_grain_place copy = *place;
     for (int c = 0; c < PLACE_COLUMNS; c++) {
-        put_number(stream, *place_number(&copy, c));
+        ms_csv_put_number(stream, *place_number(&copy, c));
     }
 }
 
@@ -114,20 +108,20 @@ static void print_results(FILE *stream, const ms_grain_row *row)
     }
     fprintf(stream, "%s,", STATUS[row->status]);
     ms_escape_csv_path(stream, path);
-    put_number(stream, r ? (double)r->clump.n_spheres : (double)NAN);
+    ms_csv_put_number(stream, r ? (double)r->clump.n_spheres : (double)NAN);
     fprintf(stream, ",%s", r ? ms_stop_name(r->reason) : "");
-    put_number(stream, entry ? (double)entry->voxels : (double)NAN);
-    put_number(stream, row->pieces);
-    put_number(stream, entry ? (double)entry->cut : (double)NAN);
-    put_number(stream, row->voxel_size);
-    put_number(stream, row->volume);
-    put_number(stream, cbrt(6 * row->volume / acos(-1.0)));
+    ms_csv_put_number(stream, entry ? (double)entry->voxels : (double)NAN);
+    ms_csv_put_number(stream, row->pieces);
+    ms_csv_put_number(stream, entry ? (double)entry->cut : (double)NAN);
+    ms_csv_put_number(stream, row->voxel_size);
+    ms_csv_put_number(stream, row->volume);
+    ms_csv_put_number(stream, cbrt(6 * row->volume / acos(-1.0)));
     for (const ms_measure *m = ms_measures; m->name; m++) {
-        put_number(stream, r ? m->of_metrics(&r->metrics) : (double)NAN);
+        ms_csv_put_number(stream, r ? m->of_metrics(&r->metrics) : (double)NAN);
     }
     print_masses(stream, r ? &r->mass : NULL);
     print_place(stream, &row->place);
-    put_number(stream, row->seconds);
+    ms_csv_put_number(stream, row->seconds);
     fprintf(stream, ",%d,", row->beside);
     if (r) {
         const ms_bytes bytes = {.data = (uint8_t *)r->clump.sphere,
@@ -231,9 +225,7 @@ ms_status ms_grain_row_read(ms_grain_status *status, double *spheres, const char
 static double read_number(const row_fields *fields, const char *column)
 {
     const char *text = find_field(fields, column);
-    const ms_word word = {text, text ? strlen(text) : 0};
-    double value;
-    return text && ms_text_to_double(&value, &word) ? value : (double)NAN;
+    return text ? ms_csv_number(text) : (double)NAN;
 }
 
 ms_status ms_grain_row_find(ms_grain_found *found, const char *line, ms_error *err)

@@ -8,7 +8,6 @@
 
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
-#include "base/ms_text.h"
 #include "chart/ms_csv.h"
 
 #define OUTCOME_NAME(code, name) name,
@@ -169,12 +168,6 @@ static void print_header(FILE *stream)
     fputs(",n_until,seconds,beside,spheres_fnv1a,cause", stream);
 }
 
-/* Empty where there is none. */
-static void put_field(FILE *stream, double value)
-{
-    fprintf(stream, ",%s", isfinite(value) ? ms_text_of_number(value).text : "");
-}
-
 /* From n to spheres_fnv1a; all empty if the run gave nothing. */
 static void put_results(FILE *stream, const ms_stability_run *run)
 {
@@ -188,11 +181,11 @@ static void put_results(FILE *stream, const ms_stability_run *run)
     }
     fprintf(stream, ",%s", gave ? ms_stop_name(run->reason) : "");
     for (size_t m = 0; m < count; m++) {
-        put_field(stream, gave ? listed[m]->of_metrics(&run->metrics) : nothing);
+        ms_csv_put_number(stream, gave ? listed[m]->of_metrics(&run->metrics) : nothing);
     }
-    put_field(stream, gave && run->spheres_until ? (double)run->spheres_until : nothing);
-    put_field(stream, gave ? run->seconds : nothing);
-    put_field(stream, gave ? run->beside : nothing);
+    ms_csv_put_number(stream, gave && run->spheres_until ? (double)run->spheres_until : nothing);
+    ms_csv_put_number(stream, gave ? run->seconds : nothing);
+    ms_csv_put_number(stream, gave ? run->beside : nothing);
     fputc(',', stream);
     if (gave) {
         fprintf(stream, "%016" PRIx64, run->checksum);
@@ -207,9 +200,9 @@ static void print_row(FILE *stream, const ms_stability_run *run)
     fputc(',', stream);
     ms_escape_csv(stream, run->method->options);
     fprintf(stream, ",%s", run->change->name);
-    put_field(stream, run->level);
+    ms_csv_put_number(stream, run->level);
     fprintf(stream, ",%" PRIu64, run->seed);
-    put_field(stream, run->voxel_size);
+    ms_csv_put_number(stream, run->voxel_size);
     fprintf(stream, ",%d,%zu,", run->threads, run->asked);
     ms_escape_csv(stream, run->flags);
     fprintf(stream, ",%s", OUTCOMES[run->outcome]);
@@ -259,13 +252,6 @@ static int is_key(const char *column, const ms_stability_run *run)
     return run->change == &ms_changes[0] && strcmp(column, "seed") == 0;
 }
 
-static double read_number(const char *text)
-{
-    double value;
-    const ms_word word = {text, strlen(text)};
-    return ms_text_to_double(&value, &word) ? value : (double)NAN;
-}
-
 /* What the statistics and the charts are made of. */
 static void take_field(ms_stability_run *run, const char *column, const char *text)
 {
@@ -274,15 +260,15 @@ static void take_field(ms_stability_run *run, const char *column, const char *te
             run->outcome = strcmp(text, OUTCOMES[o]) == 0 ? (ms_outcome)o : run->outcome;
         }
     } else if (strcmp(column, "voxel_size") == 0) {
-        run->voxel_size = read_number(text);
+        run->voxel_size = ms_csv_number(text);
     } else if (strcmp(column, ms_measure_column(&ms_measures[MS_MEASURE_DICE],
                                                 ms_measures[MS_MEASURE_DICE].in_stability)) == 0) {
-        run->metrics.score.dice = read_number(text);
+        run->metrics.score.dice = ms_csv_number(text);
     } else if (strcmp(column, ms_measure_column(&ms_measures[MS_MEASURE_INERTIA],
                                                 ms_measures[MS_MEASURE_INERTIA].in_stability)) == 0) {
-        run->metrics.inertia.weighted = read_number(text);
+        run->metrics.inertia.weighted = ms_csv_number(text);
     } else if (strcmp(column, "n_until") == 0) {
-        run->spheres_until = text[0] ? (size_t)read_number(text) : 0;
+        run->spheres_until = text[0] ? (size_t)ms_csv_number(text) : 0;
     } else if (strcmp(column, "spheres_fnv1a") == 0) {
         run->checksum = strtoull(text, NULL, 16);
     } else if (strcmp(column, "cause") == 0) {

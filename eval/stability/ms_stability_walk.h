@@ -22,7 +22,7 @@ typedef struct ms_stability_plan {
 /** Where the rows go. */
 typedef struct ms_stability_rows {
     FILE *stream; /* standard output, a device or a pipe, with its header; NULL: the table */
-    ms_csv csv;   /* with ms_stability_header */
+    ms_csv csv;   /* with the header of ms_stability_line */
 } ms_stability_rows;
 
 /** How many runs there are. */

@@ -81,7 +81,8 @@ def run(inputs, args, fail_at):
         folder = os.path.join(top, "run")
         shutil.copytree(inputs, folder)
         count = os.path.join(top, "count")
-        env = dict(os.environ, LD_PRELOAD=LIBRARY, FAIL_AT=str(fail_at), FAIL_COUNT=count, OMP_NUM_THREADS="1")
+        env = dict(os.environ, LD_PRELOAD=LIBRARY, FAIL_AT=str(fail_at), FAIL_COUNT=count, OMP_NUM_THREADS="1",
+                   OMP_WAIT_POLICY="passive")  # else it starts itself anew, without the library
         process = subprocess.run([MSKIT] + args, cwd=folder, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, timeout=TIMEOUT, check=False)
         allocations = 0
