@@ -4,30 +4,17 @@
 #include <omp.h>
 
 #include "fcm/ms_random_spheres.h"
-#include "measure/ms_metrics.h"
 #include "ms_generator_list.h"
 #include "shared/ms_bisect_count.h"
 #include "support/body_samples.h"
+#include "support/run_samples.h"
 #include "voxel/ms_raster.h"
 
-/* Options as "name=value name=value". */
 static ms_status try_fcm(ms_clump *clump, ms_stop_reason *reason, const ms_target *target, ms_stop stop,
                          const char *options, uint64_t seed, ms_error *err)
 {
-    ms_settings settings;
-    char copy[256];
-    snprintf(copy, sizeof copy, "%s", options);
-    assert_int_equal(ms_option_settings_init(&settings, ms_generator_fcm.options, err), MS_OK);
-    for (char *word = strtok(copy, " "); word; word = strtok(NULL, " ")) {
-        char *equals = strchr(word, '=');
-        assert_non_null(equals);
-        *equals = 0;
-        assert_int_equal(ms_option_settings_set(&settings, word, equals + 1, err), MS_OK);
-    }
-    const ms_run run = {.target = target, .stop = stop, .settings = &settings, .seed = seed};
-    const ms_status status = ms_generator_run(clump, reason, &ms_generator_fcm, &run, err);
-    ms_option_settings_free(&settings);
-    return status;
+    const ms_run run = {.target = target, .stop = stop, .seed = seed};
+    return try_run(clump, reason, &ms_generator_fcm, run, options, err);
 }
 
 static ms_clump run_fcm(const ms_target *target, size_t spheres, const char *options, uint64_t seed)
@@ -41,14 +28,6 @@ static ms_clump run_fcm(const ms_target *target, size_t spheres, const char *opt
         fail_msg("%s", err.text);
     }
     return clump;
-}
-
-static ms_score score_of(const ms_clump *clump, const ms_target *target)
-{
-    ms_metrics metrics;
-    ms_error err;
-    assert_int_equal(ms_metrics_compute(&metrics, NULL, target, clump, 1u << 28, &err), MS_OK);
-    return metrics.score;
 }
 
 static double away(const double a[3], const double b[3], ms_norm norm)

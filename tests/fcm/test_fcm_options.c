@@ -1,17 +1,8 @@
 /* What fcm does on request: nodes thinned, the search from one cluster up, the volume of the hull. */
-#include "measure/ms_metrics.h"
 #include "mesh/ms_hull.h"
 #include "ms_generator_list.h"
 #include "shared/ms_nodes.h"
 #include "support/run_samples.h"
-
-static ms_score score_of(const ms_clump *clump, const ms_target *target)
-{
-    ms_metrics metrics;
-    ms_error err;
-    assert_int_equal(ms_metrics_compute(&metrics, NULL, target, clump, 1u << 28, &err), MS_OK);
-    return metrics.score;
-}
 
 /* Nodes are of one group just where they are in one cube. */
 static void groups_are_cubes(void **state)

@@ -1,43 +1,11 @@
 /* Set cover: spheres inside the mesh, on the medial surface, the paper's figures. */
-#include "support/test_support.h"
-
-#include "measure/ms_metrics.h"
-#include "ms_generator.h"
 #include "ms_generator_list.h"
 #include "setcover/ms_medial.h"
-
-/* Options as "name=value name=value". */
-static ms_status try_setcover(ms_clump *clump, ms_stop_reason *reason, const ms_target *target, ms_stop stop,
-                              const char *options, ms_error *err)
-{
-    ms_settings settings;
-    char copy[256];
-    snprintf(copy, sizeof copy, "%s", options);
-    assert_int_equal(ms_option_settings_init(&settings, ms_generator_setcover.options, err), MS_OK);
-    for (char *word = strtok(copy, " "); word; word = strtok(NULL, " ")) {
-        char *equals = strchr(word, '=');
-        if (equals) {
-            *equals = 0;
-        }
-        assert_int_equal(ms_option_settings_set(&settings, word, equals ? equals + 1 : NULL, err), MS_OK);
-    }
-    const ms_run run = {.target = target, .stop = stop, .settings = &settings};
-    const ms_status status = ms_generator_run(clump, reason, &ms_generator_setcover, &run, err);
-    ms_option_settings_free(&settings);
-    return status;
-}
+#include "support/run_samples.h"
 
 static ms_clump run_setcover(const ms_target *target, size_t spheres, const char *options)
 {
-    ms_clump clump;
-    ms_stop_reason reason;
-    ms_error err;
-    ms_stop stop = {0};
-    stop.spheres = spheres;
-    if (try_setcover(&clump, &reason, target, stop, options, &err) != MS_OK) {
-        fail_msg("%s", err.text);
-    }
-    return clump;
+    return run_generator(&ms_generator_setcover, target, (ms_stop){.spheres = spheres}, options, NULL);
 }
 
 static void target_of_deq(ms_target *target, const ms_mesh *mesh, double deq)
@@ -156,12 +124,9 @@ static void medial_spheres_are_maximal(void **state)
 
 static double coverage_of(const ms_clump *clump, const ms_target *target, size_t spheres)
 {
-    ms_metrics metrics;
-    ms_error err;
     ms_clump part = *clump;
     part.n_spheres = spheres < clump->n_spheres ? spheres : clump->n_spheres;
-    assert_int_equal(ms_metrics_compute(&metrics, NULL, target, &part, 1u << 28, &err), MS_OK);
-    return metrics.score.coverage;
+    return score_of(&part, target).coverage;
 }
 
 /* Yuan's shapes at d_eq/100: coverage by so many spheres (DESIGN.md: known figures). */
@@ -248,11 +213,11 @@ static void huge_lattices_are_refused(void **state)
     ms_clump clump;
     ms_stop_reason reason;
     ms_error err;
-    ms_stop stop = {0};
-    stop.spheres = 3;
     make_shape(&mesh, "needle", "");
     target_of_deq(&target, &mesh, 20);
-    assert_int_equal(try_setcover(&clump, &reason, &target, stop, "skeleton-deq=2000", &err), MS_ERR_LIMIT);
+    assert_int_equal(try_generator(&clump, &reason, &ms_generator_setcover, &target, (ms_stop){.spheres = 3},
+                                   "skeleton-deq=2000", NULL, NULL, &err),
+                     MS_ERR_LIMIT);
     assert_non_null(strstr(err.text, "skeleton-deq"));
     ms_target_free(&target);
     ms_mesh_free(&mesh);

@@ -2,13 +2,13 @@
 #ifndef RUN_SAMPLES_H
 #define RUN_SAMPLES_H
 
+#include "measure/ms_metrics.h"
 #include "ms_generator.h"
 #include "test_support.h"
 
-/** @param options "name=value name=value" @param remark, context as in ms_run; may be NULL */
-static inline ms_status try_generator(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
-                                      const ms_target *target, ms_stop stop, const char *options, ms_remark remark,
-                                      void *context, ms_error *err)
+/** @param options "name=value name=value"; a flag may go without a value @param run all but the settings */
+static inline ms_status try_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator, ms_run run,
+                                const char *options, ms_error *err)
 {
     ms_settings settings;
     char copy[256];
@@ -16,15 +16,24 @@ static inline ms_status try_generator(ms_clump *clump, ms_stop_reason *reason, c
     assert_int_equal(ms_option_settings_init(&settings, generator->options, err), MS_OK);
     for (char *word = strtok(copy, " "); word; word = strtok(NULL, " ")) {
         char *equals = strchr(word, '=');
-        assert_non_null(equals);
-        *equals = 0;
-        assert_int_equal(ms_option_settings_set(&settings, word, equals + 1, err), MS_OK);
+        if (equals) {
+            *equals = 0;
+        }
+        assert_int_equal(ms_option_settings_set(&settings, word, equals ? equals + 1 : NULL, err), MS_OK);
     }
-    const ms_run run = {
-        .target = target, .stop = stop, .settings = &settings, .seed = 1, .remark = remark, .remark_context = context};
+    run.settings = &settings;
     const ms_status status = ms_generator_run(clump, reason, generator, &run, err);
     ms_option_settings_free(&settings);
     return status;
+}
+
+/** @param remark, context as in ms_run; may be NULL */
+static inline ms_status try_generator(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
+                                      const ms_target *target, ms_stop stop, const char *options, ms_remark remark,
+                                      void *context, ms_error *err)
+{
+    const ms_run run = {.target = target, .stop = stop, .seed = 1, .remark = remark, .remark_context = context};
+    return try_run(clump, reason, generator, run, options, err);
 }
 
 /** One that has to succeed. @param[out] reason may be NULL */
@@ -39,6 +48,14 @@ static inline ms_clump run_generator(const ms_generator *generator, const ms_tar
         fail_msg("%s", err.text);
     }
     return clump;
+}
+
+static inline ms_score score_of(const ms_clump *clump, const ms_target *target)
+{
+    ms_metrics metrics;
+    ms_error err;
+    assert_int_equal(ms_metrics_compute(&metrics, NULL, target, clump, 1u << 28, &err), MS_OK);
+    return metrics.score;
 }
 
 /** A target of n[0] x n[1] x n[2] voxels of size 1, all inside, the centre of the first at 0. */

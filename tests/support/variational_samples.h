@@ -2,7 +2,7 @@
 #ifndef VARIATIONAL_SAMPLES_H
 #define VARIATIONAL_SAMPLES_H
 
-#include "support/test_support.h"
+#include "support/run_samples.h"
 
 #include <stdlib.h>
 
@@ -41,10 +41,7 @@ static inline ms_clump generate(const ms_target *target, size_t n, const char *c
 
 static inline double dice_of(const ms_target *target, const ms_clump *clump)
 {
-    ms_metrics metrics;
-    ms_error err;
-    assert_int_equal(ms_metrics_compute(&metrics, NULL, target, clump, 1u << 28, &err), MS_OK);
-    return metrics.score.dice;
+    return score_of(clump, target).dice;
 }
 
 /* |S xor U| by voxels' centres, by brute force. */
