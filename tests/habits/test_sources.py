@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Every list of C files in the meson files is sorted, without doubles and complete: each file of the tree is in one.
+"""Every list of C files and of the program's cases in the meson files is sorted, without doubles and complete: each
+file of the tree is in one.
 
     tests/habits/test_sources.py
 """
@@ -18,7 +19,7 @@ def lists(text):
     """The runs of lines that hold a quoted path and nothing else, as lists of paths."""
     found, current = [], []
     for line in text.splitlines() + [""]:
-        words = re.fullmatch(r"\s*'([\w./-]+\.[ch]|[\w-]+/test_\w+)',", line)
+        words = re.fullmatch(r"\s*'([\w./-]+\.[ch]|[\w-]+/test_\w+|cli/cases_\w+\.py)',", line)
         if words:
             current.append(words.group(1))
             continue
@@ -48,12 +49,13 @@ def main():
     for folder in ("common", "generators", "eval", "tests"):
         wrong, paths = faults_of(folder, "meson.build")
         faults += wrong
-        paths = [path if re.search(r"\.[ch]$", path) else path + ".c" for path in paths]
+        paths = [path if re.search(r"\.([ch]|py)$", path) else path + ".c" for path in paths]
         for path in paths:
             if not os.path.exists(os.path.join(ROOT, folder, path)):
                 faults.append(f"{folder}/meson.build: there is no '{path}'")
         listed |= {os.path.join(folder, path) for path in paths}
-    for source in sorted(glob.glob("*/**/*.c", root_dir=ROOT, recursive=True)):
+    sources = glob.glob("*/**/*.c", root_dir=ROOT, recursive=True) + glob.glob("tests/cli/cases_*.py", root_dir=ROOT)
+    for source in sorted(sources):
         of_tree = source.split("/")[0] in ("common", "generators", "eval", "tests")
         if of_tree and source not in listed and not BY_NAME.match(source) and not is_a_key(source):
             faults.append(f"{source} is in no list of {source.split('/')[0]}/meson.build")
