@@ -74,7 +74,7 @@ MS_C_BEGIN
       "in JSON `inertia_error.weighted_mean`", "inertia_union", "inertia_error") \
     X(GOAL, COVERAGE_CUT, coverage_cut, MORE, 5, 0, NULL, NULL, \
       "coverage of cut cells", "Yuan 3.1, V_cl / V_p", \
-      "the same of cells that the surface cuts: each weighs what is inside, and is covered where its centroid is", \
+      "the same of cells that follow the surface: each weighs what is inside, and is covered where its centroid is", \
       NULL, NULL) \
     X(DESCRIPTOR, VOXEL_LIMIT, voxel_limit, LESS, 5, 0, NULL, NULL, \
       "voxel limit of D", "mskit", \

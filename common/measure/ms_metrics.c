@@ -163,11 +163,29 @@ static ms_status measure_surface(ms_metrics *metrics, const ms_target *target, c
     return status;
 }
 
+/* With cut cells, if the target asks for them and has none. */
+static ms_status count_with_cells(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
+                                  size_t max_voxels, ms_error *err)
+{
+    ms_target cut = *target;
+    ms_cut_cells *cells = NULL;
+    ms_status status = MS_OK;
+    if (target->count_cut && !cut.grid.cells) {
+        status = ms_cut_cells_build(&cells, &target->grid, target->closed ? target->mesh : NULL, err);
+        cut.grid.cells = cells;
+    }
+    if (status == MS_OK) {
+        status = count_on_fitting_grid(metrics, curve, &cut, clump, max_voxels, err);
+    }
+    ms_cut_cells_free(cells);
+    return status;
+}
+
 ms_status ms_metrics_score_clump(ms_score *score, ms_score *curve, const ms_target *target, const ms_clump *clump,
                                  size_t max_voxels, ms_error *err)
 {
-    ms_metrics metrics;
-    const ms_status status = count_on_fitting_grid(&metrics, curve, target, clump, max_voxels, err);
+    ms_metrics metrics = {0};
+    const ms_status status = count_with_cells(&metrics, curve, target, clump, max_voxels, err);
     *score = metrics.score;
     return status;
 }
@@ -199,18 +217,8 @@ static ms_status describe(ms_metrics *metrics, const ms_target *target, const ms
 ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
                              size_t max_voxels, ms_error *err)
 {
-    ms_target cut = *target;
-    ms_cut_cells *cells = NULL;
-    ms_status status = MS_OK;
     memset(metrics, 0, sizeof *metrics);
-    if (target->count_cut && !cut.grid.cells) {
-        status = ms_cut_cells_build(&cells, &target->grid, target->closed ? target->mesh : NULL, err);
-        cut.grid.cells = cells;
-    }
-    if (status == MS_OK) {
-        status = count_on_fitting_grid(metrics, curve, &cut, clump, max_voxels, err);
-    }
-    ms_cut_cells_free(cells);
+    ms_status status = count_with_cells(metrics, curve, target, clump, max_voxels, err);
     if (status == MS_OK) {
         metrics->spheres = clump->n_spheres;
         metrics->smallest_radius_ratio = ms_clump_smallest_radius(clump) / ms_target_equivalent_radius(target);

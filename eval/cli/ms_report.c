@@ -87,11 +87,13 @@ void ms_report_metrics(FILE *stream, const ms_metrics *m, const ms_target *targe
 
 void ms_report_curve(FILE *stream, const ms_score *curve, size_t count)
 {
-    fputs("n" MS_MEASURE_CURVE_NAMES "\n", stream);
+    const ms_measure *cut = &ms_measures[MS_MEASURE_COVERAGE_CUT];
+    const int with_cut = count > 0 && !isnan(cut->of_score(&curve[0]));
+    fprintf(stream, "n" MS_MEASURE_CURVE_NAMES "%s%s\n", with_cut ? "," : "", with_cut ? cut->name : "");
     for (size_t n = 0; n < count; n++) {
         fprintf(stream, "%zu", n + 1);
         for (const ms_measure *m = ms_measures; m->name; m++) {
-            if (m->curve) {
+            if (m->curve || (with_cut && m == cut)) {
                 fprintf(stream, ",%.8g", m->of_score(&curve[n]));
             }
         }
