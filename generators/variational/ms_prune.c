@@ -96,7 +96,7 @@ static ms_status find_losses(double *loss, const ms_ball *ball, size_t count, co
         status = ms_surface_tally(fine, NULL, fit, ball, count, err);
     }
     for (size_t b = 0; b < count && status == MS_OK; b++) {
-        loss[b] = exact && fabs(loss[b]) < FEW ? fine[b].loss : loss[b] * cell;
+        loss[b] = exact && (fit->slant > 0 || fabs(loss[b]) < FEW) ? fine[b].loss : loss[b] * cell;
     }
     free(fine);
     return status;

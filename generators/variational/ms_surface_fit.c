@@ -90,7 +90,8 @@ static void add_place(normal_equations *e, const ms_surface_fit *fit, const ms_b
     find_place(place, ball, normal);
     const double away = ms_signed_distance_at(fit->field, place), phi = away > beyond ? away : beyond;
     const double size = fabs(phi) > NEAR ? fabs(phi) : NEAR;
-    const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) / size;
+    const double price = phi > 0 ? 1 - fit->slant : 1 + fit->slant;
+    const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) * price / size;
     for (int i = 0; i < 4; i++) {
         for (int j = 0; j <= i; j++) {
             e->a[i][j] += w * row[i] * row[j];

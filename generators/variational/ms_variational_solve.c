@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/ms_vector.h"
+#include "ms_bulk.h"
 #include "ms_coverage_count.h"
 #include "ms_pattern_search.h"
 #include "ms_prune.h"
@@ -25,6 +26,9 @@ static const double DROP = 0.1;
 /* Part of the spheres that a round adds, one round after the other: what one cannot better, another may. */
 static const double ADD[] = {0.1, 0.05, 0.2, 0.025};
 enum { ADDS = sizeof ADD / sizeof *ADD };
+
+/* D from which on inscribed spheres are a poor start. */
+static const double HOPELESS = 0.2;
 
 /* Radii that become smaller, in voxels, say nothing about the shape. */
 static const double LEAST_RADIUS = 0.5;
@@ -60,6 +64,8 @@ typedef struct solver {
     ms_ball *ball, *best;  /* in voxels of the target's grid; room for `room` */
     ms_ball *all;          /* with mirror images: room for `room` times the planes' images */
     size_t room;
+    ms_ball *given; /* copy of those that were given to start from; NULL: none */
+    size_t n_given;
 } solver;
 
 static void free_solver(solver *s)
@@ -70,6 +76,7 @@ static void free_solver(solver *s)
     free(s->ball);
     free(s->best);
     free(s->all);
+    free(s->given);
     memset(s, 0, sizeof *s);
 }
 
@@ -303,6 +310,12 @@ static ms_status start_from_given(solver *s, const ms_clump *given, ms_error *er
             s->count++;
         }
     }
+    s->given = malloc((s->count + 1) * sizeof *s->given);
+    if (!s->given) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", s->count);
+    }
+    s->n_given = s->count;
+    memcpy(s->given, s->ball, s->count * sizeof *s->given);
     const size_t all = count_with_images(s);
     return status == MS_OK && all < s->wanted ? add_to_cover(s, s->wanted - all, err) : status;
 }
@@ -456,6 +469,25 @@ static ms_status run_stages(solver *s, ms_error *err)
     return status == MS_OK ? replace_idle(s, err) : status;
 }
 
+/* Large spheres instead where inscribed ones are hopeless, if they are better. */
+static ms_status try_bulk(solver *s, ms_error *err)
+{
+    double dice;
+    ms_coarse_view volume = {0};
+    ms_status status = ms_bulk_dice(&dice, s->ball, s->count, &s->fit, err);
+    if (status != MS_OK || dice < HOPELESS) {
+        return status;
+    }
+    status = make_view(&volume, s, s->coarse.step, err);
+    if (status == MS_OK) {
+        ms_coarse_view_keep_upper(&volume, &s->settings->mirror);
+        const ms_bulk_other other = {s->given, s->n_given, &volume, s->wanted};
+        status = ms_bulk_improve(s->ball, &s->count, s->room, dice, &other, &s->fit, err);
+    }
+    ms_coarse_view_free(&volume);
+    return status;
+}
+
 ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
                                const ms_variational_settings *settings, size_t n, ms_error *err)
 {
@@ -466,6 +498,9 @@ ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
     ms_status status = begin_solver(&s, run, settings, n, err);
     if (status == MS_OK) {
         status = run_stages(&s, err);
+    }
+    if (status == MS_OK) {
+        status = try_bulk(&s, err);
     }
     if (status == MS_OK) {
         *count = expand_images(&s);
