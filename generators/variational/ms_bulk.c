@@ -6,6 +6,7 @@
 
 #include "base/ms_vector.h"
 #include "ms_dice.h"
+#include "ms_gap_hold.h"
 #include "ms_prune.h"
 
 /* Voxels that stand for the volume, at most about, and rounds of Lloyd's algorithm: more change little. */
@@ -137,11 +138,11 @@ ms_status ms_bulk_dice(double *dice, const ms_ball *ball, size_t count, const ms
     return status;
 }
 
-/* Spheres, and their D. */
+/* Spheres, their D, and that with the price of what of the surface is too far from them. */
 typedef struct spheres {
     ms_ball *ball;
     size_t count;
-    double dice;
+    double dice, cost;
 } spheres;
 
 /* Replaces the best ones so far by better ones. */
@@ -149,11 +150,27 @@ static ms_status keep_better(spheres *best, const ms_ball *ball, size_t count, c
 {
     double dice;
     const ms_status status = ms_bulk_dice(&dice, ball, count, fit, err);
-    if (status == MS_OK && dice < best->dice) {
+    const double excess = status == MS_OK && fit->gap ? ms_gap_excess(fit->gap, ball, count) : 0;
+    const double cost = dice + MS_GAP_PRICE * excess / (double)fit->field->target->voxels;
+    if (status == MS_OK && cost < best->cost) {
         best->dice = dice;
+        best->cost = cost;
         best->count = count;
         memcpy(best->ball, ball, count * sizeof *ball);
     }
+    return status;
+}
+
+/* Has spheres keep to what they are bound to. */
+static ms_status settle(ms_ball *ball, size_t count, double dice, ms_surface_fit *fit, ms_error *err)
+{
+    ms_bounds_confine(&fit->bounds, fit->field, ball, count);
+    if (!fit->gap) {
+        return MS_OK;
+    }
+    fit->slant = dice;
+    const ms_status status = ms_gap_hold(ball, count, fit, err);
+    fit->slant = 0;
     return status;
 }
 
@@ -161,7 +178,7 @@ static ms_status keep_better(spheres *best, const ms_ball *ball, size_t count, c
 static ms_status fit_bulk(spheres *best, ms_ball *ball, size_t count, ms_surface_fit *fit, ms_error *err)
 {
     static const double DAMPING[TURNS][2] = {{0.8, 0.4}, {0.8, 0.4}, {0.6, 0.3}, {0.5, 0.2}, {0.3, 0.05}};
-    const int is_free = !ms_bounds_are_set(&fit->bounds) && !fit->bounds.equal;
+    const int is_free = !ms_bounds_are_set(&fit->bounds) && !fit->bounds.equal && !fit->gap;
     ms_status status = MS_OK;
     for (size_t b = 0; b < count; b++) {
         ball[b].radius = fmax(ball[b].radius, fit->bounds.least);
@@ -172,8 +189,8 @@ static ms_status fit_bulk(spheres *best, ms_ball *ball, size_t count, ms_surface
             status = ms_surface_fit_steps(fit, ball, count, STEPS, DAMPING[turn - 1], err);
             fit->slant = 0;
         }
-        if (turn == TURNS) {
-            ms_bounds_confine(&fit->bounds, fit->field, ball, count);
+        if (status == MS_OK && turn == TURNS) {
+            status = settle(ball, count, best->dice, fit, err);
         }
         if (status == MS_OK && (is_free || turn == TURNS)) {
             status = keep_better(best, ball, count, fit, err);
@@ -203,17 +220,26 @@ static ms_status take_given(ms_ball *ball, size_t *count, const ms_bulk_other *o
     }
 }
 
-ms_status ms_bulk_improve(ms_ball *ball, size_t *count, size_t room, double dice, const ms_bulk_other *other,
-                          ms_surface_fit *fit, ms_error *err)
+ms_status ms_bulk_improve(ms_ball *ball, size_t *count, size_t room, const ms_bulk_other *other, ms_surface_fit *fit,
+                          ms_error *err)
 {
     const int *across = fit->mirror.across;
     const size_t images = (size_t)1 << (across[0] + across[1] + across[2]);
     const size_t clusters = other->wanted > images ? other->wanted / images : 1;
     ms_ball *tried = malloc((room + 1) * sizeof *tried);
-    spheres best = {ball, *count, dice};
+    spheres best = {ball, *count, 1, HUGE_VAL};
     ms_status status = tried ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", room);
     if (status == MS_OK) {
         memcpy(tried, ball, *count * sizeof *ball);
+        status = ms_bulk_dice(&best.dice, tried, *count, fit, err);
+    }
+    if (status == MS_OK) {
+        status = settle(tried, *count, best.dice, fit, err);
+    }
+    if (status == MS_OK) {
+        status = keep_better(&best, tried, *count, fit, err);
+    }
+    if (status == MS_OK) {
         status = fit_bulk(&best, tried, *count, fit, err);
     }
     if (status == MS_OK) {

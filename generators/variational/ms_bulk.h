@@ -36,13 +36,12 @@ ms_status ms_bulk_cluster(ms_ball *ball, size_t *count, const ms_coarse_view *vo
  *
  * @param[in,out] ball  `count` spheres, in voxels
  * @param         room  for spheres in ball: as many as are wanted or given
- * @param         dice  ms_bulk_dice of the spheres
- * @return MS_OK; MS_ERR_NOMEM. D is never larger than before, unless spheres are bounded.
+ * @return MS_OK; MS_ERR_NOMEM. D, and the price of what of the surface is too far, are together never larger than before
  *
  * Source: Dinkelbach, Management Science 13 (1967) 492. Cost: twice 100 steps of the fit and six times
  * ms_dice_compute.
  */
-ms_status ms_bulk_improve(ms_ball *ball, size_t *count, size_t room, double dice, const ms_bulk_other *other,
-                          ms_surface_fit *fit, ms_error *err);
+ms_status ms_bulk_improve(ms_ball *ball, size_t *count, size_t room, const ms_bulk_other *other, ms_surface_fit *fit,
+                          ms_error *err);
 
 #endif

@@ -29,6 +29,8 @@ static const double NEAR = 0.25;
  * the other, the one before. More take longer. */
 static const double ENOUGH = 0.12, PLENTY = 0.3;
 
+static const double FOUR_PI = 12.566370614359172954;
+
 /* The steps that the spheres want to make. */
 typedef struct move {
     double centre[3], radius;
@@ -81,17 +83,10 @@ static void find_place(double place[3], const ms_ball *ball, const double normal
     }
 }
 
-/* `beyond`: how far the place is beyond a plane; below 0: it is not. */
-static void add_place(normal_equations *e, const ms_surface_fit *fit, const ms_ball *ball, const double normal[3],
-                      double beyond)
+/* A place with this normal that is to move by -phi along it. */
+static void add_row(normal_equations *e, const double normal[3], double phi, double w)
 {
     const double row[4] = {normal[0], normal[1], normal[2], 1};
-    double place[3];
-    find_place(place, ball, normal);
-    const double away = ms_signed_distance_at(fit->field, place), phi = away > beyond ? away : beyond;
-    const double size = fabs(phi) > NEAR ? fabs(phi) : NEAR;
-    const double price = phi > 0 ? 1 - fit->slant : 1 + fit->slant;
-    const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) * price / size;
     for (int i = 0; i < 4; i++) {
         for (int j = 0; j <= i; j++) {
             e->a[i][j] += w * row[i] * row[j];
@@ -99,6 +94,23 @@ static void add_place(normal_equations *e, const ms_surface_fit *fit, const ms_b
         e->b[i] -= w * phi * row[i];
     }
     e->weight += w;
+}
+
+static double find_size(double phi)
+{
+    return fabs(phi) > NEAR ? fabs(phi) : NEAR;
+}
+
+/* `beyond`: how far the place is beyond a plane; below 0: it is not. */
+static void add_place(normal_equations *e, const ms_surface_fit *fit, const ms_ball *ball, const double normal[3],
+                      double beyond)
+{
+    double place[3];
+    find_place(place, ball, normal);
+    const double away = ms_signed_distance_at(fit->field, place), phi = away > beyond ? away : beyond;
+    const double price = phi > 0 ? 1 - fit->slant : 1 + fit->slant;
+    const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) * price;
+    add_row(e, normal, phi, w / find_size(phi));
 }
 
 /* Places beyond planes, whether they are covered or not: of the first level, as they are not to weigh but to stop. */
@@ -116,6 +128,21 @@ static void add_places_beyond(normal_equations *e, const ms_surface_fit *fit, co
     }
 }
 
+/* Places of the surface that no sphere is near enough to and this one is the nearest to: one of the sphere's own is to
+ * move towards each. `share`: of the surface that a point of the sphere stands for. */
+static void add_far_places(normal_equations *e, const ms_gap *gap, const ms_ball *ball, uint32_t self, double share)
+{
+    for (size_t i = gap->first[self]; i < gap->first[self + 1]; i++) {
+        const double *place = gap->place[gap->far[i]], too_far = gap->away[gap->far[i]] - gap->aim;
+        const double way = sqrt(ms_squared_distance(place, ball->centre));
+        double normal[3];
+        for (int c = 0; c < 3; c++) {
+            normal[c] = (place[c] - ball->centre[c]) / way;
+        }
+        add_row(e, normal, -too_far, MS_GAP_PRICE * gap->area / share / find_size(too_far));
+    }
+}
+
 static move find_move(const ms_surface_fit *fit, const workspace *work, ms_exposed *exposed, uint32_t self)
 {
     const ms_ball *ball = &work->window.ball[self];
@@ -130,6 +157,9 @@ static move find_move(const ms_surface_fit *fit, const workspace *work, ms_expos
     work->level[self] = (uint8_t)(exposed->count > PLENTY * points && level > 0 ? level - 1 : level);
     for (int p = 0; p < exposed->count; p++) {
         add_place(&e, fit, ball, exposed->normal[p], -HUGE_VAL);
+    }
+    if (fit->gap) {
+        add_far_places(&e, fit->gap, ball, self, FOUR_PI * ball->radius * ball->radius / exposed->points);
     }
     if (fit->bounds.planes && fit->bounds.planes->n_planes > 0) {
         add_places_beyond(&e, fit, ball);
@@ -174,8 +204,10 @@ static void share_radius(move *moves, const ms_ball *ball, size_t count, const m
     }
 }
 
-static void make_move(ms_ball *ball, double velocity[4], const move *step, double damping)
+/* Returns how far the sphere's surface moves at most. */
+static double make_move(ms_ball *ball, double velocity[4], const move *step, double damping, double least)
 {
+    const ms_ball before = *ball;
     for (int c = 0; c < 4; c++) {
         velocity[c] = MOMENTUM * velocity[c] + (c < 3 ? step->centre[c] : step->radius);
     }
@@ -184,7 +216,8 @@ static void make_move(ms_ball *ball, double velocity[4], const move *step, doubl
     for (int c = 0; c < 3; c++) {
         ball->centre[c] += part * velocity[c];
     }
-    ball->radius += fmin(fmax(damping * velocity[3], -longest), longest);
+    ball->radius = fmax(ball->radius + fmin(fmax(damping * velocity[3], -longest), longest), least);
+    return sqrt(ms_squared_distance(ball->centre, before.centre)) + fabs(ball->radius - before.radius);
 }
 
 static void free_workspace(workspace *work)
@@ -240,6 +273,7 @@ ms_status ms_surface_fit_steps(ms_surface_fit *fit, ms_ball *ball, size_t count,
                                ms_error *err)
 {
     workspace work;
+    double travel = HUGE_VAL;
     ms_status status = alloc_workspace(&work, fit, count, err);
     if (status != MS_OK) {
         return status;
@@ -250,6 +284,9 @@ ms_status ms_surface_fit_steps(ms_surface_fit *fit, ms_ball *ball, size_t count,
     for (int step = 0; step < steps && status == MS_OK; step++, fit->turns++) {
         const double d = damping[0] + (damping[1] - damping[0]) * step / fmax(1, steps - 1);
         ms_lattice_turn(fit->lattice, (unsigned long)(fit->seed * 1000003u + fit->turns));
+        if (fit->gap) {
+            ms_gap_find(fit->gap, ball, count, travel);
+        }
         if (!find_moves(fit, &work, ball, count)) {
             status = ms_fail(err, MS_ERR_NOMEM, "no memory to fit %zu spheres", count);
             break;
@@ -257,12 +294,12 @@ ms_status ms_surface_fit_steps(ms_surface_fit *fit, ms_ball *ball, size_t count,
         if (fit->bounds.equal) {
             share_radius(work.move, ball, count, &fit->mirror);
         }
+        travel = 0;
         for (size_t s = 0; s < count; s++) {
             if (fit->moving && !fit->moving[s]) {
                 continue;
             }
-            make_move(&ball[s], work.velocity[s], &work.move[s], d);
-            ball[s].radius = fmax(ball[s].radius, fit->bounds.least);
+            travel = fmax(travel, make_move(&ball[s], work.velocity[s], &work.move[s], d, fit->bounds.least));
         }
     }
     free_workspace(&work);
