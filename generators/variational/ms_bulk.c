@@ -162,7 +162,7 @@ static ms_status keep_better(spheres *best, const ms_ball *ball, size_t count, c
 }
 
 /* Has spheres keep to what they are bound to. */
-static ms_status settle(ms_ball *ball, size_t count, double dice, ms_surface_fit *fit, ms_error *err)
+static ms_status settle_within_bounds(ms_ball *ball, size_t count, double dice, ms_surface_fit *fit, ms_error *err)
 {
     ms_bounds_confine(&fit->bounds, fit->field, ball, count);
     if (!fit->gap) {
@@ -190,7 +190,7 @@ static ms_status fit_bulk(spheres *best, ms_ball *ball, size_t count, ms_surface
             fit->slant = 0;
         }
         if (status == MS_OK && turn == TURNS) {
-            status = settle(ball, count, best->dice, fit, err);
+            status = settle_within_bounds(ball, count, best->dice, fit, err);
         }
         if (status == MS_OK && (is_free || turn == TURNS)) {
             status = keep_better(best, ball, count, fit, err);
@@ -234,7 +234,7 @@ ms_status ms_bulk_improve(ms_ball *ball, size_t *count, size_t room, const ms_bu
         status = ms_bulk_dice(&best.dice, tried, *count, fit, err);
     }
     if (status == MS_OK) {
-        status = settle(tried, *count, best.dice, fit, err);
+        status = settle_within_bounds(tried, *count, best.dice, fit, err);
     }
     if (status == MS_OK) {
         status = keep_better(&best, tried, *count, fit, err);

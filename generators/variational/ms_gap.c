@@ -21,7 +21,7 @@ void ms_gap_close(ms_gap *gap)
 }
 
 /* Keeps what there is where there is no memory. */
-static int widen(void *array, size_t size)
+static int widen_array(void *array, size_t size)
 {
     void **to = array, *wider = realloc(*to, size);
     *to = wider ? wider : *to;
@@ -32,9 +32,11 @@ ms_status ms_gap_add(ms_gap *gap, const double place[3], const ms_mirror *mirror
 {
     if (gap->count == gap->room) {
         const size_t room = 2 * gap->room + 64;
-        if (!widen(&gap->place, room * sizeof *gap->place) || !widen(&gap->away, room * sizeof *gap->away) ||
-            !widen(&gap->known, room * sizeof *gap->known) || !widen(&gap->nearest, room * sizeof *gap->nearest) ||
-            !widen(&gap->far, room * sizeof *gap->far)) {
+        if (!widen_array(&gap->place, room * sizeof *gap->place) ||
+            !widen_array(&gap->away, room * sizeof *gap->away) ||
+            !widen_array(&gap->known, room * sizeof *gap->known) ||
+            !widen_array(&gap->nearest, room * sizeof *gap->nearest) ||
+            !widen_array(&gap->far, room * sizeof *gap->far)) {
             return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu places of the surface", room);
         }
         gap->room = room;
@@ -90,7 +92,7 @@ static void find_corners(double corner[3][3], const ms_target *target, size_t tr
 }
 
 /* By the R2 sequence, folded from the square; a place for each `area` of all triangles so far. */
-static ms_status add_triangles(ms_gap *gap, const ms_target *target, const ms_mirror *mirror, ms_error *err)
+static ms_status spread_over_triangles(ms_gap *gap, const ms_target *target, const ms_mirror *mirror, ms_error *err)
 {
     double passed = 0.5, given = 0;
     ms_status status = MS_OK;
@@ -126,7 +128,7 @@ ms_status ms_gap_open(ms_gap *gap, const ms_target *target, const ms_mirror *mir
     ms_status status = gap->first ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", most);
     if (status == MS_OK && target->mesh) {
         gap->area = fmax(ms_mesh_area(target->mesh) / (h * h) / MOST, LEAST_AREA);
-        status = add_triangles(gap, target, mirror, err);
+        status = spread_over_triangles(gap, target, mirror, err);
     } else if (status == MS_OK) {
         status = add_border(gap, &target->grid, mirror, err);
     }
@@ -137,7 +139,7 @@ ms_status ms_gap_open(ms_gap *gap, const ms_target *target, const ms_mirror *mir
 }
 
 /* Distance to the nearest sphere, and to the nearest but that one. */
-static double find_nearest(uint32_t *nearest, double *next, const double place[3], const ms_ball *ball, size_t count)
+static double measure_nearest(uint32_t *nearest, double *next, const double place[3], const ms_ball *ball, size_t count)
 {
     double least = HUGE_VAL, second = HUGE_VAL;
     *nearest = 0;
@@ -169,7 +171,7 @@ void ms_gap_find(ms_gap *gap, const ms_ball *ball, size_t count, double travel)
 #pragma omp parallel for schedule(static)
     for (size_t p = 0; p < gap->count; p++) {
         if (afresh || !(gap->known[p] > gap->travelled)) {
-            gap->away[p] = find_nearest(&gap->nearest[p], NULL, gap->place[p], ball, count);
+            gap->away[p] = measure_nearest(&gap->nearest[p], NULL, gap->place[p], ball, count);
             gap->known[p] = gap->travelled + gap->aim - gap->away[p];
         }
     }
@@ -206,7 +208,7 @@ void ms_gap_losses(double *loss, ms_gap *gap, const ms_ball *ball, size_t count)
     for (size_t p = 0; p < gap->count; p++) {
         uint32_t nearest;
         double next;
-        const double away = find_nearest(&nearest, &next, gap->place[p], ball, count);
+        const double away = measure_nearest(&nearest, &next, gap->place[p], ball, count);
         loss[nearest] += gap->area * (fmax(0, next - gap->aim) - fmax(0, away - gap->aim));
     }
 }

@@ -49,7 +49,7 @@ static ms_status fit_to_excess(const shortfall *e, ms_ball *ball, size_t count, 
 }
 
 /* The nearest sphere above the planes of symmetry, where it is nearer than its images. */
-static size_t find_nearest(const ms_ball *ball, size_t count, const double place[3], const ms_mirror *m)
+static size_t find_nearest_above(const ms_ball *ball, size_t count, const double place[3], const ms_mirror *m)
 {
     ms_ball at = {.centre = {place[0], place[1], place[2]}};
     double least = HUGE_VAL;
@@ -65,11 +65,11 @@ static size_t find_nearest(const ms_ball *ball, size_t count, const double place
     return nearest;
 }
 
-static void grow(const shortfall *e, ms_ball *ball, size_t count, const ms_surface_fit *fit)
+static void grow_nearest(const shortfall *e, ms_ball *ball, size_t count, const ms_surface_fit *fit)
 {
     for (size_t i = 0; i < e->count; i++) {
         if (e->far[i].away > 0) {
-            ms_ball *one = &ball[find_nearest(ball, count, e->far[i].place, &fit->mirror)];
+            ms_ball *one = &ball[find_nearest_above(ball, count, e->far[i].place, &fit->mirror)];
             const double needed = sqrt(ms_squared_distance(e->all[i].centre, e->far[i].place)) - fit->gap->bound;
             one->radius = fmax(one->radius, needed + BEYOND);
         }
@@ -94,7 +94,7 @@ ms_status ms_gap_hold(ms_ball *ball, size_t count, ms_surface_fit *fit, ms_error
         }
     }
     for (int g = 0; g < GROWTHS && status == MS_OK && !is_held(&e, fit->gap); g++) {
-        grow(&e, ball, count, fit);
+        grow_nearest(&e, ball, count, fit);
         status = find_excess(&e, ball, count, fit, err);
     }
     fit->gap->aim = fit->gap->bound;

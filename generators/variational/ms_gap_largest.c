@@ -78,8 +78,8 @@ static void search_part(farthest *out, const double corner[3][3], const ms_ball 
     }
 }
 
-static void search_triangle(farthest *out, const ms_target *target, size_t triangle, const ms_ball *all, size_t count,
-                            double bound)
+static void search_face(farthest *out, const ms_target *target, size_t triangle, const ms_ball *all, size_t count,
+                        double bound)
 {
     double corner[3][3];
     for (int c = 0; c < 3; c++) {
@@ -117,7 +117,7 @@ ms_status ms_gap_largest(double *largest, ms_gap_far *far, const ms_target *targ
             farthest *out = &found[p - from];
             *out = (farthest){.far.away = -HUGE_VAL};
             if (target->mesh) {
-                search_triangle(out, target, p, all, count, bound);
+                search_face(out, target, p, all, count, bound);
             } else {
                 search_voxel(out, &target->grid, p, all, count, bound);
             }

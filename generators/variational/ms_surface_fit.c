@@ -84,7 +84,7 @@ static void find_place(double place[3], const ms_ball *ball, const double normal
 }
 
 /* A place with this normal that is to move by -phi along it. */
-static void add_row(normal_equations *e, const double normal[3], double phi, double w)
+static void add_equation(normal_equations *e, const double normal[3], double phi, double w)
 {
     const double row[4] = {normal[0], normal[1], normal[2], 1};
     for (int i = 0; i < 4; i++) {
@@ -110,7 +110,7 @@ static void add_place(normal_equations *e, const ms_surface_fit *fit, const ms_b
     const double away = ms_signed_distance_at(fit->field, place), phi = away > beyond ? away : beyond;
     const double price = phi > 0 ? 1 - fit->slant : 1 + fit->slant;
     const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) * price;
-    add_row(e, normal, phi, w / find_size(phi));
+    add_equation(e, normal, phi, w / find_size(phi));
 }
 
 /* Places beyond planes, whether they are covered or not: of the first level, as they are not to weigh but to stop. */
@@ -139,7 +139,7 @@ static void add_far_places(normal_equations *e, const ms_gap *gap, const ms_ball
         for (int c = 0; c < 3; c++) {
             normal[c] = (place[c] - ball->centre[c]) / way;
         }
-        add_row(e, normal, -too_far, MS_GAP_PRICE * gap->area / share / find_size(too_far));
+        add_equation(e, normal, -too_far, MS_GAP_PRICE * gap->area / share / find_size(too_far));
     }
 }
 

@@ -275,6 +275,10 @@ static ms_status try_bulk(ms_variational_solver *s, ms_error *err)
 {
     double dice;
     ms_coarse_view volume = {0};
+    const ms_target *target = s->run->target;
+    if (s->fit.bounds.least > ms_target_equivalent_radius(target) / target->grid.h) {
+        return MS_OK; /* none as large stands for the shape */
+    }
     ms_status status = ms_bulk_dice(&dice, s->ball, s->count, &s->fit, err);
     if (status != MS_OK || (dice < HOPELESS && !s->fit.gap)) {
         return status;
