@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/ms_vector.h"
+#include "ms_connect_hold.h"
 #include "ms_dice.h"
 #include "ms_gap_hold.h"
 #include "ms_prune.h"
@@ -161,15 +162,21 @@ static ms_status keep_better(spheres *best, const ms_ball *ball, size_t count, c
     return status;
 }
 
-/* Has spheres keep to what they are bound to. */
-static ms_status settle_within_bounds(ms_ball *ball, size_t count, double dice, ms_surface_fit *fit, ms_error *err)
+/* Has spheres keep to what they are bound to; one that cannot be joined to the others is dropped. */
+static ms_status settle_within_bounds(ms_ball *ball, size_t *count, double dice, ms_surface_fit *fit, ms_error *err)
 {
-    ms_bounds_confine(&fit->bounds, fit->field, ball, count);
-    if (!fit->gap) {
-        return MS_OK;
-    }
+    ms_status status = MS_OK;
+    ms_bounds_confine(&fit->bounds, fit->field, ball, *count);
     fit->slant = dice;
-    const ms_status status = ms_gap_hold(ball, count, fit, err);
+    if (fit->connected) {
+        status = ms_connect_fit(ball, *count, fit, err);
+    }
+    if (status == MS_OK && fit->gap) {
+        status = ms_gap_hold(ball, *count, fit, err);
+    }
+    if (status == MS_OK && fit->connected) {
+        status = ms_connect_hold(ball, count, fit, err);
+    }
     fit->slant = 0;
     return status;
 }
@@ -178,7 +185,7 @@ static ms_status settle_within_bounds(ms_ball *ball, size_t count, double dice, 
 static ms_status fit_bulk(spheres *best, ms_ball *ball, size_t count, ms_surface_fit *fit, ms_error *err)
 {
     static const double DAMPING[TURNS][2] = {{0.8, 0.4}, {0.8, 0.4}, {0.6, 0.3}, {0.5, 0.2}, {0.3, 0.05}};
-    const int is_free = !ms_bounds_are_set(&fit->bounds) && !fit->bounds.equal && !fit->gap;
+    const int is_free = !ms_bounds_are_set(&fit->bounds) && !fit->bounds.equal && !fit->gap && !fit->connected;
     ms_status status = MS_OK;
     for (size_t b = 0; b < count; b++) {
         ball[b].radius = fmax(ball[b].radius, fit->bounds.least);
@@ -190,7 +197,7 @@ static ms_status fit_bulk(spheres *best, ms_ball *ball, size_t count, ms_surface
             fit->slant = 0;
         }
         if (status == MS_OK && turn == TURNS) {
-            status = settle_within_bounds(ball, count, best->dice, fit, err);
+            status = settle_within_bounds(ball, &count, best->dice, fit, err);
         }
         if (status == MS_OK && (is_free || turn == TURNS)) {
             status = keep_better(best, ball, count, fit, err);
@@ -220,27 +227,41 @@ static ms_status take_given(ms_ball *ball, size_t *count, const ms_bulk_other *o
     }
 }
 
+/* The spheres that there are, within their bounds: pieces as they are, since fits may pull spheres from where they may
+ * be; pieces that are fitted to one; and all fitted for D. */
+static ms_status try_first(spheres *best, ms_ball *tried, const ms_ball *first, size_t count, ms_surface_fit *fit,
+                           ms_error *err)
+{
+    size_t n = count;
+    memcpy(tried, first, n * sizeof *tried);
+    ms_status status = ms_bulk_dice(&best->dice, tried, n, fit, err);
+    if (status == MS_OK && fit->connected) {
+        status = ms_connect_hold(tried, &n, fit, err);
+        status = status == MS_OK ? keep_better(best, tried, n, fit, err) : status;
+        n = count;
+        memcpy(tried, first, n * sizeof *tried);
+    }
+    if (status == MS_OK) {
+        status = settle_within_bounds(tried, &n, best->dice, fit, err);
+    }
+    if (status == MS_OK) {
+        status = keep_better(best, tried, n, fit, err);
+    }
+    return status == MS_OK ? fit_bulk(best, tried, n, fit, err) : status;
+}
+
 ms_status ms_bulk_improve(ms_ball *ball, size_t *count, size_t room, const ms_bulk_other *other, ms_surface_fit *fit,
                           ms_error *err)
 {
     const int *across = fit->mirror.across;
     const size_t images = (size_t)1 << (across[0] + across[1] + across[2]);
     const size_t clusters = other->wanted > images ? other->wanted / images : 1;
-    ms_ball *tried = malloc((room + 1) * sizeof *tried);
+    ms_ball *tried = malloc((room + 1) * sizeof *tried), *first = malloc((room + 1) * sizeof *first);
     spheres best = {ball, *count, 1, HUGE_VAL};
-    ms_status status = tried ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", room);
+    ms_status status = tried && first ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", room);
     if (status == MS_OK) {
-        memcpy(tried, ball, *count * sizeof *ball);
-        status = ms_bulk_dice(&best.dice, tried, *count, fit, err);
-    }
-    if (status == MS_OK) {
-        status = settle_within_bounds(tried, *count, best.dice, fit, err);
-    }
-    if (status == MS_OK) {
-        status = keep_better(&best, tried, *count, fit, err);
-    }
-    if (status == MS_OK) {
-        status = fit_bulk(&best, tried, *count, fit, err);
+        memcpy(first, ball, *count * sizeof *first);
+        status = try_first(&best, tried, first, *count, fit, err);
     }
     if (status == MS_OK) {
         size_t n;
@@ -251,6 +272,7 @@ ms_status ms_bulk_improve(ms_ball *ball, size_t *count, size_t room, const ms_bu
         }
     }
     *count = best.count;
+    free(first);
     free(tried);
     return status;
 }

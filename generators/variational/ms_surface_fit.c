@@ -22,6 +22,9 @@ static const double MOMENTUM = 0.5;
  * more than to fit by it. */
 static const double STIFF = 1000;
 
+/* Weight of what pulls pieces together, in that of all else at the sphere. */
+static const double TIE = 3;
+
 /* Distances below this, in voxels, weigh the same: 1 / |phi| has to be bounded. */
 static const double NEAR = 0.25;
 
@@ -43,6 +46,8 @@ typedef struct workspace {
     ms_caps_window window;
     uint8_t *level; /* of the lattice, for each sphere: the more of it is covered, the more points */
     move *move;
+    ms_tie *tie; /* what pulls spheres together */
+    size_t ties;
     double (*velocity)[4]; /* what was made of the last steps, before damping: centre, radius */
 } workspace;
 
@@ -143,6 +148,17 @@ static void add_far_places(normal_equations *e, const ms_gap *gap, const ms_ball
     }
 }
 
+/* What pulls this sphere to another piece outweighs all that holds it. */
+static void add_ties(normal_equations *e, const workspace *work, uint32_t self)
+{
+    const double weight = e->weight > 0 ? e->weight : 1;
+    for (size_t t = 0; t < work->ties; t++) {
+        if (work->tie[t].ball == self) {
+            add_equation(e, work->tie[t].normal, -work->tie[t].away, TIE * weight);
+        }
+    }
+}
+
 static move find_move(const ms_surface_fit *fit, const workspace *work, ms_exposed *exposed, uint32_t self)
 {
     const ms_ball *ball = &work->window.ball[self];
@@ -164,6 +180,7 @@ static move find_move(const ms_surface_fit *fit, const workspace *work, ms_expos
     if (fit->bounds.planes && fit->bounds.planes->n_planes > 0) {
         add_places_beyond(&e, fit, ball);
     }
+    add_ties(&e, work, self);
     if (e.weight > 0) {
         for (int i = 0; i < 4; i++) {
             e.a[i][i] += RIDGE * e.weight;
@@ -227,6 +244,7 @@ static void free_workspace(workspace *work)
     free(work->move);
     free(work->velocity);
     free(work->level);
+    free(work->tie);
 }
 
 static ms_status alloc_workspace(workspace *work, const ms_surface_fit *fit, size_t count, ms_error *err)
@@ -286,6 +304,12 @@ ms_status ms_surface_fit_steps(ms_surface_fit *fit, ms_ball *ball, size_t count,
         ms_lattice_turn(fit->lattice, (unsigned long)(fit->seed * 1000003u + fit->turns));
         if (fit->gap) {
             ms_gap_find(fit->gap, ball, count, travel);
+        }
+        free(work.tie);
+        work.tie = NULL;
+        if (fit->connected &&
+            (status = ms_connect_find(&work.tie, &work.ties, ball, count, &fit->mirror, err)) != MS_OK) {
+            break;
         }
         if (!find_moves(fit, &work, ball, count)) {
             status = ms_fail(err, MS_ERR_NOMEM, "no memory to fit %zu spheres", count);

@@ -14,7 +14,7 @@
 #include "shared/ms_bisect_count.h"
 #include "shared/ms_judge.h"
 
-enum { EFFORT, POINTS, PROTRUSION, GAP, EQUAL_RADIUS, SYMMETRY, PLANES, REFINE };
+enum { EFFORT, POINTS, PROTRUSION, GAP, CONNECTED, EQUAL_RADIUS, SYMMETRY, PLANES, REFINE };
 
 static const ms_option OPTIONS[] = {
     [EFFORT] = {"effort", MS_OPTION_INTEGER, 0, 0, 3, NULL, NULL,
@@ -24,6 +24,7 @@ static const ms_option OPTIONS[] = {
                     "no sphere sticks out of the shape by more; 0: inscribed; below 0: no bound"},
     [GAP] = {"gap", MS_OPTION_REAL, -1, -1, 1e6, NULL, "voxels",
              "no part of the surface is farther from the spheres; below 0: no bound"},
+    [CONNECTED] = {"connected", MS_OPTION_FLAG, 0, 0, 1, NULL, NULL, "the spheres are one piece"},
     [EQUAL_RADIUS] = {"equal-radius", MS_OPTION_FLAG, 0, 0, 1, NULL, NULL, "all spheres of one radius"},
     [SYMMETRY] = {"symmetry", MS_OPTION_CHOICE, 0, 0, 0, "none|x|y|z|xy|xz|yz|xyz", NULL,
                   "the spheres are mirror images across planes through the centroid, normal to these axes"},
@@ -92,6 +93,7 @@ static ms_variational_settings read_settings(const ms_run *run)
                                                    .equal = value[EQUAL_RADIUS] != 0,
                                                    .planes = run->settings},
                                         .gap = value[GAP] < 0 ? HUGE_VAL : value[GAP] * (1 - ROUNDING),
+                                        .connected = value[CONNECTED] != 0,
                                         .mirror = {.across = {across[0], across[1], across[2]}},
                                         .refine = &run->settings->clump};
     ms_grid_at(settings.mirror.at, &run->target->grid, run->target->body.centroid);
@@ -121,6 +123,25 @@ static ms_status check_gap(const ms_clump *clump, const ms_run *run, ms_error *e
     return status;
 }
 
+/* Says if the spheres are not one piece, or fewer so that they are. */
+static ms_status check_connected(const ms_clump *clump, size_t asked, const ms_run *run, ms_error *err)
+{
+    size_t pieces;
+    const ms_status status = ms_clump_pieces(&pieces, clump, err);
+    if (status == MS_OK && pieces > 1) {
+        ms_generator_remark(run,
+                            "connected cannot be held by %zu spheres within their other bounds: they are in %zu "
+                            "pieces; more spheres or a larger protrusion help",
+                            clump->n_spheres, pieces);
+    } else if (status == MS_OK && clump->n_spheres < asked) {
+        ms_generator_remark(run,
+                            "%zu of %zu spheres are one piece; what could not be joined to them, or was of no use, is "
+                            "left out",
+                            clump->n_spheres, asked);
+    }
+    return status;
+}
+
 /* Each number of spheres is a run of its own, since the best n spheres are not among the best n + 1. */
 static ms_status generate_for(void *context, ms_clump *clump, ms_stop_reason *reason, size_t n, ms_error *err)
 {
@@ -134,6 +155,9 @@ static ms_status generate_for(void *context, ms_clump *clump, ms_stop_reason *re
     }
     if (status == MS_OK && settings.gap < HUGE_VAL) {
         status = check_gap(clump, run, err);
+    }
+    if (status == MS_OK && settings.connected) {
+        status = check_connected(clump, n, run, err);
     }
     if (status == MS_OK) {
         status = judge_clump(reason, clump, n, run, err);

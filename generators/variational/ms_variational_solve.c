@@ -280,9 +280,10 @@ static ms_status try_bulk(ms_variational_solver *s, ms_error *err)
         return MS_OK; /* none as large stands for the shape */
     }
     ms_status status = ms_bulk_dice(&dice, s->ball, s->count, &s->fit, err);
-    if (status != MS_OK || (dice < HOPELESS && !s->fit.gap)) {
+    if (status != MS_OK || (dice < HOPELESS && !s->fit.gap && !s->settings->connected)) {
         return status;
     }
+    s->fit.connected = s->settings->connected; /* earlier, pieces that are to go would pull others away */
     status = ms_variational_solver_view(&volume, s, s->coarse.step, err);
     if (status == MS_OK) {
         ms_coarse_view_keep_upper(&volume, &s->settings->mirror);
