@@ -89,10 +89,11 @@ class Rows(Grains):
             self.assertEqual(float(row["volume"]), record["input"].get("volume", float(row["volume"])))
 
     def test_stop_rules_and_patterns(self):
-        rows = self.grains("stones/*.obj", "-g", "setcover", "--until", "coverage=0.6", "--cells", "12")
+        rows = self.grains("stones/*.obj", "-g", "setcover", "--until", "coverage=0.6", "--cells", "12",
+                           "--min-radius", "0.001")
         self.assertEqual([row["source"] for row in rows], ["stones/a.obj", "stones/b.obj"])
         for row in rows:
-            self.assertEqual((row["n_asked"], row["until"], row["stopped_by"]), ("", "coverage=0.6", "coverage"))
+            self.assertEqual((row["n_asked"], row["until"], row["stopped_by"]), ("", "coverage=0.6 radius=0.001", "coverage"))
             self.assertGreaterEqual(float(row["coverage"]), 0.6)
 
     def test_templates_with_the_true_mass(self):
