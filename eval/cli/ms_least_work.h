@@ -11,8 +11,7 @@
 /* clang-format off */
 #define MS_LEAST_WORK_FLAGS \
     {"least-work", 0, "dice=VALUE", \
-     "of up to 12 runs over numbers of spheres and least radii the clump of least work, n (r_eq / r_min)^P, with D as " \
-     "good as that"}, \
+     "up to 12 runs over numbers of spheres and least radii: the clump of least work n (r_eq / r_min)^P with such D"}, \
     {"work-power", 0, "P", "how the steps of a simulation go with its least radius (1); 0: not at all, fewest spheres"}
 /* clang-format on */
 
@@ -30,7 +29,8 @@ ms_status ms_least_work_flag(int *taken, ms_least_work *work, const char *name, 
 ms_status ms_least_work_resolve(const ms_least_work *work, const ms_stop *stop, ms_error *err);
 
 /**
- * Searches (ms_least_work_search) with a generator; says each run on stderr. A run that places no sphere is one that gave no clump.
+ * Searches (ms_least_work_search) with a generator; says each run on stderr. A run that places no sphere is one that
+ * gave no clump.
  *
  * @param[out] clump    that of the run kept; the caller frees it; empty on failure
  * @param      run      its stop rule bounds the number of spheres and the least radius

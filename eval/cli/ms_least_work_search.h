@@ -34,8 +34,8 @@ typedef struct ms_least_work_bounds {
 typedef ms_status (*ms_least_work_run)(void *context, ms_least_work_try *row, int at, ms_error *err);
 
 /**
- * Tries: first numbers of spheres, from the expected one on, to the least that reaches D (within a twentieth, unless the
- * power is 0); then larger least radii, with more spheres where these cost more D than there is; then fewer spheres.
+ * Tries: first numbers of spheres, from the expected one on, to the least that reaches D (within a twentieth, unless
+ * the power is 0); then larger least radii, with more spheres where these cost more D than there is; then fewer.
  *
  * @return MS_OK, also if none reaches it; as `run`
  */

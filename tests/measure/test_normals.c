@@ -104,9 +104,9 @@ static void what_is_near_an_edge_is_apart(void **state)
 }
 
 /*
- * Spheres of radius 1 along the axis of a capsule, d apart: at s from the nearest centre the normal is turned by asin s,
- * and s is spread evenly over their surface (Archimedes). The half balls at the ends fit. Over a straight part of length
- * l so much of the surface is turned by less than a: (2 + l 2 sin a / d) / (2 + l).
+ * Spheres of radius 1 along the axis of a capsule, d apart: at s from the nearest centre the normal is turned by asin
+ * s, and s is spread evenly over their surface (Archimedes). The half balls at the ends fit. Over a straight part of
+ * length l so much of the surface is turned by less than a: (2 + l 2 sin a / d) / (2 + l).
  */
 static void a_chain_in_a_capsule_is_turned_by_an_arc_sine(void **state)
 {
