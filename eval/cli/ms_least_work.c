@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/ms_text.h"
 #include "measure/ms_metrics.h"
 #include "ms_json_object.h"
 #include "ms_progress.h"
