@@ -410,7 +410,7 @@ class Charts(Compare):
         self.assertEqual(len(self.rows()), 1)
         names = sorted(os.listdir(self.path("charts")))
         sheet = ["box-mss-3.csv", "box-sheet.gp", "box-tiles.png"]
-        kinds = ["dice", "time", "inertia"] + (["corrected"] if self.rows()[0]["epsilon"] else [])
+        kinds = ["dice", "normal_median", "time", "work", "inertia"] + (["corrected"] if self.rows()[0]["epsilon"] else [])
         self.assertEqual(names, sorted(sheet + [f"box-{k}.{e}" for k in kinds for e in ("dat", "gp")]))
 
     def test_same_names(self):
