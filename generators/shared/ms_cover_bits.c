@@ -67,7 +67,8 @@ static inline void keep_run(ms_cover_room *room, size_t *n_found, ms_cover_run f
 
 /* Of the 64 rows of plane k from j = 64 g on those that have anything left near the ball: in a tile of the slab from
  * x = base on that its disc, of squared radius `disc`, may reach. */
-static inline uint64_t find_rows(const ms_cover_bits *set, const ms_ball *ball, int base, int k, int g, double disc)
+static inline uint64_t find_rows_left(const ms_cover_bits *set, const ms_ball *ball, int base, int k, int g,
+                                      double disc)
 {
     const double x = ball->centre[0], y = ball->centre[1], reach = sqrt(disc);
     const int above = round_above(x + reach, set->n[0]), below = round_up(x - reach, set->n[0]);
@@ -128,7 +129,7 @@ static inline void walk_plane(walk *w, walk_purpose purpose, int base, int k)
     const double reach = sqrt(disc);
     const int end = round_above(y + reach, set->n[1]);
     for (int g = round_up(y - reach, set->n[1]) / WORD; g * WORD < end; g++) {
-        for (uint64_t rows = find_rows(set, w->ball, base, k, g, disc) & EVERY[w->step]; rows; rows &= rows - 1) {
+        for (uint64_t rows = find_rows_left(set, w->ball, base, k, g, disc) & EVERY[w->step]; rows; rows &= rows - 1) {
             const int j = g * WORD + __builtin_ctzll(rows);
             const double dy = j - y, rest = square - (dy * dy + dz * dz);
             if (rest >= 0) {
