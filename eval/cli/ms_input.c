@@ -9,6 +9,7 @@
 #include "base/ms_file.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "ms_progress.h"
+#include "voxel/ms_cut_cells.h"
 
 static void open_line(const ms_input *input, const char *stage)
 {
@@ -233,14 +234,21 @@ static void say_coarser(const ms_input *input, const ms_input_flags *flags, doub
     }
 }
 
+/* What is taken beyond the target: without a method, by a score. */
+static ms_target_need find_input_need(const ms_input_flags *flags)
+{
+    const ms_target_need score = {MS_TARGET_METHOD_BYTES + MS_CUT_VOXEL_BYTES, MS_CUT_SQUARE_BYTES};
+    return flags->cut && !(flags->need.voxel > 0) ? score : flags->need;
+}
+
 static double find_mesh_bytes(const double n[3], double h, const ms_input *input, const ms_input_flags *flags)
 {
-    return ms_target_bytes(n, ms_mesh_area(&input->mesh) / (h * h), flags->need);
+    return ms_target_bytes(n, ms_mesh_area(&input->mesh) / (h * h), find_input_need(flags));
 }
 
 static double find_volume_bytes(const double n[3], const ms_input_flags *flags)
 {
-    return ms_target_bytes(n, ms_target_box_squares(n), flags->need);
+    return ms_target_bytes(n, ms_target_box_squares(n), find_input_need(flags));
 }
 
 static ms_status check_memory(const double n[3], double bytes, const ms_input_flags *flags, ms_error *err)
@@ -406,7 +414,7 @@ ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error
 size_t ms_input_max_voxels(const ms_input_flags *flags)
 {
     const double one[3] = {1, 1, 1};
-    return (size_t)(flags->max_memory / ms_target_bytes(one, 0, flags->need));
+    return (size_t)(flags->max_memory / ms_target_bytes(one, 0, find_input_need(flags)));
 }
 
 void ms_input_free(ms_input *input)

@@ -95,3 +95,6 @@ class Cut(Case):
             args = ("generate", "box.obj", *GRID, *SETCOVER, "-n", 3, "-o", "c.csv", "--max-memory", "60k")
             self.mskit(*args)
             self.assert_refused(*args, *asked, code=1, says=("--max-memory",))
+        score = ("score", "c.csv", "--target", "box.obj", *GRID, "--max-memory", "60k")
+        self.mskit(*score)
+        self.assert_refused(*score, "--cut", code=1, says=("--max-memory",))
