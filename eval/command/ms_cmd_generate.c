@@ -391,7 +391,7 @@ static ms_status resolve_generate(generate_arguments *a, ms_error *err)
     a->input.cut |= a->stop.coverage_cut > 0;
     ms_status status = ms_recipe_resolve(&a->recipe, err);
     if (status == MS_OK) {
-        a->input.method_bytes = a->recipe.generator->bytes_per_voxel;
+        a->input.need = ms_generator_need(a->recipe.generator, &a->recipe.settings, a->input.cut);
         const char *const inputs[] = {a->shape, a->recipe.settings.clump_file};
         status = ms_files_check_standard(inputs, 2, err);
     }

@@ -239,7 +239,8 @@ const ms_generator ms_generator_variational = {
     .source = "mskit (2026); objective: Buchele et al., MSS eq. 2",
     .nested = 0,
     .bytes_per_voxel = 7,
-    .kept_bytes = 4.5, /* signed distances at steps 1 and 2 */
+    .bytes_per_square = 60, /* places to start from */
+    .kept_bytes = 4.5,      /* signed distances at steps 1 and 2 */
     .options = OPTIONS,
     .generate = generate_by_variational,
 };

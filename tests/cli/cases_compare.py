@@ -107,7 +107,7 @@ class Rows(Compare):
     def test_a_large_run_is_alone(self):
         """12 cells fit into a third of the memory allowed, 24 only into all of it."""
         rows = self.compare("box.obj", "-g", "mss", "-g", "variational", "-n", "5", "--cells", "12,24", "-j", "3",
-                            "--max-memory", "3M")
+                            "--max-memory", "5M")
         self.assertEqual([(row["cells"], row["threads"], row["beside"], row["cause"]) for row in rows],
                          [("12", "1", "2", "")] * 2 + [("24", "3", "0", "")] * 2)
 
