@@ -5,7 +5,7 @@
 #include "voxel/ms_raster.h"
 
 /**
- * D = 1 - 2 |S and U| / (|S| + |U|), MSS eq. 27: what lies in both is counted by voxels, what the spheres hold is exact.
+ * D = 1 - 2 |S and U| / (|S| + |U|), MSS eq. 27: what lies in both is counted by voxels, what spheres hold is exact.
  *
  * @param[out] dice   1 for no spheres
  * @param      ball   in voxels of the grid
