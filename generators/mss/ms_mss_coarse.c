@@ -45,7 +45,7 @@ static void sum_rows(uint8_t *sum, const ms_grid *fine, const axis_taps taps[3],
 }
 
 /* @return how many are inside */
-static size_t fill_row(uint8_t *inside, int length, const uint8_t *sum, int n, const axis_taps *taps)
+static size_t fill_coarse_row(uint8_t *inside, int length, const uint8_t *sum, int n, const axis_taps *taps)
 {
     size_t count = 0;
     for (int x = 0; x < length; x++) {
@@ -60,7 +60,7 @@ static size_t fill_row(uint8_t *inside, int length, const uint8_t *sum, int n, c
     return count;
 }
 
-static ms_status fill_grid(ms_mss_coarse *coarse, const ms_grid *fine, ms_error *err)
+static ms_status fill_coarse_grid(ms_mss_coarse *coarse, const ms_grid *fine, ms_error *err)
 {
     const ms_grid *grid = &coarse->target.grid;
     const axis_taps taps[3] = {find_taps(coarse->shift[0]), find_taps(coarse->shift[1]), find_taps(coarse->shift[2])};
@@ -73,7 +73,8 @@ static ms_status fill_grid(ms_mss_coarse *coarse, const ms_grid *fine, ms_error 
         complete &= sum != NULL;
         for (int y = 0; sum && y < grid->n[1]; y++) {
             sum_rows(sum, fine, taps, y, z);
-            count += fill_row(grid->inside + ms_grid_index(grid, 0, y, z), grid->n[0], sum, fine->n[0], &taps[0]);
+            count +=
+                fill_coarse_row(grid->inside + ms_grid_index(grid, 0, y, z), grid->n[0], sum, fine->n[0], &taps[0]);
         }
         free(sum);
     }
@@ -95,7 +96,7 @@ ms_status ms_mss_coarse_make(ms_mss_coarse *coarse, const ms_target *target, ms_
     coarse->target.distance = NULL;
     ms_status status = ms_grid_alloc(&coarse->target.grid, n, MS_MSS_COARSE * fine->h, origin, err);
     if (status == MS_OK) {
-        status = fill_grid(coarse, fine, err);
+        status = fill_coarse_grid(coarse, fine, err);
     }
     if (status == MS_OK) {
         const size_t voxels = ms_grid_voxels(&coarse->target.grid);

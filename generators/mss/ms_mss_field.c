@@ -59,7 +59,7 @@ static size_t count_rows(const ms_mss_field *field)
     return (size_t)field->target->grid.n[1] * (size_t)field->target->grid.n[2];
 }
 
-static float find_deepest(const float *distance, size_t voxels)
+static float find_deepest_e(const float *distance, size_t voxels)
 {
     float deepest = 0;
 #pragma omp parallel for reduction(max : deepest) if (voxels >= MS_GRID_THREADS_FROM)
@@ -83,7 +83,7 @@ ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const 
         ms_planes_cut(field->own_e, target, settings);
     }
     field->e = settings->n_planes ? field->own_e : target->distance;
-    field->deepest = find_deepest(field->e, voxels);
+    field->deepest = find_deepest_e(field->e, voxels);
     return ms_raster_alloc(&field->raster, &target->grid, target->rule, err);
 }
 
@@ -365,7 +365,7 @@ ms_status ms_mss_field_start(ms_mss_field *field, ms_error *err)
         const ms_mss_box all = {{0, 0, 0}, {n[0], n[1], n[2]}};
         note_covered(field, &all);
         status = ms_distance(field->within, field->covered, n, err);
-        field->deepest_within = find_deepest(field->within, voxels);
+        field->deepest_within = find_deepest_e(field->within, voxels);
     }
     return status == MS_OK ? ms_mss_field_touch_all(field, err) : status;
 }
