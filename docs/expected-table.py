@@ -26,8 +26,8 @@ ANALYTIC = {"torus": ("torus",), "prolate": ("ellipsoid", "a=2", "b=1", "c=1", "
             "grain5": ("grain", "seed=5"), "grain11": ("grain", "seed=11"), "tablet": ("tablet",),
             "cylinder": ("cylinder",)}
 # Bodies, numbers of spheres, cells along the shortest side for the method and along the longest for the judge: more where
-# the body stands along the grid's own planes, so that 200 err by 15 %. The constants of the model (CHEAPER in ms_expect_price.c) were
-# chosen on the first list; on the others nothing was.
+# the body stands along the grid's own planes, so that 200 err by 15 %. The constants of the model (CHEAPER, TOLERANCE,
+# the points of a level) were chosen on the first list.
 FITTED = [
     ("torus", (10, 15, 20, 30, 40, 60), 100, 600), ("prolate", (10, 15, 20, 30, 40, 60), 100, 500),
     ("needle", (10, 15, 20, 30, 40, 60), 100, 1600), ("oblate", (30, 60, 100, 200), 100, 400),

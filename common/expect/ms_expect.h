@@ -34,7 +34,7 @@ typedef struct ms_expect {
  * this times what is expected: from 10 spheres on, and from 100 on.
  */
 #define MS_EXPECT_RANGE 1.9
-#define MS_EXPECT_RANGE_MANY 1.4
+#define MS_EXPECT_RANGE_MANY 1.5
 
 /**
  * An expected least, not a bound: the least error for a price on each sphere, from balls within and the points of the
