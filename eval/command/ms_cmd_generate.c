@@ -167,17 +167,21 @@ static ms_run make_run(const generate_arguments *a, const ms_input *input)
 static const double FIRST_SPHERES = 50;
 
 /* Numbers of spheres and least radii are tried; from then on the stop rule is that of the run kept. */
-static ms_status try_clumps(ms_result *r, generate_arguments *a, const ms_input *input, const ms_expect *expect,
-                            ms_error *err)
+static ms_status try_clumps(ms_result *r, generate_arguments *a, const ms_input *input, ms_error *err)
 {
+    ms_expect expect;
+    ms_status status = ms_expectation_try(&expect, input, err);
+    if (status != MS_OK) {
+        return status;
+    }
     ms_progress_line line = {.name = a->recipe.generator->name};
     ms_run run = make_run(a, input);
-    const double expected = ms_expectation_spheres(expect, a->work.dice);
+    const double expected = ms_expectation_spheres(&expect, a->work.dice);
     const double first = isnan(expected) ? FIRST_SPHERES : fmin(expected, MS_CLUMP_MAX_SPHERES);
     ms_progress_say_remarks(&run, &line);
     const double start = omp_get_wtime();
-    const ms_status status = ms_least_work_generate(&r->clump, &a->tries, &a->work, a->recipe.generator, &run,
-                                                    (size_t)first, ms_input_max_voxels(&a->input), err);
+    status = ms_least_work_generate(&r->clump, &a->tries, &a->work, a->recipe.generator, &run, (size_t)first,
+                                    ms_input_max_voxels(&a->input), err);
     r->generate_seconds = omp_get_wtime() - start;
     if (status == MS_OK) {
         a->stop = ms_least_work_stop(&a->tries);
@@ -382,7 +386,7 @@ static int execute_generate(const ms_command *command, generate_arguments *a)
         status = look_ahead(&o, a, &input, &err);
     }
     if (status == MS_OK) {
-        status = a->work.dice > 0 ? try_clumps(&r, a, &input, &expect, &err) : make_clump(&r, a, &input, &err);
+        status = a->work.dice > 0 ? try_clumps(&r, a, &input, &err) : make_clump(&r, a, &input, &err);
     }
     if (status == MS_OK) {
         status = score_clump(&r, a, &input, &err);
