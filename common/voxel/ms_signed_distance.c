@@ -195,7 +195,7 @@ static inline size_t find_outer(const stencil *s, int c, int axis)
     return find_corner(s, c) - s->index[axis][1 + side] + s->index[axis][3 * side];
 }
 
-static double interpolate(const double corner[8], const double part[3])
+static double interpolate_cell(const double corner[8], const double part[3])
 {
     double along[4];
     for (int k = 0; k < 4; k++) { /* the edges along x */
@@ -219,7 +219,7 @@ static double look_up(const ms_signed_distance *field, const stencil *s)
             bent[c] -= bend * (read_node(field, find_outer(s, c, a)) - 2 * corner[c] + corner[c ^ 1 << a]);
         }
     }
-    return interpolate(bent, s->part);
+    return interpolate_cell(bent, s->part);
 }
 
 static void need_nodes(const ms_signed_distance *field, const stencil *s)

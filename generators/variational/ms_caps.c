@@ -122,7 +122,7 @@ static size_t list_range(uint32_t *which, size_t found, const ms_caps_window *s,
 }
 
 /* The first of the small ones whose end is not left of a place. */
-static size_t find_end(const ms_caps_window *s, double place)
+static size_t find_left(const ms_caps_window *s, double place)
 {
     size_t low = 0, high = s->n_small;
     while (low < high) {
@@ -191,7 +191,7 @@ static size_t list_near(ms_caps_list *out, const ms_caps_window *s, uint32_t sel
     const ms_ball *ball = &s->ball[self];
     const double left = ball->centre[0] - ball->radius, right = ball->centre[0] + ball->radius;
     size_t size[CLASSES] = {0}, place[CLASSES] = {0};
-    size_t found = list_range(out->which, 0, s, find_end(s, left - s->widest), find_end(s, right), self);
+    size_t found = list_range(out->which, 0, s, find_left(s, left - s->widest), find_left(s, right), self);
     found = list_range(out->which, found, s, s->n_small, s->count, self);
     for (size_t i = found; i % MS_CAPS_BLOCK; i++) {
         out->which[i] = 0;
@@ -214,7 +214,7 @@ static size_t list_near(ms_caps_list *out, const ms_caps_window *s, uint32_t sel
 
 /* Does one of these caps hold all of another? By the addition theorem: the cosine of the angle between the axes is
  * more than that of the difference of the caps' angles, times the lengths of both axes. */
-static int is_held(const ms_caps *cap, size_t at, const ms_caps *block, size_t blocks)
+static int lies_in_cap(const ms_caps *cap, size_t at, const ms_caps *block, size_t blocks)
 {
     const float axis[3] = {cap->axis[0][at], cap->axis[1][at], cap->axis[2][at]};
     const float least = cap->least[at], length = cap->length[at], root = cap->root[at];
@@ -250,7 +250,7 @@ void ms_caps_find(ms_caps_list *out, const ms_caps_window *s, uint32_t self, con
     for (size_t i = 0; i < near; i++) {
         const ms_caps *cap = &out->near[out->order[i] / MS_CAPS_BLOCK];
         const size_t at = out->order[i] % MS_CAPS_BLOCK;
-        if (!is_held(cap, at, out->block, out->blocks)) {
+        if (!lies_in_cap(cap, at, out->block, out->blocks)) {
             copy_cap(&out->block[found / MS_CAPS_BLOCK], found % MS_CAPS_BLOCK, cap, at);
             found++;
             out->blocks = fill_up(out->block, found);
