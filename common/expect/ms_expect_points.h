@@ -31,8 +31,8 @@ ms_status ms_expect_points_spread(ms_expect_points *points, int step, const ms_m
 /**
  * Finds balls by shrinking: one that touches at a point is cut to that which also passes through the point nearest to
  * its centre, until none is nearer than its radius; first among the points with balls, then by the mesh, above which it
- * may stand by a fifth of its radius. So bumps between the points are passed over, as a sphere of a clump does, and thin
- * walls are not.
+ * may stand by a fifth of its radius. So bumps between the points are passed over, as a sphere of a clump does, and
+ * thin walls are not.
  *
  * @param closest of the mesh; NULL: made here
  * @return MS_OK; as ms_closest_build

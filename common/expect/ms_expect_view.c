@@ -116,8 +116,8 @@ static double least_power(const ms_expect_run *run, const double centre[3], doub
 
 /*
  * The points of a run that a ball faces, from its `first` on; their slopes are heights yet. Along the normal of a point
- * at height b above the centre and x beside it, a sphere of radius R is off by b - sqrt(R^2 - x^2) = (b^2 + x^2 - R^2) /
- * (b + sqrt(R^2 - x^2)), of which 2 b is the denominator to first order; about a tube, where the columns along the
+ * at height b above the centre and x beside it, a sphere of radius R is off by b - sqrt(R^2 - x^2) = (b^2 + x^2 - R^2)
+ * / (b + sqrt(R^2 - x^2)), of which 2 b is the denominator to first order; about a tube, where the columns along the
  * normals converge, it is so exactly.
  */
 static int see_run(ms_expect_view *v, const ms_expect_run *run, int first, const double centre[3], double radius,

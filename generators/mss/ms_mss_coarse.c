@@ -6,7 +6,7 @@
 
 #include "voxel/ms_distance.h"
 
-/* A coarse voxel touches at most so many of the target's along an axis; all of it is WHOLE, in halves of their sides. */
+/* A coarse voxel touches at most so many of the target's along an axis; all of it is WHOLE, in halves of sides. */
 enum { TAPS = MS_MSS_COARSE + 1, WHOLE = 8 * MS_MSS_COARSE * MS_MSS_COARSE * MS_MSS_COARSE };
 
 /* Which voxels of the target coarse voxel 0 of an axis touches, the first of them first, and how many halves of each it

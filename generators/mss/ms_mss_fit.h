@@ -6,8 +6,8 @@
 #include "ms_mss_run.h"
 
 /* Radii that are tried lie no farther than so from E, in voxels of the target. E is to the centre of the nearest
- * background voxel, half a voxel beyond the surface, and spheres that stand out a little lower the mismatch. Farther out
- * is better for few spheres and worse for many, where what the first spheres cover too much cannot be made good. */
+ * background voxel, half a voxel beyond the surface, and spheres that stand out a little lower the mismatch. Farther
+ * out is better for few spheres and worse for many, where what the first spheres cover too much cannot be made good. */
 static const double MS_MSS_FIT_LEAST = -0.5, MS_MSS_FIT_MOST = 1;
 
 /** A voxel of the target in voxels of a run. */
