@@ -1,5 +1,5 @@
 #!/bin/sh
-# The table "Set cover against its paper" of docs/validation.md: sh docs/setcover-counts.sh path/to/mskit
+# The tables "The paper's way of counting" of docs/validation.md: sh docs/setcover-counts.sh path/to/mskit
 set -eu
 mskit=$(command -v "$1")
 cd "$(mktemp -d)"
@@ -14,14 +14,26 @@ row() {
         "$mskit" generate ${shape%:*}.stl -g setcover --deq "$deq" -n ${shape#*:} "$@" --cut --curve curve.csv -o clump.csv \
             2>/dev/null >/dev/null
         awk -F, -v name="$name, d_eq/$deq, ${shape%:*}" '
-            NR > 1 { for (m = 1; m <= 2; m++) { value = m == 1 ? $4 : $6
-                for (t = 1; t <= 4; t++) if (value >= goal[t] && !((m, t) in first)) first[m, t] = $1
-                if ($1 == 96 || $1 == 250 || $1 == 500) by[m] = by[m] sprintf(" %.2f", 100 * value) } }
-            NR == 1 { split("0.95 0.99 0.999 0.9999", goal, " ") }
-            END { for (m = 1; m <= 2; m++) { printf "%s, %s:", name, m == 1 ? "coverage" : "coverage_cut"
-                if (name ~ /spheroid/) for (t = 1; t <= 4; t++) printf " %s", (m, t) in first ? first[m, t] : "never"
-                else printf "%s", by[m]
-                print "" } }' curve.csv
+            NR == 1 {
+                split("0.95 0.99 0.999 0.9999", goal, " ")
+                split("coverage coverage_cut", measure, " ")
+                for (column = 1; column <= NF; column++) at[$column] = column
+            }
+            NR > 1 {
+                for (m = 1; m <= 2; m++) {
+                    value = $at[measure[m]]
+                    for (t = 1; t <= 4; t++) if (value >= goal[t] && !((m, t) in first)) first[m, t] = $1
+                    if ($1 == 96 || $1 == 250 || $1 == 500) by[m] = by[m] sprintf(" %.2f", 100 * value)
+                }
+            }
+            END {
+                for (m = 1; m <= 2; m++) {
+                    printf "%s, %s:", name, measure[m]
+                    if (name ~ /spheroid/) for (t = 1; t <= 4; t++) printf " %s", (m, t) in first ? first[m, t] : "never"
+                    else printf "%s", by[m]
+                    print ""
+                }
+            }' curve.csv
     done
 }
 row voxels 100

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "voxel/ms_cut_cells.h"
+
 static int takes_clump(const ms_generator *generator)
 {
     int found = 0;
@@ -100,12 +102,24 @@ static ms_status take_prefixes(ms_score *curve, ms_clump *each, const ms_clump *
 ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_generator *generator,
                           const ms_run *run, size_t max_voxels, ms_error *err)
 {
+    ms_run all = *run;
+    ms_target cut = *run->target;
+    ms_cut_cells *cells = NULL;
+    ms_status status = MS_OK;
     if (each) {
         memset(each, 0, clump->n_spheres * sizeof *each);
     }
-    const ms_status status = ms_generator_is_nested(generator, run->settings)
-                                 ? take_prefixes(curve, each, clump, run, max_voxels, err)
-                                 : run_each(curve, each, clump, generator, run, max_voxels, err);
+    if (cut.count_cut && !cut.grid.cells) { /* once for all scores */
+        status = ms_cut_cells_build(&cells, &cut.grid, cut.closed ? cut.mesh : NULL, err);
+        cut.grid.cells = cells;
+        all.target = &cut;
+    }
+    if (status == MS_OK) {
+        status = ms_generator_is_nested(generator, run->settings)
+                     ? take_prefixes(curve, each, clump, &all, max_voxels, err)
+                     : run_each(curve, each, clump, generator, &all, max_voxels, err);
+    }
+    ms_cut_cells_free(cells);
     if (each && status != MS_OK) {
         free_clumps(each, clump->n_spheres);
     }

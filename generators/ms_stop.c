@@ -16,6 +16,7 @@ typedef struct stop_goal {
 #define GOAL_GOAL(CODE, name) {MS_MEASURE_##CODE, MS_STOP_##CODE, offsetof(ms_stop, name)},
 #define GOAL_UNION(CODE, name)
 #define GOAL_SURFACE(CODE, name)
+#define GOAL_NORMAL(CODE, name)
 #define GOAL_SPHERES(CODE, name)
 #define GOAL_COUNT(CODE, name)
 #define GOAL_DESCRIPTOR(CODE, name)

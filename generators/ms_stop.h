@@ -13,6 +13,7 @@ MS_C_BEGIN
 #define MS_STOP_REASON_GOAL(CODE, name) MS_STOP_##CODE,
 #define MS_STOP_REASON_UNION(CODE, name)
 #define MS_STOP_REASON_SURFACE(CODE, name)
+#define MS_STOP_REASON_NORMAL(CODE, name)
 #define MS_STOP_REASON_SPHERES(CODE, name)
 #define MS_STOP_REASON_COUNT(CODE, name)
 #define MS_STOP_REASON_DESCRIPTOR(CODE, name)
@@ -20,6 +21,7 @@ MS_C_BEGIN
 #define MS_STOP_FIELD_GOAL(name) double name;
 #define MS_STOP_FIELD_UNION(name)
 #define MS_STOP_FIELD_SURFACE(name)
+#define MS_STOP_FIELD_NORMAL(name)
 #define MS_STOP_FIELD_SPHERES(name)
 #define MS_STOP_FIELD_COUNT(name)
 #define MS_STOP_FIELD_DESCRIPTOR(name)

@@ -18,6 +18,7 @@ MS_C_BEGIN
  * kind    GOAL: of S and U, known of each prefix of a clump, better with more spheres: it can be asked for
  *         UNION: of S and U as well, but nothing to ask for
  *         SURFACE: distances to a mesh, NAN without one
+ *         NORMAL: angles to the surface of a closed mesh or a volume, NAN of an open mesh
  *         SPHERES: of the spheres themselves; COUNT: the same, a whole number
  *         DESCRIPTOR: of the form of the shape or of the union, NAN where it is not known
  * better  LESS, MORE, or ONE: 1 is best; SHAPE: what the shape has; NONE: it is what it is
@@ -62,9 +63,30 @@ MS_C_BEGIN
     X(SURFACE, GAP_RMS, gap_rms, LESS, 5, 0, "length", NULL, \
       "gap, rms", "mskit", \
       "its root mean square over all of the mesh (0 where it is inside a sphere)", NULL, NULL) \
+    X(NORMAL, NORMAL_MEDIAN, normal_median, LESS, 2, 0, "degrees", "median error of the normals, degrees", \
+      "error of the normals, median", "mskit", \
+      "angle between the outer surface of the spheres and that of the shape where it is nearest; median by area", NULL, \
+      NULL) \
+    X(NORMAL, NORMAL_95, normal_95, LESS, 2, 0, "degrees", NULL, \
+      "error of the normals, 95 %", "mskit", \
+      "the same angle, which 95 % of that surface keep to. Both are without what is near sharp edges", NULL, NULL) \
+    X(NORMAL, EDGE_PART, edge_part, NONE, 4, 0, NULL, NULL, \
+      "part near sharp edges", "mskit", \
+      "part of that surface nearer than the least radius to a sharp edge of the mesh, where faces turn by over 30 degrees", \
+      NULL, NULL) \
+    X(NORMAL, EDGE_NORMAL_MEDIAN, edge_normal_median, LESS, 2, 0, "degrees", NULL, \
+      "normals near sharp edges, median", "mskit", \
+      "the angle there; median by area", NULL, NULL) \
+    X(NORMAL, EDGE_NORMAL_95, edge_normal_95, LESS, 2, 0, "degrees", NULL, \
+      "normals near sharp edges, 95 %", "mskit", \
+      "the angle there, which 95 % keep to", NULL, NULL) \
     X(SPHERES, SMALLEST_RADIUS, smallest_radius_ratio, MORE, 4, 0, NULL, NULL, \
       "smallest / equivalent radius", "mskit", \
       "least radius / radius of the ball of equal volume. Small spheres force small time steps", NULL, NULL) \
+    X(SPHERES, WORK, work, LESS, 2, 0, NULL, NULL, \
+      "work, n r_eq / r_min", "LIGGGHTS, fix check/timestep/gran", \
+      "number of spheres x equivalent / least radius: pairs to try x time steps, if the least sphere sets the step", NULL, \
+      NULL) \
     X(COUNT, PIECES, pieces, ONE, 0, 0, "pieces", NULL, \
       "connected", "Yuan 3, note on fig. 4", \
       "number of pieces; spheres that overlap belong together", NULL, NULL) \
@@ -74,7 +96,7 @@ MS_C_BEGIN
       "in JSON `inertia_error.weighted_mean`", "inertia_union", "inertia_error") \
     X(GOAL, COVERAGE_CUT, coverage_cut, MORE, 5, 0, NULL, NULL, \
       "coverage of cut cells", "Yuan 3.1, V_cl / V_p", \
-      "the same of cells that the surface cuts: each weighs what is inside, and is covered where its centroid is", \
+      "the same of cells that follow the surface: each weighs what is inside, and is covered where its centroid is", \
       NULL, NULL) \
     X(DESCRIPTOR, VOXEL_LIMIT, voxel_limit, LESS, 5, 0, NULL, NULL, \
       "voxel limit of D", "mskit", \
@@ -90,6 +112,7 @@ typedef enum ms_measure_code { MS_MEASURE_LIST(MS_MEASURE_ENUM) MS_MEASURES } ms
 #define MS_MEASURE_GOAL_NAME_GOAL(name) #name ", "
 #define MS_MEASURE_GOAL_NAME_UNION(name)
 #define MS_MEASURE_GOAL_NAME_SURFACE(name)
+#define MS_MEASURE_GOAL_NAME_NORMAL(name)
 #define MS_MEASURE_GOAL_NAME_SPHERES(name)
 #define MS_MEASURE_GOAL_NAME_COUNT(name)
 #define MS_MEASURE_GOAL_NAME_DESCRIPTOR(name)
@@ -104,6 +127,7 @@ typedef enum ms_measure_kind {
     MS_MEASURE_KIND_GOAL,
     MS_MEASURE_KIND_UNION,
     MS_MEASURE_KIND_SURFACE,
+    MS_MEASURE_KIND_NORMAL,
     MS_MEASURE_KIND_SPHERES,
     MS_MEASURE_KIND_COUNT,
     MS_MEASURE_KIND_DESCRIPTOR

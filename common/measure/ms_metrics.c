@@ -146,28 +146,86 @@ static ms_status count_on_fitting_grid(ms_metrics *metrics, ms_score *curve, con
     return status;
 }
 
-static ms_status measure_surface(ms_metrics *metrics, const ms_target *target, const ms_clump *clump, ms_error *err)
+/* Measures of these kinds are not known until they are computed. */
+#define FORGET_GOAL(name)
+#define FORGET_UNION(name)
+#define FORGET_SURFACE(name) metrics->name = (double)NAN;
+#define FORGET_NORMAL(name) metrics->name = (double)NAN;
+#define FORGET_SPHERES(name)
+#define FORGET_COUNT(name)
+#define FORGET_DESCRIPTOR(name) metrics->name = (double)NAN;
+#define FORGET(kind, CODE, name, ...) FORGET_##kind(name)
+static void forget_kinds(ms_metrics *metrics)
 {
-    ms_standout protrusion = {(double)NAN, (double)NAN}, gap = {(double)NAN, (double)NAN};
+    MS_MEASURE_LIST(FORGET)
+}
+
+static void take_normals(ms_metrics *metrics, const ms_normals *normals)
+{
+    metrics->normal_median = normals->median;
+    metrics->normal_95 = normals->most;
+    metrics->edge_part = normals->edge_part;
+    metrics->edge_normal_median = normals->edge_median;
+    metrics->edge_normal_95 = normals->edge_most;
+}
+
+/* Which side of an open mesh is outside is not known. */
+static ms_status measure_exposed(ms_metrics *metrics, unsigned kinds, const ms_target *target, const ms_clump *clump,
+                                 ms_error *err)
+{
+    const int protrudes = (kinds & MS_METRICS_KIND(SURFACE)) && target->mesh,
+              inclined = kinds & MS_METRICS_KIND(NORMAL);
+    ms_standout protrusion;
+    ms_normals normals;
+    if (!target->closed || (!protrudes && !inclined)) {
+        return MS_OK;
+    }
+    const ms_status status =
+        ms_surface_exposed(protrudes ? &protrusion : NULL, inclined ? &normals : NULL, target, clump, err);
+    if (status == MS_OK && protrudes) {
+        metrics->protrusion_max = protrusion.max;
+        metrics->protrusion_rms = protrusion.rms;
+    }
+    if (status == MS_OK && inclined) {
+        take_normals(metrics, &normals);
+    }
+    return status;
+}
+
+static ms_status measure_gap(ms_metrics *metrics, const ms_target *target, const ms_clump *clump, ms_error *err)
+{
+    ms_standout gap;
+    const ms_status status = ms_surface_gap(&gap, target, clump, err);
+    if (status == MS_OK) {
+        metrics->gap_max = gap.max;
+        metrics->gap_rms = gap.rms;
+    }
+    return status;
+}
+
+/* With cut cells, if the target asks for them and has none. */
+static ms_status count_with_cells(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
+                                  size_t max_voxels, ms_error *err)
+{
+    ms_target cut = *target;
+    ms_cut_cells *cells = NULL;
     ms_status status = MS_OK;
-    if (target->mesh && target->closed) {
-        status = ms_surface_protrusion(&protrusion, target, clump, err);
+    if (target->count_cut && !cut.grid.cells) {
+        status = ms_cut_cells_build(&cells, &target->grid, target->closed ? target->mesh : NULL, err);
+        cut.grid.cells = cells;
     }
-    if (target->mesh && status == MS_OK) {
-        status = ms_surface_gap(&gap, target, clump, err);
+    if (status == MS_OK) {
+        status = count_on_fitting_grid(metrics, curve, &cut, clump, max_voxels, err);
     }
-    metrics->protrusion_max = protrusion.max;
-    metrics->protrusion_rms = protrusion.rms;
-    metrics->gap_max = gap.max;
-    metrics->gap_rms = gap.rms;
+    ms_cut_cells_free(cells);
     return status;
 }
 
 ms_status ms_metrics_score_clump(ms_score *score, ms_score *curve, const ms_target *target, const ms_clump *clump,
                                  size_t max_voxels, ms_error *err)
 {
-    ms_metrics metrics;
-    const ms_status status = count_on_fitting_grid(&metrics, curve, target, clump, max_voxels, err);
+    ms_metrics metrics = {0};
+    const ms_status status = count_with_cells(&metrics, curve, target, clump, max_voxels, err);
     *score = metrics.score;
     return status;
 }
@@ -196,30 +254,30 @@ static ms_status describe(ms_metrics *metrics, const ms_target *target, const ms
     return status;
 }
 
-ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
-                             size_t max_voxels, ms_error *err)
+static ms_status measure_spheres(ms_metrics *metrics, const ms_target *target, const ms_clump *clump, ms_error *err)
 {
-    ms_target cut = *target;
-    ms_cut_cells *cells = NULL;
-    ms_status status = MS_OK;
+    metrics->spheres = clump->n_spheres;
+    metrics->smallest_radius_ratio = ms_clump_smallest_radius(clump) / ms_target_equivalent_radius(target);
+    metrics->work = (double)clump->n_spheres / metrics->smallest_radius_ratio;
+    return ms_clump_pieces(&metrics->pieces, clump, err);
+}
+
+ms_status ms_metrics_compute_kinds(ms_metrics *metrics, ms_score *curve, unsigned kinds, const ms_target *target,
+                                   const ms_clump *clump, size_t max_voxels, ms_error *err)
+{
     memset(metrics, 0, sizeof *metrics);
-    if (target->count_cut && !cut.grid.cells) {
-        status = ms_cut_cells_build(&cells, &target->grid, target->closed ? target->mesh : NULL, err);
-        cut.grid.cells = cells;
+    ms_status status = count_with_cells(metrics, curve, target, clump, max_voxels, err);
+    forget_kinds(metrics);
+    if (status == MS_OK) {
+        status = measure_spheres(metrics, target, clump, err);
     }
     if (status == MS_OK) {
-        status = count_on_fitting_grid(metrics, curve, &cut, clump, max_voxels, err);
+        status = measure_exposed(metrics, kinds, target, clump, err);
     }
-    ms_cut_cells_free(cells);
-    if (status == MS_OK) {
-        metrics->spheres = clump->n_spheres;
-        metrics->smallest_radius_ratio = ms_clump_smallest_radius(clump) / ms_target_equivalent_radius(target);
-        status = ms_clump_pieces(&metrics->pieces, clump, err);
+    if (status == MS_OK && (kinds & MS_METRICS_KIND(SURFACE)) && target->mesh) {
+        status = measure_gap(metrics, target, clump, err);
     }
-    if (status == MS_OK) {
-        status = measure_surface(metrics, target, clump, err);
-    }
-    if (status == MS_OK) {
+    if (status == MS_OK && (kinds & MS_METRICS_KIND(DESCRIPTOR))) {
         status = describe(metrics, target, clump, err);
     }
     if (status == MS_OK && metrics->body.volume > 0) {
@@ -229,4 +287,10 @@ ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_targ
         metrics->inertia = (ms_inertia_error){{unknown, unknown, unknown}, unknown, unknown, unknown};
     }
     return status;
+}
+
+ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
+                             size_t max_voxels, ms_error *err)
+{
+    return ms_metrics_compute_kinds(metrics, curve, MS_METRICS_ALL, target, clump, max_voxels, err);
 }

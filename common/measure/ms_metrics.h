@@ -12,6 +12,7 @@ MS_C_BEGIN
 #define MS_SCORE_FIELD_GOAL(name) double name;
 #define MS_SCORE_FIELD_UNION(name) double name;
 #define MS_SCORE_FIELD_SURFACE(name)
+#define MS_SCORE_FIELD_NORMAL(name)
 #define MS_SCORE_FIELD_SPHERES(name)
 #define MS_SCORE_FIELD_COUNT(name)
 #define MS_SCORE_FIELD_DESCRIPTOR(name)
@@ -19,6 +20,7 @@ MS_C_BEGIN
 #define MS_METRICS_FIELD_GOAL(name)
 #define MS_METRICS_FIELD_UNION(name)
 #define MS_METRICS_FIELD_SURFACE(name) double name;
+#define MS_METRICS_FIELD_NORMAL(name) double name;
 #define MS_METRICS_FIELD_SPHERES(name) double name;
 #define MS_METRICS_FIELD_COUNT(name) size_t name;
 #define MS_METRICS_FIELD_DESCRIPTOR(name) double name;
@@ -67,7 +69,7 @@ typedef struct ms_metrics {
  * target's grid has cut cells or its count_cut is set: they are cut here then, which takes as long as all else.
  * Where spheres reach beyond
  * the target's grid the union is counted on a larger one. Lengths are in the mesh's unit;
- * protrusion and gap are NAN for a volume, protrusion for an open mesh too, the inertia error
+ * protrusion and gap are NAN for a volume, protrusion and normals for an open mesh, the inertia error
  * for spheres so small that they cover no voxel, descriptors as ms_descriptors.h has it.
  *
  * @param[out] curve      scores of the prefixes 1..n_spheres; NULL if not wanted
@@ -80,6 +82,14 @@ typedef struct ms_metrics {
  */
 MS_API ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target,
                                     const ms_clump *clump, size_t max_voxels, ms_error *err);
+
+/** Kinds of measures that take their time, as bits. */
+#define MS_METRICS_KIND(kind) (1u << MS_MEASURE_KIND_##kind)
+#define MS_METRICS_ALL (MS_METRICS_KIND(SURFACE) | MS_METRICS_KIND(NORMAL) | MS_METRICS_KIND(DESCRIPTOR))
+
+/** The same, of those kinds only what is asked for: the others are NAN. @param kinds of MS_METRICS_ALL some */
+MS_API ms_status ms_metrics_compute_kinds(ms_metrics *metrics, ms_score *curve, unsigned kinds, const ms_target *target,
+                                          const ms_clump *clump, size_t max_voxels, ms_error *err);
 
 /** The same of the measures of S and U alone. @param[out] score zeros on failure */
 MS_API ms_status ms_metrics_score_clump(ms_score *score, ms_score *curve, const ms_target *target,

@@ -65,8 +65,17 @@ static int is_hidden(const double point[3], const ms_clump *clump, size_t s, con
     return 0;
 }
 
-/* Distance of a point outside the mesh from it; 0 for a point inside. */
-static double outside_distance(const ms_target *target, const double point[3])
+/* What is measured of the exposed surface. */
+typedef struct exposed_job {
+    const ms_target *target;
+    const ms_clump *clump;
+    int protrusion;                /* wanted */
+    const ms_normals_shape *shape; /* NULL: normals are not wanted */
+    double unit;                   /* of area in a tally */
+} exposed_job;
+
+/* Two voxels deep, the surface is more than the voxel's own size away. */
+static int is_deep(const ms_target *target, const double point[3])
 {
     const ms_grid *grid = &target->grid;
     int voxel[3], in_grid = 1;
@@ -75,56 +84,105 @@ static double outside_distance(const ms_target *target, const double point[3])
         in_grid &= at >= 0 && at < grid->n[a];
         voxel[a] = in_grid ? (int)at : 0;
     }
-    /* Two voxels deep, the surface is more than the voxel's own size away. */
-    if (in_grid && target->distance[ms_grid_index(grid, voxel[0], voxel[1], voxel[2])] > 2.5f) {
-        return 0;
-    }
-    return fmax(0, ms_closest_signed_distance(target->closest, point));
+    return in_grid && target->distance[ms_grid_index(grid, voxel[0], voxel[1], voxel[2])] > 2.5f;
 }
 
-static part sphere_part(const ms_target *target, const ms_clump *clump, size_t s, uint32_t *neighbour)
+/* A point that stands for some area. @param normal of the sphere */
+static void add_exposed(part *sum, ms_normals_tally *tally, const exposed_job *job, const double point[3],
+                        const double normal[3], double area)
 {
+    const int outside = job->protrusion && !is_deep(job->target, point);
+    double distance = 0;
+    if (job->shape) {
+        distance = ms_normals_add(tally, job->shape, point, normal, (uint64_t)rint(area / job->unit));
+    } else if (outside) {
+        distance = ms_closest_signed_distance(job->target->closest, point);
+    }
+    part_add(sum, area, outside ? fmax(0, distance) : 0);
+}
+
+static part sphere_part(ms_normals_tally *tally, const exposed_job *job, size_t s, uint32_t *neighbour)
+{
+    const ms_clump *clump = job->clump;
     const ms_sphere *sphere = &clump->sphere[s];
-    const double h = target->grid.h, area = 4 * PI * sphere->radius * sphere->radius;
+    const double h = job->target->grid.h, area = 4 * PI * sphere->radius * sphere->radius;
     const int samples = (int)fmin(1000, fmax(32, ceil(area / (4 * h * h))));
     const double golden = PI * (3 - sqrt(5.0));
     const size_t count = find_touching(neighbour, clump, s);
     part sum = {0};
     for (int m = 0; m < samples; m++) {
         const double z = 1 - (2 * m + 1.0) / samples, ring = sqrt(1 - z * z), turn = golden * m;
+        const double normal[3] = {ring * cos(turn), ring * sin(turn), z};
         const double point[3] = {sphere->centre[0] + sphere->radius * ring * cos(turn),
                                  sphere->centre[1] + sphere->radius * ring * sin(turn),
                                  sphere->centre[2] + sphere->radius * z};
         if (!is_hidden(point, clump, s, neighbour, count)) {
-            part_add(&sum, area / samples, outside_distance(target, point));
+            add_exposed(&sum, tally, job, point, normal, area / samples);
         }
     }
     return sum;
 }
 
-ms_status ms_surface_protrusion(ms_standout *out, const ms_target *target, const ms_clump *clump, ms_error *err)
+/* All spheres. @param parts one for each. @return nonzero without memory */
+static int sample_spheres(part *parts, ms_normals_tally *sum, const exposed_job *job)
 {
+    const size_t n = job->clump->n_spheres;
     int out_of_memory = 0;
-    part *parts = calloc(clump->n_spheres + 1, sizeof *parts);
-    memset(out, 0, sizeof *out);
-    if (!parts) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory to measure %zu spheres", clump->n_spheres);
-    }
 #pragma omp parallel reduction(| : out_of_memory)
     {
-        uint32_t *neighbour = malloc((clump->n_spheres + 1) * sizeof *neighbour);
-        out_of_memory = !neighbour;
+        uint32_t *neighbour = malloc((n + 1) * sizeof *neighbour);
+        ms_normals_tally *tally = calloc(1, sizeof *tally);
+        out_of_memory = !neighbour || !tally;
 #pragma omp for schedule(dynamic, 1)
-        for (size_t s = 0; s < clump->n_spheres; s++) {
-            if (neighbour) {
-                parts[s] = sphere_part(target, clump, s, neighbour);
+        for (size_t s = 0; s < n; s++) {
+            if (neighbour && tally) {
+                parts[s] = sphere_part(tally, job, s, neighbour);
             }
         }
+        if (tally && job->shape) {
+#pragma omp critical
+            ms_normals_join(sum, tally);
+        }
+        free(tally);
         free(neighbour);
     }
-    join_parts(out, parts, clump->n_spheres);
+    return out_of_memory;
+}
+
+/* Areas are told apart down to this part of that of all spheres. */
+static double find_area_unit(const ms_clump *clump)
+{
+    double sum = 0;
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        sum += 4 * PI * clump->sphere[s].radius * clump->sphere[s].radius;
+    }
+    return ldexp(sum, -50);
+}
+
+ms_status ms_surface_exposed(ms_standout *protrusion, ms_normals *normals, const ms_target *target,
+                             const ms_clump *clump, ms_error *err)
+{
+    ms_normals_shape shape = {0};
+    exposed_job job = {target, clump, protrusion != NULL, normals ? &shape : NULL, find_area_unit(clump)};
+    part *parts = calloc(clump->n_spheres + 1, sizeof *parts);
+    ms_normals_tally *tally = calloc(1, sizeof *tally);
+    ms_status status = MS_OK;
+    if (normals) {
+        status = ms_normals_open(&shape, target, ms_clump_smallest_radius(clump), err);
+    }
+    if (status == MS_OK && (!parts || !tally || sample_spheres(parts, tally, &job))) {
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory to measure %zu spheres", clump->n_spheres);
+    }
+    if (status == MS_OK && protrusion) {
+        join_parts(protrusion, parts, clump->n_spheres);
+    }
+    if (status == MS_OK && normals) {
+        *normals = ms_normals_read(tally);
+    }
+    ms_normals_free(&shape);
+    free(tally);
     free(parts);
-    return out_of_memory ? ms_fail(err, MS_ERR_NOMEM, "no memory to measure %zu spheres", clump->n_spheres) : MS_OK;
+    return status;
 }
 
 /* Distance from a point to the union of the spheres; 0 within. */

@@ -1,8 +1,9 @@
-/** How far a clump stands out of a mesh, and how far the mesh stands out of the clump. */
+/** How a clump's surface lies to that of a shape: how far it stands out, how far the shape does, how it is inclined. */
 #ifndef MS_SURFACE_H
 #define MS_SURFACE_H
 
 #include "clump/ms_clump.h"
+#include "ms_normals.h"
 #include "voxel/ms_target.h"
 
 MS_C_BEGIN
@@ -14,15 +15,19 @@ typedef struct ms_standout {
 } ms_standout;
 
 /**
- * The exposed surface of the spheres (what lies in no other sphere) outside the mesh.
- * Sampled by a Fibonacci lattice on each sphere, about one point for each 4 h^2, 32 to 1000
- * of them.
+ * The exposed surface of the spheres (what lies in no other sphere): how far it is outside the mesh, and the angle
+ * between its normal and that of the shape where that is nearest. Sampled by a Fibonacci lattice on each sphere, about
+ * one point for each 4 h^2, 32 to 1000 of them.
  *
- * @param target of a closed mesh
- * @return MS_OK; MS_ERR_NOMEM. Cost: O(n^2) for the neighbours, a search of the mesh per
- *         sample near or outside the surface; all cores, the same bits at any number of threads.
+ * @param[out] protrusion of a closed mesh; NULL: not wanted
+ * @param[out] normals    of a closed mesh or a volume, points nearer to sharp edges than the least radius apart; NULL:
+ *                        not wanted
+ * @return MS_OK; MS_ERR_NOMEM; as ms_normals_open. Cost: O(n^2) for the neighbours, a search of the mesh per
+ *         sample, without the normals per sample near or outside the surface; all cores, the same bits at any number of
+ *         threads.
  */
-ms_status ms_surface_protrusion(ms_standout *out, const ms_target *target, const ms_clump *clump, ms_error *err);
+ms_status ms_surface_exposed(ms_standout *protrusion, ms_normals *normals, const ms_target *target,
+                             const ms_clump *clump, ms_error *err);
 
 /**
  * The surface of the mesh outside all spheres, by the distance to the nearest sphere.

@@ -197,14 +197,15 @@ typedef struct nearest_search {
     float plane_limit; /* planes farther than that are of no interest */
     double nearest[3];
     int found;
-    int side_wanted; /* the second pass: `best` stays, `side` is summed */
+    int side_wanted; /* the second pass: `best` stays, `side` and `normal` are summed */
     double side;     /* above 0 outside */
+    double normal[3];
 } nearest_search;
 
 /* The angle-weighted pseudonormal tells inside from outside at corners and edges too; where
    several places are equally near, each says the same. Source: Baerentzen & Aanaes, Signed
    distance computation using the angle weighted pseudonormal, IEEE TVCG 11 (2005) 243. */
-static double side_by_triangle(const ms_bvh_triangle *t, const double ap[3], const double offset[3], region at)
+static void add_side(nearest_search *s, const ms_bvh_triangle *t, const double ap[3], const double offset[3], region at)
 {
     double normal[3], from[3], bc[3];
     for (int k = 0; k < 3; k++) {
@@ -216,11 +217,14 @@ static double side_by_triangle(const ms_bvh_triangle *t, const double ap[3], con
     }
     double twice_area = sqrt(ms_dot(normal, normal));
     if (t->sliver || !(twice_area > 0)) {
-        return 0;
+        return;
     }
     double cosine = at == CORNER_A ? ms_dot(t->ab, t->ac) : at == CORNER_B ? -ms_dot(t->ab, bc) : ms_dot(t->ac, bc);
     double angle = at == FACE ? 2 * M_PI : at == EDGE ? M_PI : atan2(twice_area, cosine);
-    return angle * ms_dot(normal, from) / twice_area;
+    s->side += angle * ms_dot(normal, from) / twice_area;
+    for (int k = 0; k < 3; k++) {
+        s->normal[k] += angle * normal[k] / twice_area;
+    }
 }
 
 /*
@@ -243,7 +247,7 @@ static void search_triangle(nearest_search *s, const ms_bvh_triangle *t)
     const triangle_place at = t->sliver ? nearest_on_edges(t, ap) : nearest_place(t, ap);
     const double square = distance_to(offset, t, ap, at);
     if (square < s->best && s->side_wanted) {
-        s->side += side_by_triangle(t, ap, offset, at.at);
+        add_side(s, t, ap, offset, at.at);
     } else if (square < s->best) {
         s->best = square;
         s->plane_limit = find_plane_limit(s);
@@ -333,7 +337,7 @@ double ms_closest_distance(double nearest[3], const ms_closest *closest, const d
     return fmin(sqrt(s.best), at_most);
 }
 
-double ms_closest_signed_distance(const ms_closest *closest, const double point[3])
+double ms_closest_signed_normal(double normal[3], const ms_closest *closest, const double point[3])
 {
     nearest_search s;
     begin_search(&s, closest, point, HUGE_VAL);
@@ -343,5 +347,14 @@ double ms_closest_signed_distance(const ms_closest *closest, const double point[
     begin_search(&s, closest, point, distance + 1e-12 * (distance + closest->bvh.size));
     s.side_wanted = 1;
     search_tree(&s);
+    for (int k = 0; k < 3; k++) {
+        normal[k] = s.normal[k];
+    }
     return s.side < 0 ? -distance : distance;
+}
+
+double ms_closest_signed_distance(const ms_closest *closest, const double point[3])
+{
+    double normal[3];
+    return ms_closest_signed_normal(normal, closest, point);
 }

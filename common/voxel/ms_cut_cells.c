@@ -15,6 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ms_cut_parts.h"
+
 enum { FACE, FACE_V, FACE_W, VOLUME, MOMENT_U, MOMENT_V, MOMENT_W, INTEGRALS };
 enum { MOST_CORNERS = 12 }; /* of a triangle cut by six planes: nine */
 
@@ -43,12 +45,6 @@ typedef struct cut_worker {
     size_t n_pieces, piece_room;
     int failed;
 } cut_worker;
-
-/* What came of a plane. */
-typedef struct plane_cells {
-    ms_cut_cell *cell;
-    size_t count, room;
-} plane_cells;
 
 /* What is on one side of a plane across an axis. */
 static void clip(cut_polygon *out, const cut_polygon *in, int axis, double bound, double sign)
@@ -176,21 +172,22 @@ static void cut_triangle(cut_worker *w, uint32_t triangle)
     }
 }
 
-static void add_cell(cut_worker *w, plane_cells *out, const double at[3], double volume)
+static void add_part(cut_worker *w, ms_cut_plane *out, const double at[3], double volume, int32_t place)
 {
     const double weight = rint(volume * MS_CUT_WHOLE);
     if (out->count == out->room) {
-        const size_t room = 2 * out->room + 1024;
-        ms_cut_cell *more = realloc(out->cell, room * sizeof *more);
+        const size_t room = out->room + out->room / 2 + 1024;
+        ms_cut_part *more = realloc(out->part, room * sizeof *more);
         if (!more) {
             w->failed = 1;
             return;
         }
-        out->cell = more;
+        out->part = more;
         out->room = room;
     }
     if (weight > 0) {
-        out->cell[out->count++] = (ms_cut_cell){{(float)at[0], (float)at[1], (float)at[2]}, (uint32_t)weight};
+        const ms_cut_cell cell = {{(float)at[0], (float)at[1], (float)at[2]}, (uint32_t)weight};
+        out->part[out->count++] = (ms_cut_part){cell, place};
     }
 }
 
@@ -226,7 +223,7 @@ static int find_uncut(const cut_worker *w, double face[4][3], int i, int j)
 }
 
 /* The voxels of a row, or their eight parts. */
-static void cut_row(cut_worker *w, plane_cells *out, int j)
+static void cut_row(cut_worker *w, ms_cut_plane *out, int j)
 {
     double face[4][3] = {{0}};
     for (int i = 0; i < w->grid->n[0] && !w->failed; i++) {
@@ -253,7 +250,7 @@ static void cut_row(cut_worker *w, plane_cells *out, int j)
         }
         for (int part = 0; part < 8; part++) {
             if (volume[part] > NOTHING) {
-                add_cell(w, out, centroid[part], volume[part] / 8);
+                add_part(w, out, centroid[part], volume[part] / 8, 8 * i + part);
             }
         }
     }
@@ -284,7 +281,7 @@ static int list_triangles(plane_lists *lists, const ms_grid *grid, const ms_mesh
     if (!lists->start) {
         return 0;
     }
-    for (size_t t = 0; mesh && t < mesh->n_triangles; t++) {
+    for (size_t t = 0; t < mesh->n_triangles; t++) {
         find_planes(&from, &to, grid, mesh, t);
         for (int k = from; k < to; k++) {
             lists->start[k + 2]++;
@@ -294,7 +291,7 @@ static int list_triangles(plane_lists *lists, const ms_grid *grid, const ms_mesh
         lists->start[k] += lists->start[k - 1];
     }
     lists->list = malloc((lists->start[grid->n[2] + 1] + 1) * sizeof *lists->list);
-    for (size_t t = 0; lists->list && mesh && t < mesh->n_triangles; t++) {
+    for (size_t t = 0; lists->list && t < mesh->n_triangles; t++) {
         find_planes(&from, &to, grid, mesh, t);
         for (int k = from; k < to; k++) {
             lists->list[lists->start[k + 1]++] = (uint32_t)t;
@@ -303,11 +300,12 @@ static int list_triangles(plane_lists *lists, const ms_grid *grid, const ms_mesh
     return lists->list != NULL;
 }
 
-/* row_end: of each row of the plane, how many cells there are up to its end */
-static void cut_plane(cut_worker *w, plane_cells *out, size_t *row_end, const plane_lists *lists)
+static void cut_plane(cut_worker *w, ms_cut_plane *out, const plane_lists *lists)
 {
     const size_t first = lists->start[w->plane], end = lists->start[w->plane + 1];
-    if (w->mesh && end > first) {
+    out->end = calloc((size_t)w->grid->n[1], sizeof *out->end);
+    w->failed |= !out->end;
+    if (end > first) {
         memset(w->piece_of, 0xff, (size_t)w->fine[0] * (size_t)w->fine[1] * 2 * sizeof *w->piece_of);
         w->n_pieces = 0;
     }
@@ -318,11 +316,11 @@ static void cut_plane(cut_worker *w, plane_cells *out, size_t *row_end, const pl
         if (end > first) {
             cut_row(w, out, j);
         }
-        row_end[j] = out->count;
+        out->end[j] = out->count;
     }
 }
 
-static int cut_planes(plane_cells *planes, ms_cut_cells *cells, const ms_grid *grid, const ms_mesh *mesh)
+static int cut_planes(ms_cut_plane *planes, ms_cut_cells *cells, const ms_grid *grid, const ms_mesh *mesh)
 {
     plane_lists lists = {0};
     const int listed = list_triangles(&lists, grid, mesh);
@@ -340,7 +338,7 @@ static int cut_planes(plane_cells *planes, ms_cut_cells *cells, const ms_grid *g
         for (int k = 0; k < grid->n[2]; k++) {
             w.plane = k;
             if (!w.failed) {
-                cut_plane(&w, &planes[k], cells->row + 1 + (size_t)grid->n[1] * (size_t)k, &lists);
+                cut_plane(&w, &planes[k], &lists);
             }
         }
         free(w.piece_of);
@@ -352,49 +350,37 @@ static int cut_planes(plane_cells *planes, ms_cut_cells *cells, const ms_grid *g
     return !failed;
 }
 
-/* Puts the planes one after the other. */
-static int join_cut_planes(ms_cut_cells *cells, const plane_cells *planes, size_t voxels)
+/* Of a volume: its voxels. */
+static void take_voxels(ms_cut_cells *cells, const ms_grid *grid)
 {
-    const int rows = cells->n[1];
-    for (int k = 0; k < cells->n[2]; k++) {
-        for (int j = 0; j < rows; j++) {
-            cells->row[1 + (size_t)j + (size_t)rows * (size_t)k] += cells->count;
-        }
-        cells->count += planes[k].count;
-    }
-    cells->cell = malloc((cells->count + 1) * sizeof *cells->cell);
-    size_t at = 0;
-    for (int k = 0; cells->cell && k < cells->n[2]; k++) {
-        for (size_t c = 0; c < planes[k].count; c++) {
-            cells->cell[at++] = planes[k].cell[c];
-            cells->total += planes[k].cell[c].weight;
-        }
-    }
-    for (size_t v = 0; v < voxels; v++) {
-        cells->total += cells->whole[v] ? MS_CUT_WHOLE : 0;
-    }
-    return cells->cell != NULL;
+    memcpy(cells->whole, grid->inside, ms_grid_voxels(grid));
+    cells->total = (int64_t)ms_grid_count(grid) * MS_CUT_WHOLE;
 }
 
 ms_status ms_cut_cells_build(ms_cut_cells **out, const ms_grid *grid, const ms_mesh *mesh, ms_error *err)
 {
     ms_cut_cells *cells = calloc(1, sizeof *cells);
-    plane_cells *planes = calloc((size_t)grid->n[2], sizeof *planes);
+    ms_cut_plane *planes = calloc((size_t)grid->n[2], sizeof *planes);
     int complete = cells && planes;
     if (complete) {
         *cells = (ms_cut_cells){.h = grid->h};
         memcpy(cells->n, grid->n, sizeof cells->n);
         memcpy(cells->origin, grid->origin, sizeof cells->origin);
-        cells->row = calloc((size_t)grid->n[1] * (size_t)grid->n[2] + 1, sizeof *cells->row);
-        cells->whole = calloc(ms_grid_voxels(grid), 1);
-        complete = cells->row && cells->whole && cut_planes(planes, cells, grid, mesh);
-        if (complete && !mesh) {
-            memcpy(cells->whole, grid->inside, ms_grid_voxels(grid));
+        for (int a = 0; a < 3; a++) {
+            cells->blocks[a] = (grid->n[a] + MS_CUT_BLOCK - 1) / MS_CUT_BLOCK;
         }
-        complete = complete && join_cut_planes(cells, planes, ms_grid_voxels(grid));
+        cells->block = calloc(ms_cut_cells_block(cells, 0, 0, cells->blocks[2]) + 1, sizeof *cells->block);
+        cells->whole = calloc(ms_grid_voxels(grid), 1);
+        complete = cells->block && cells->whole;
+    }
+    if (complete && mesh) {
+        complete = cut_planes(planes, cells, grid, mesh) && ms_cut_parts_join(cells, planes);
+    } else if (complete) {
+        take_voxels(cells, grid);
     }
     for (int k = 0; planes && k < grid->n[2]; k++) {
-        free(planes[k].cell);
+        free(planes[k].part);
+        free(planes[k].end);
     }
     free(planes);
     *out = cells;
@@ -410,7 +396,7 @@ void ms_cut_cells_free(ms_cut_cells *cells)
 {
     if (cells) {
         free(cells->whole);
-        free(cells->row);
+        free(cells->block);
         free(cells->cell);
         free(cells);
     }

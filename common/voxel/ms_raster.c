@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/ms_vector.h"
-#include "ms_cut_cells.h"
+#include "ms_cut_left.h"
 
 /* Half the diagonal of a voxel: a ball's surface farther from the centre misses the voxel. */
 static const double HALF_DIAGONAL = 0.86602540378443871;
@@ -26,8 +26,8 @@ ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule 
     raster->rule = rule;
     raster->first = malloc(voxels * sizeof *raster->first);
     raster->partial = calloc((size_t)grid->n[2], sizeof *raster->partial);
-    raster->cells_left = grid->cells ? ms_cut_cells_left(grid->cells) : NULL;
-    if (!raster->first || !raster->partial || (grid->cells && !raster->cells_left)) {
+    raster->left = grid->cells ? ms_cut_left_build(grid->cells) : NULL;
+    if (!raster->first || !raster->partial || (grid->cells && !raster->left)) {
         ms_raster_free(raster);
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
     }
@@ -41,7 +41,7 @@ void ms_raster_free(ms_raster *raster)
         free(raster->first);
         free(raster->ball);
         free(raster->tally);
-        free(raster->cells_left);
+        ms_cut_left_free(raster->left);
         free(raster->buried);
         for (int k = 0; raster->partial && k < raster->grid->n[2]; k++) {
             free(raster->partial[k].slot);
@@ -403,7 +403,7 @@ static void cover_cells(ms_raster *raster, size_t first_new)
             ball.centre[a] += rint((grid->origin[a] - grid->cells->origin[a]) / grid->h);
         }
         if (!raster->buried[b]) {
-            raster->tally[b].cut = ms_cut_cells_cover(grid->cells, raster->cells_left, &ball);
+            raster->tally[b].cut = ms_cut_left_cover(raster->left, &ball, NULL);
         }
     }
 }

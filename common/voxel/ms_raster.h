@@ -35,7 +35,7 @@ typedef struct ms_raster {
     size_t n_balls, capacity;
     ms_ball *ball;
     ms_raster_partial *partial; /* one per plane across z, by the rule HALF */
-    uint8_t *cells_left;        /* of the cut cells of the grid (ms_cut_cells_left); NULL without them */
+    struct ms_cut_left *left;   /* of the cut cells of the grid (ms_cut_left.h); NULL without them */
     uint8_t *buried;            /* one per ball: 1 if it lies within an earlier one */
     ms_tally *tally;            /* one per ball: sums over the voxels that it is the first to cover */
     int lo[3], hi[3]; /* box lo <= (i,j,k) < hi of the voxels that the last ms_raster_add covered; empty: lo = hi */

@@ -3,7 +3,8 @@
 
     MSKIT=build/eval/mskit docs/validation/inertia-error.py [MESH]...
 
-The spheroid and the tablet of the paper are made by mskit; further meshes are files.
+The shapes of the paper that have a formula are made by mskit: spheroid (5.2), tablet (5.1), ellipsoid (2.4; the edges of its box
+are not given); further meshes are files.
 """
 import json
 import os
@@ -12,7 +13,13 @@ import sys
 import tempfile
 
 MSKIT = os.environ.get("MSKIT", "mskit")
-MADE = {"spheroid": ["ellipsoid", "a=6.585", "b=6.585", "c=3.395"], "tablet": ["tablet"]}
+MADE = {
+    "spheroid": ["ellipsoid", "a=6.585", "b=6.585", "c=3.395"],
+    "tablet": ["tablet"],
+    "ellipsoid 1 : 1.414 : 1": ["ellipsoid", "a=1", "b=1.4142135623730951", "c=1"],
+    "box": ["box"],
+    "grain": ["grain"],
+}
 
 
 def run(*command):

@@ -17,6 +17,21 @@ static void print_distance(FILE *stream, const ms_measure *measure, const ms_met
     }
 }
 
+/* A median, with the angle behind it, which 95 % are below; nothing where there is no such surface. */
+static void print_normals(FILE *stream, const char *label, double median, double most)
+{
+    if (isfinite(median)) {
+        fprintf(stream, "  %-34s median %.2f, 95 %% %.2f degrees\n", label, median, most);
+    }
+}
+
+static void print_edges(FILE *stream, const ms_metrics *m)
+{
+    char label[64];
+    snprintf(label, sizeof label, "  of %.1f %% near sharp edges", 100 * m->edge_part);
+    print_normals(stream, label, m->edge_normal_median, m->edge_normal_95);
+}
+
 static void print_pieces(FILE *stream, const ms_measure *measure, const ms_metrics *m)
 {
     fprintf(stream, "  %-34s %s", measure->label, m->pieces == 1 ? "yes\n" : "");
@@ -70,6 +85,11 @@ void ms_report_metrics(FILE *stream, const ms_metrics *m, const ms_target *targe
         const ms_measure *measure = &ms_measures[code];
         if (code == MS_MEASURE_PROTRUSION || code == MS_MEASURE_GAP) {
             print_distance(stream, measure, m, target->grid.h);
+        } else if (code == MS_MEASURE_NORMAL_MEDIAN) {
+            print_normals(stream, "error of the normals", m->normal_median, m->normal_95);
+            print_edges(stream, m);
+        } else if (measure->kind == MS_MEASURE_KIND_NORMAL) {
+            continue;
         } else if (code == MS_MEASURE_PIECES) {
             print_pieces(stream, measure, m);
         } else if (code == MS_MEASURE_INERTIA) {
@@ -87,11 +107,13 @@ void ms_report_metrics(FILE *stream, const ms_metrics *m, const ms_target *targe
 
 void ms_report_curve(FILE *stream, const ms_score *curve, size_t count)
 {
-    fputs("n" MS_MEASURE_CURVE_NAMES "\n", stream);
+    const ms_measure *cut = &ms_measures[MS_MEASURE_COVERAGE_CUT];
+    const int with_cut = count > 0 && !isnan(cut->of_score(&curve[0]));
+    fprintf(stream, "n" MS_MEASURE_CURVE_NAMES "%s%s\n", with_cut ? "," : "", with_cut ? cut->name : "");
     for (size_t n = 0; n < count; n++) {
         fprintf(stream, "%zu", n + 1);
         for (const ms_measure *m = ms_measures; m->name; m++) {
-            if (m->curve) {
+            if (m->curve || (with_cut && m == cut)) {
                 fprintf(stream, ",%.8g", m->of_score(&curve[n]));
             }
         }

@@ -20,7 +20,7 @@ json_t *ms_report_score_json(const ms_score *score, size_t spheres);
 /** An object to which values were added: NULL, and the object freed, if one of them failed for lack of memory. */
 json_t *ms_report_whole(json_t *object, int failed);
 
-/** Scores of clumps of 1 to count spheres as CSV: n and the measures with `curve`. */
+/** Scores of clumps of 1 to count spheres as CSV: n, the measures with `curve`, coverage_cut if it was counted. */
 void ms_report_curve(FILE *stream, const ms_score *curve, size_t count);
 
 /** Path, checksum, grid and rule of the input; the caller owns it. */

@@ -49,7 +49,8 @@ static ms_status report_score(const score_arguments *a, const ms_input *input, c
     if (!curve) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu scores", clump->n_spheres);
     }
-    ms_status status = ms_metrics_compute(&metrics, curve, &input->target, clump, ms_input_max_voxels(&a->input), err);
+    ms_status status = ms_metrics_compute_kinds(&metrics, curve, a->curve ? 0 : MS_METRICS_ALL, &input->target, clump,
+                                                ms_input_max_voxels(&a->input), err);
     if (status == MS_OK && a->curve) {
         ms_report_curve(stdout, curve, clump->n_spheres);
     } else if (status == MS_OK && a->json) {

@@ -78,6 +78,8 @@ typedef struct chart_kind {
 static const chart_kind KINDS[] = {
     {"time", "speed and accuracy, labelled by number of spheres", "time, s", "mismatch D", MS_COLUMN_GENERATE,
      MS_COLUMN_DICE, MS_COLUMN_CELLS, 1},
+    {"work", "accuracy and work in a simulation, labelled by number of spheres", "work, n r_eq / r_min", "mismatch D",
+     MS_COLUMN_WORK, MS_COLUMN_DICE, MS_COLUMN_CELLS, 1},
     {"corrected", "inertia with corrected masses", "number of spheres", "error of the moments", MS_COLUMN_SPHERES,
      MS_COLUMN_CORRECTED, MS_COLUMN_CELLS, 0},
     {"resolution", "mismatch by resolution", "cells along the shortest side", "mismatch D", MS_COLUMN_CELLS,

@@ -10,6 +10,8 @@
  * resolution:
  * - dice: D by number of spheres;
  * - time: D by time, with the Pareto front, points labelled by their number of spheres;
+ * - work: the same by work in a simulation;
+ * - normal_median: error of the normals by number of spheres;
  * - inertia, corrected: error of the moments by number of spheres, of the union and with masses by ms_density_solve;
  * - resolution: D by cells at the largest number of spheres, if there are several resolutions.
  *

@@ -155,7 +155,7 @@ static ms_status try_number(int *reached, scene_search *s, size_t n, ms_error *e
     s->run.stop.spheres = n;
     ms_status status = ms_generator_run(&shape->clump[n - 1], &reason, s->generator, &s->run, err);
     if (status == MS_OK) {
-        status = ms_metrics_compute(&metrics, NULL, s->run.target, &shape->clump[n - 1], s->max_voxels, err);
+        status = ms_metrics_compute_kinds(&metrics, NULL, 0, s->run.target, &shape->clump[n - 1], s->max_voxels, err);
     }
     s->run.remark = NULL; /* once for a shape */
     if (status == MS_OK) {

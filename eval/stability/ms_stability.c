@@ -83,7 +83,8 @@ static ms_status run_method(ms_stability_run *run, const ms_target *target, cons
     if (status == MS_OK) {
         ms_perturb_motion_undo(&clump, motion);
         run->checksum = sum_spheres(&clump);
-        status = ms_metrics_compute(&run->metrics, NULL, &s->input->target, &clump, ms_input_max_voxels(s->flags), err);
+        status = ms_metrics_compute_kinds(&run->metrics, NULL, MS_METRICS_ALL & ~MS_METRICS_KIND(SURFACE),
+                                          &s->input->target, &clump, ms_input_max_voxels(s->flags), err);
     }
     if (status == MS_OK && run->until_dice > 0) {
         status = seek_number(run, job, err);

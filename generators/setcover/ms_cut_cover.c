@@ -4,22 +4,25 @@
 #include <stdlib.h>
 
 #include "shared/ms_overlap.h"
+#include "voxel/ms_cut_left.h"
+
+#define NEVER UINT64_MAX
 
 /* A candidate and what it would cover. */
 typedef struct cut_bound {
     int64_t weight;   /* exact when it was counted, an upper bound before and since */
-    uint32_t counted; /* how many balls had been taken by then, and one; 0: never */
+    uint64_t counted; /* how many cells had been covered by then; NEVER */
     int waits;        /* it overlaps no ball taken so far (connected) */
 } cut_bound;
 
 struct ms_cut_cover {
-    const ms_cut_cells *cells;
     const ms_ball *candidate;
     size_t count;
     int connected;
     uint32_t n_taken;
-    uint8_t *left;    /* ms_cut_cells_left */
-    cut_bound *bound; /* of each candidate */
+    ms_cut_left *left;
+    ms_cut_taken *taken; /* what was covered last */
+    cut_bound *bound;    /* of each candidate */
     uint32_t *winner; /* a tournament: winner[m] of winner[2 m] and winner[2 m + 1]; the last `leaves` are candidates */
     size_t leaves;
 };
@@ -66,19 +69,31 @@ static void admit_cut_neighbours(ms_cut_cover *cover, const ms_ball *ball)
     }
 }
 
+/* Counts a candidate anew, or takes from its count what has been covered since. */
+static void count_candidate(ms_cut_cover *cover, uint32_t c)
+{
+    cut_bound *bound = &cover->bound[c];
+    const ms_cut_taken *taken = cover->taken;
+    if (bound->counted != NEVER && taken->count - bound->counted <= MS_CUT_TAKEN) {
+        bound->weight -= ms_cut_left_fallen(taken, bound->counted, &cover->candidate[c]);
+    } else {
+        bound->weight = ms_cut_left_count(cover->left, &cover->candidate[c]);
+    }
+    bound->counted = taken->count;
+}
+
 int64_t ms_cut_cover_next(size_t *which, ms_cut_cover *cover)
 {
     uint32_t best;
     while (bound_of(cover, best = cover->winner[1]) > 0) {
         cut_bound *first = &cover->bound[best];
         const int64_t weight = first->weight;
-        if (first->counted != cover->n_taken + 1) {
-            first->weight = ms_cut_cells_count(cover->cells, cover->left, &cover->candidate[best]);
-            first->counted = cover->n_taken + 1;
+        if (first->counted != cover->taken->count) {
+            count_candidate(cover, best);
             replay(cover, best);
             continue;
         }
-        ms_cut_cells_cover(cover->cells, cover->left, &cover->candidate[best]);
+        ms_cut_left_cover(cover->left, &cover->candidate[best], cover->taken);
         first->weight = 0;
         cover->n_taken++;
         replay(cover, best);
@@ -110,25 +125,26 @@ ms_status ms_cut_cover_build(ms_cut_cover **out, const ms_cut_cells *cells, cons
     }
     ms_cut_cover *cover = calloc(1, sizeof *cover);
     if (cover) {
-        *cover = (ms_cut_cover){.cells = cells,
-                                .candidate = candidate,
+        *cover = (ms_cut_cover){.candidate = candidate,
                                 .count = count,
                                 .connected = connected,
-                                .left = ms_cut_cells_left(cells),
+                                .left = ms_cut_left_build(cells),
+                                .taken = malloc(sizeof *cover->taken),
                                 .bound = calloc(count + 1, sizeof *cover->bound),
                                 .winner = malloc(2 * leaves * sizeof *cover->winner),
                                 .leaves = leaves};
     }
-    if (!cover || !cover->left || !cover->bound || !cover->winner) {
+    if (!cover || !cover->left || !cover->taken || !cover->bound || !cover->winner) {
         ms_cut_cover_free(cover);
         return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres; use fewer cells", count);
     }
     for (size_t c = 0; c < leaves; c++) {
         cover->winner[leaves + c] = (uint32_t)c;
         if (c < count) {
-            cover->bound[c].weight = find_most(&candidate[c]);
+            cover->bound[c] = (cut_bound){.weight = find_most(&candidate[c]), .counted = NEVER};
         }
     }
+    cover->taken->count = 0;
     for (size_t match = leaves - 1; match > 0; match--) {
         play(cover, match);
     }
@@ -139,7 +155,8 @@ ms_status ms_cut_cover_build(ms_cut_cover **out, const ms_cut_cells *cells, cons
 void ms_cut_cover_free(ms_cut_cover *cover)
 {
     if (cover) {
-        free(cover->left);
+        ms_cut_left_free(cover->left);
+        free(cover->taken);
         free(cover->bound);
         free(cover->winner);
         free(cover);

@@ -32,7 +32,7 @@ static const ms_option OPTIONS[] = {
                    "every sphere overlaps one before it, so that the first k are one piece for any k"},
     [COUNT] =
         {"count", MS_OPTION_CHOICE, COUNT_VOXELS, 0, 0, "voxels|cut", NULL,
-         "what a sphere covers: voxels, by their centres, or cells that the surface cuts, by the centroids of what "
+         "what a sphere covers: voxels, by their centres, or cells that follow the surface, by the centroids of what "
          "is inside (3.1; the measure coverage_cut)"},
     {0},
 };

@@ -4,8 +4,9 @@ import json
 
 from support import Case
 
-SCORES = ("spheres eta dice coverage overshoot off_volume protrusion_max protrusion_rms gap_max gap_rms "
-          "smallest_radius_ratio pieces coverage_cut volume inertia_error.moments inertia_error.weighted_mean "
+NORMALS = "normal_median normal_95 edge_part edge_normal_median edge_normal_95"
+SCORES = ("spheres eta dice coverage overshoot off_volume protrusion_max protrusion_rms gap_max gap_rms " + NORMALS +
+          " smallest_radius_ratio work pieces coverage_cut volume inertia_error.moments inertia_error.weighted_mean "
           "inertia_error.axes_degrees inertia_error.centroid")
 FORM = "equivalent_diameter area sphericity elongation flatness feret_elongation feret_flatness corey convexity".split()
 DESCRIPTORS = ["voxel_limit"] + [which + name for name in FORM for which in ("shape_", "clump_")]
@@ -64,7 +65,8 @@ class Columns(Case):
         self.mskit("compare", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10)
         self.assertEqual(self.header("compare.csv"),
                          "shape,checksum,label,generator,options,seed,cells,n_asked,flags,n,stopped_by,eta,dice,coverage,"
-                         "overshoot,off_volume,protrusion_max,protrusion_rms,gap_max,gap_rms,smallest_radius_ratio,"
+                         "overshoot,off_volume,protrusion_max,protrusion_rms,gap_max,gap_rms," +
+                         NORMALS.replace(" ", ",") + ",smallest_radius_ratio,work,"
                          "pieces,inertia_union,coverage_cut," + ",".join(DESCRIPTORS) + ",expected,inertia_corrected,epsilon,"
                          "products_epsilon,centre_epsilon,voxel_size,"
                          "seconds_read,seconds_voxelize,seconds_distance,seconds_describe,seconds_generate,seconds_score,"
@@ -74,8 +76,8 @@ class Columns(Case):
         self.mskit("stability", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10, "--runs", 1, "--perturb", "seed")
         self.assertEqual(self.header("stability.csv"),
                          "shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,flags,status,"
-                         "n,stopped_by,eta,dice,coverage,overshoot,off_volume,inertia_error,coverage_cut,smallest_radius_ratio,"
-                         "pieces," + ",".join(DESCRIPTORS) + ",n_until,seconds,beside,spheres_fnv1a,cause")
+                         "n,stopped_by,eta,dice,coverage,overshoot,off_volume,inertia_error,coverage_cut," +
+                         NORMALS.replace(" ", ",") + ",smallest_radius_ratio,work,pieces," + ",".join(DESCRIPTORS) + ",n_until,seconds,beside,spheres_fnv1a,cause")
 
     def test_json_of_generate(self):
         run = self.generate("grain.stl", "-g", "mss", "-n", 5, "--cells", 15, "-o", "c.json")

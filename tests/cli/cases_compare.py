@@ -62,7 +62,8 @@ class Rows(Compare):
 
     def check_scores(self, row, scores):
         for column in ("eta", "dice", "coverage", "overshoot", "off_volume", "protrusion_max", "protrusion_rms",
-                       "gap_max", "gap_rms", "smallest_radius_ratio", "pieces"):
+                       "gap_max", "gap_rms", "normal_median", "normal_95", "edge_part", "edge_normal_median",
+                       "edge_normal_95", "smallest_radius_ratio", "work", "pieces"):
             self.assertEqual(float(row[column]), scores[column], column)
         self.assertEqual(float(row["inertia_union"]), scores["inertia_error"]["weighted_mean"])
 
@@ -331,7 +332,8 @@ class Charts(Compare):
         rows = self.compare("box.obj", "-g", methods[0], "-g", methods[1], "-g", methods[2], "--clump", "o'dd=two.csv",
                             "-n", "3,6,9", "--cells", "10,14", "--charts", "charts")
         rows = [r for r in rows if r["cells"] == "14"]
-        for kind, column in (("dice", "dice"), ("inertia", "inertia_union"), ("corrected", "inertia_corrected")):
+        for kind, column in (("dice", "dice"), ("inertia", "inertia_union"), ("normal_median", "normal_median"),
+                             ("corrected", "inertia_corrected")):
             titles, texts = self.svg(f"charts/box-{kind}.svg")
             blocks = self.blocks(f"charts/box-{kind}.dat")
             if kind == "dice":
@@ -352,25 +354,28 @@ class Charts(Compare):
             self.assertIn("number of spheres", texts)
             self.assertTrue(set(titles) <= set(texts), "the legend names them")
             self.check_axes(f"charts/box-{kind}.gp", [p for b in blocks for p in b])
-        self.check_time(methods, rows)
+        self.check_front("time", "seconds_generate", methods[:3], rows)  # a clump from a file took no time that is known
+        self.check_front("work", "work", methods, rows)
         self.assertEqual(len(self.svg("charts/box-resolution.svg")[0]), 4)
         self.check_sheet(columns=5, rows=3)
-        for png in ("sheet", "dice", "time", "inertia", "corrected", "resolution"):
+        for png in ("sheet", "dice", "time", "work", "inertia", "normal_median", "corrected", "resolution"):
             self.assertEqual(self.read(f"charts/box-{png}.png")[:8], b"\x89PNG\r\n\x1a\n")
 
-    def check_time(self, methods, rows):
+    def check_front(self, kind, column, methods, rows):
         """Every point has its number of spheres; the front is the one found here by brute force."""
-        titles, texts = self.svg("charts/box-time.svg")
-        front, *blocks = self.blocks("charts/box-time.dat")
+        titles, texts = self.svg(f"charts/box-{kind}.svg")
+        front, *blocks = self.blocks(f"charts/box-{kind}.dat")
         points = [p for b in blocks for p in b]
-        self.assertEqual(titles, ["Pareto front"] + methods[:3], "a clump from a file took no time that is known")
-        self.assertEqual([p[2] for p in points], [r["n"] for r in rows if r["seconds_generate"]])
-        for label in (p[2] for p in points):
+        self.assertEqual(titles, ["Pareto front"] + methods)
+        self.assertEqual([p[2] for p in points], [r["n"] for r in rows if r[column]])
+        for (x, y, label), row in zip(points, (r for r in rows if r[column])):
+            self.assert_close(x, float(row[column]), 1e-8)
+            self.assert_close(y, float(row["dice"]), 1e-8)
             self.assertIn(label, texts)
         best = sorted(p[:2] for p in points if not any(q[0] <= p[0] and q[1] <= p[1] and q[:2] != p[:2]
                                                        for q in points))
         self.assertEqual([p[:2] for p in front], best)
-        self.check_axes("charts/box-time.gp", points)
+        self.check_axes(f"charts/box-{kind}.gp", points)
 
     def check_sheet(self, columns, rows):
         """Grey pixels by the standard of PNG; something is on each tile, the clump of another tool is there once."""

@@ -21,6 +21,27 @@ class Score(Case):
 
 
 class Measures(Score):
+    def check_normals(self, scores, centres, radius):
+        """Inside the box, of balls apart: the face and the edge that are nearest, by their coordinates."""
+        angles = {False: [], True: []}
+        for centre in centres:
+            for k in range(20000):
+                z = 1 - (2 * k + 1) / 20000
+                ring, turn = math.sqrt(1 - z * z), 2.399963229728653 * k
+                normal = (ring * math.cos(turn), ring * math.sin(turn), z)
+                at = [c + radius * n for c, n in zip(centre, normal)]
+                away = [min(x, side - x) for x, side in zip(at, (3, 2, 1))]
+                axis = away.index(min(away))
+                outward = normal[axis] if at[axis] > (1.5, 1, 0.5)[axis] else -normal[axis]
+                near = math.hypot(*sorted(away)[:2]) < radius
+                angles[near].append(math.degrees(math.acos(max(-1, min(1, outward)))))
+        self.assertAlmostEqual(scores["edge_part"], len(angles[True]) / 20000 / len(centres), delta=0.005)
+        for found, names in ((angles[False], "normal_median normal_95"),
+                             (angles[True], "edge_normal_median edge_normal_95")):
+            found.sort()
+            for name, part in zip(names.split(), (0.5, 0.95)):
+                self.assertAlmostEqual(scores[name], found[int(part * len(found))], delta=1, msg=name)
+
     def test_two_balls_in_a_cuboid(self):
         """Balls of radius 0.5 that touch opposite faces, apart from one another."""
         self.write("c.csv", "x,y,z,r\n0.6,1,0.5,0.5\n2.4,1,0.5,0.5\n")
@@ -34,6 +55,14 @@ class Measures(Score):
         self.assertEqual((scores["spheres"], scores["pieces"], scores["overshoot"]), (2, 2, 0))
         self.assertLessEqual(scores["protrusion_max"], 1e-12)
         self.assert_close(scores["smallest_radius_ratio"], 0.5 / (6 * 3 / (4 * math.pi)) ** (1 / 3), 1e-9, "radius")
+        self.assert_close(scores["work"], 2 / scores["smallest_radius_ratio"], 1e-12, "work")
+        self.check_normals(scores, [(0.6, 1, 0.5), (2.4, 1, 0.5)], 0.5)
+        out = self.mskit("score", "c.csv", "--target", "box.obj", "-j", "1", "--cells", "100").out
+        for label, median, most in (("error of the normals", "normal_median", "normal_95"),
+                                    (f"  of {100 * scores['edge_part']:.1f} % near sharp edges", "edge_normal_median",
+                                     "edge_normal_95")):
+            self.assertIn(f"  {label:34} median {scores[median]:.2f}, 95 % {scores[most]:.2f} degrees\n", out)
+        self.assertIn(f"  {'work, n r_eq / r_min':34} {scores['work']:.2f}\n", out)
         # The middle of a long edge is farthest from the spheres: sampled about every second voxel, so within 3 voxels.
         gap = math.dist((1.5, 0, 0), (0.6, 1, 0.5)) - 0.5
         self.assertTrue(gap - 0.03 < scores["gap_max"] <= gap, f"gap {scores['gap_max']}, edge {gap}")

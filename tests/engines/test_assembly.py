@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The packing of an assembly, in the engines: every sphere where the scan has it, mass and inertia of each body, and
-the scripts run.
+the scripts bring it to rest.
 
     MSKIT=build/eval/mskit tests/engines/test_assembly.py [-v]
 """
@@ -63,6 +63,9 @@ class Assembly(engines.Clump):
         return times(times(turn, moments), transpose(turn))
 
 
+ROWS_AT_END = "write_dump all custom end.txt id x y z radius vx vy vz\n"
+
+
 class Engine(unittest.TestCase):
     program = None
 
@@ -82,8 +85,8 @@ class Engine(unittest.TestCase):
             self.assertLess(math.dist(got[:3], s[:3]), 1e-8 * self.assembly.smallest, "place")
             self.assertAlmostEqual(got[3] / s[3], 1, delta=1e-12)
 
-    def check_inside(self, spheres):
-        """In the box still, and each fallen no farther than in free fall."""
+    def check_at_rest(self, spheres):
+        """In the box and without much of the energy of their fall; spheres: x, y, z, r, speed."""
         truth = [s for clump in self.assembly.spheres for s in clump]
         self.assertEqual(len(spheres), len(truth))
         lows = [min(s[k] - s[3] for s in truth) for k in range(3)]
@@ -94,11 +97,16 @@ class Engine(unittest.TestCase):
             for k in range(3):
                 self.assertGreater(got[k] - got[3], lows[k] - 0.05 * self.assembly.smallest)
                 self.assertLess(got[k] + got[3], highs[k] + 0.05 * self.assembly.smallest)
+            self.assertLess(got[4], 0.01 * math.sqrt(2 * 9.81 * (highs[2] - lows[2])), "speed, of a fall through all")
         self.assertGreater(fallen, 0, "gravity acts")
 
     def read_dump(self, name):
         (rows,) = engines.read_dumps(self.assembly.path(name)).values()
         return [rows[i] for i in sorted(rows)]
+
+    def read_end(self):
+        """Of a dump of ROWS_AT_END."""
+        return [[*row[:4], math.hypot(*row[4:])] for row in self.read_dump("end.txt")]
 
 
 class Liggghts(Engine):
@@ -109,14 +117,14 @@ class Liggghts(Engine):
         dump = 'dump d all custom 1 {0} id x y z radius mass\ndump_modify d format "%d %.17g %.17g %.17g %.17g %.17g"\n'
         # Of the first step, in which they are inserted.
         self.assembly.write("load.in", script.replace("run ${loosen}", dump.format("load.txt") + "run 1\nundump d")
-                            + "write_dump all custom end.txt id x y z radius\n")
-        self.assembly.run("liggghts", "-in", "load.in", "-var", "steps", "2000")
+                            + ROWS_AT_END)
+        self.assembly.run("liggghts", "-in", "load.in")
         spheres = engines.read_dumps(self.assembly.path("load.txt"))[1]
         spheres = [spheres[i] for i in sorted(spheres)]
         self.check_places(spheres)
         self.assertEqual([s[4] for s in spheres],
                          [mass for mass, clump in zip(self.assembly.masses, self.assembly.spheres) for _ in clump])
-        self.check_inside(self.read_dump("end.txt"))
+        self.check_at_rest(self.read_end())
         log = self.assembly.script("log.liggghts")
         for row in self.assembly.rows:
             moments = ", ".join(f"{float(row[f'moment_{m}']):.6e}" for m in (1, 2, 3))
@@ -136,8 +144,8 @@ class Lammps(Engine):
                 'dump d all custom 1 load.txt id x y z radius\ndump_modify d format line "%d %.17g %.17g %.17g %.17g"\n'
                 "run 0\nundump d\nundump b\nuncompute bodies")
         self.assembly.write("load.in", script.replace("run ${loosen}", load)
-                            + "write_dump all custom end.txt id x y z radius\n")
-        self.assembly.run("lmp", "-in", "load.in", "-var", "steps", "2000")
+                            + ROWS_AT_END)
+        self.assembly.run("lmp", "-in", "load.in")
         self.check_places(self.read_dump("load.txt"))
         with open(self.assembly.path("bodies.txt"), encoding="ascii") as f:
             bodies = [numbers(line) for line in f.read().splitlines()[9:]]
@@ -151,7 +159,7 @@ class Lammps(Engine):
             for a in range(3):
                 for b in range(3):
                     self.assertLess(abs(got[a][b] - truth[a][b]), 1e-9 * scale, "inertia along the axes of the scan")
-        self.check_inside(self.read_dump("end.txt"))
+        self.check_at_rest(self.read_end())
 
 
 class Yade(Engine):
@@ -165,19 +173,19 @@ def show(word):
         body = O.bodies[clump]
         print(word + 'BODY', body.state.mass, *body.state.inertia)
         for i in sorted(body.shape.members)[:-4]:
-            print(word, *O.bodies[i].state.pos, O.bodies[i].shape.radius)
+            print(word, *O.bodies[i].state.pos, O.bodies[i].shape.radius, O.bodies[i].state.vel.norm())
 
 
 """
         load = show + "O.run(1, True)\nshow('LOAD')\n# Those that"
         self.assembly.write("load.py", script.replace("# Those that", load) + "show('END')\n")
-        out = self.assembly.run("yade", "-x", "-n", "load.py", "20", "2000")
+        out = self.assembly.run("yade", "-x", "-n", "load.py", "20")
         self.check_places([numbers(line) for line in re.findall(r"(?m)^LOAD (.*)", out)])
         bodies = [numbers(line) for line in re.findall(r"(?m)^LOADBODY (.*)", out)]
         self.assertEqual([body[0] for body in bodies], self.assembly.masses)
         for body, row in zip(bodies, self.assembly.rows):
             self.assertEqual(body[1:], [float(row[f"moment_{m}"]) for m in (1, 2, 3)])
-        self.check_inside([numbers(line) for line in re.findall(r"(?m)^END (.*)", out)])
+        self.check_at_rest([numbers(line) for line in re.findall(r"(?m)^END (.*)", out)])
 
 
 if __name__ == "__main__":

@@ -242,6 +242,40 @@ static void sides_agree_with_winding_numbers(void **state)
     ms_mesh_free(&mesh);
 }
 
+/* Within a cube that of the nearest face; beyond an edge or a corner the mean of its faces'. */
+static void normals_are_those_of_the_nearest_faces(void **state)
+{
+    uint64_t random = 58;
+    (void)state;
+    ms_mesh mesh = unit_cube();
+    ms_closest *closest = build(&mesh);
+    for (int k = 0; k < 2000; k++) {
+        vec p, normal;
+        int nearest = 0;
+        for (int i = 0; i < 3; i++) {
+            p[i] = next_uniform(&random);
+            nearest = fabs(p[i] - 0.5) > fabs(p[nearest] - 0.5) ? i : nearest;
+        }
+        const double distance = ms_closest_signed_normal(normal, closest, p);
+        assert_true(distance == ms_closest_signed_distance(closest, p));
+        expect_close(normal[nearest] / sqrt(dot(normal, normal)), p[nearest] > 0.5 ? 1 : -1, 1e-12);
+        for (int i = 0; i < 3; i++) { /* all beyond: the corner; one less: an edge */
+            p[i] = 1 + p[i];
+        }
+        p[k % 3] = k % 2 ? 0.37 : p[k % 3];
+        ms_closest_signed_normal(normal, closest, p);
+        for (int i = 0; i < 3; i++) {
+            expect_close(normal[i] / sqrt(dot(normal, normal)),
+                         k % 2 == 0   ? sqrt(1 / 3.0)
+                         : i == k % 3 ? 0
+                                      : sqrt(0.5),
+                         1e-12);
+        }
+    }
+    ms_closest_free(closest);
+    ms_mesh_free(&mesh);
+}
+
 /* At the centre of a ball every triangle is as near, on the axis of a torus rings of them. */
 static void ties_do_not_confuse_the_side(void **state)
 {
@@ -325,6 +359,7 @@ int main(void)
         cmocka_unit_test(points_of_the_surface_are_at_no_distance),
         cmocka_unit_test(a_bound_returns_itself),
         cmocka_unit_test(sides_agree_with_winding_numbers),
+        cmocka_unit_test(normals_are_those_of_the_nearest_faces),
         cmocka_unit_test(ties_do_not_confuse_the_side),
         cmocka_unit_test(a_mesh_far_off_gives_the_same_distances),
         cmocka_unit_test(threads_may_share_it),

@@ -1,29 +1,51 @@
 /* The surface area of voxels: digitised bodies of known area, and Crofton's formula. */
 #include "voxel/ms_voxel_area.h"
 
-#include "support/grid_samples.h"
+#include "support/overlap_samples.h"
 
-/* Voxels with their centre within an ellipsoid about a place off the lattice. */
-static ms_grid digitise(const double semi[3], const double off[3])
+/* Whether a body of those semi-axes, radius and half height, or half sides holds a point. */
+typedef int (*holds)(const double p[3], const double size[3]);
+
+static int ellipsoid(const double p[3], const double size[3])
 {
-    int n[3];
-    for (int a = 0; a < 3; a++) {
-        n[a] = 2 * (int)ceil(semi[a]) + 2 * MS_GRID_HULL + 1;
-    }
-    ms_grid grid = empty_grid(n[0], n[1], n[2], 1);
-    for (int k = 0; k < n[2]; k++) {
-        for (int j = 0; j < n[1]; j++) {
-            for (int i = 0; i < n[0]; i++) {
-                const int at[3] = {i, j, k};
-                double sum = 0;
+    return pow(p[0] / size[0], 2) + pow(p[1] / size[1], 2) + pow(p[2] / size[2], 2) < 1;
+}
+
+static int cylinder(const double p[3], const double size[3])
+{
+    return hypot(p[0], p[1]) < size[0] && fabs(p[2]) < size[2];
+}
+
+static int box(const double p[3], const double size[3])
+{
+    return fabs(p[0]) < size[0] && fabs(p[1]) < size[1] && fabs(p[2]) < size[2];
+}
+
+/* Voxels with their centre within a body about a place off the lattice, turned. */
+static ms_grid digitise_body(holds body, const double size[3], const double off[3], const double turn[3][3])
+{
+    const double corner = sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
+    const double reach = body == ellipsoid ? fmax(size[0], fmax(size[1], size[2])) : corner;
+    const int n = 2 * (int)ceil(reach) + 2 * MS_GRID_HULL + 1;
+    ms_grid grid = empty_grid(n, n, n, 1);
+    for (int k = 0; k < n; k++) {
+        for (int j = 0; j < n; j++) {
+            for (int i = 0; i < n; i++) {
+                const double at[3] = {i - n / 2 - off[0], j - n / 2 - off[1], k - n / 2 - off[2]};
+                double own[3];
                 for (int a = 0; a < 3; a++) {
-                    sum += pow((at[a] - n[a] / 2 - off[a]) / semi[a], 2);
+                    own[a] = turn[a][0] * at[0] + turn[a][1] * at[1] + turn[a][2] * at[2];
                 }
-                grid.inside[ms_grid_index(&grid, i, j, k)] = sum < 1;
+                grid.inside[ms_grid_index(&grid, i, j, k)] = (uint8_t)body(own, size);
             }
         }
     }
     return grid;
+}
+
+static ms_grid digitise(const double semi[3], const double off[3])
+{
+    return digitise_body(ellipsoid, semi, off, upright);
 }
 
 static double area_of(const ms_grid *grid)
@@ -38,42 +60,49 @@ static double crofton_area(const ms_grid *grid)
 {
     static const double WEIGHT[4] = {0, 0.0457778912048, 0.0369806278761, 0.0351956397823}; /* Lang et al. 2001 */
     double sum = 0;
-    for (int s = 0; s < 27; s++) {
+    for (int s = 0; s < 13; s++) { /* those opposite have the same pairs */
         const int v[3] = {s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1}, axes = abs(v[0]) + abs(v[1]) + abs(v[2]);
         int64_t steps = 0;
-        for (int k = 1; k < grid->n[2] - 1 && axes; k++) {
+        for (int k = 1; k < grid->n[2] - 1; k++) {
             for (int j = 1; j < grid->n[1] - 1; j++) {
                 for (int i = 1; i < grid->n[0] - 1; i++) {
                     steps += inside_at(grid, i, j, k) != inside_at(grid, i + v[0], j + v[1], k + v[2]);
                 }
             }
         }
-        sum += axes ? 2 * WEIGHT[axes] * (double)steps / sqrt(axes) : 0;
+        sum += 4 * WEIGHT[axes] * (double)steps / sqrt(axes);
     }
     return sum * grid->h * grid->h;
 }
 
-/* Errors of digitised balls at many places on the lattice, and in the middle of a voxel and at its corner. */
+/* Worst errors of digitised balls, against the ball itself and that of the voxels' volume. */
 typedef struct errors {
-    double worst, worst_of_volume, worst_of_crofton; /* against the ball; against that of the voxels' volume */
+    double area, of_volume, crofton;
 } errors;
 
+static void add_errors(errors *e, double diameter, const double off[3])
+{
+    const double r = diameter / 2, semi[3] = {r, r, r}, truth = 4 * pi * r * r;
+    ms_grid grid = digitise(semi, off);
+    const double of_volume = pi * pow(6 * (double)ms_grid_count(&grid) / pi, 2.0 / 3);
+    const double area = area_of(&grid);
+    e->area = fmax(e->area, fabs(area / truth - 1));
+    e->of_volume = fmax(e->of_volume, fabs(area / of_volume - 1));
+    e->crofton = fmax(e->crofton, fabs(crofton_area(&grid) / truth - 1));
+    ms_grid_free(&grid);
+}
+
+/* At places anywhere on the lattice. */
 static errors of_balls(double diameter)
 {
     uint64_t seed = 2385;
     errors e = {0};
     for (int place = 0; place < 24; place++) {
-        const double r = diameter / 2, semi[3] = {r, r, r}, corner = 0.5 * (place == 1);
-        double off[3] = {corner, corner, corner};
-        for (int a = 0; a < 3 && place > 1; a++) {
+        double off[3];
+        for (int a = 0; a < 3; a++) {
             off[a] = between(&seed, -0.5, 0.5);
         }
-        ms_grid grid = digitise(semi, off);
-        const double of_volume = pi * pow(6 * (double)ms_grid_count(&grid) / pi, 2.0 / 3);
-        e.worst = fmax(e.worst, fabs(area_of(&grid) / (4 * pi * r * r) - 1));
-        e.worst_of_volume = fmax(e.worst_of_volume, fabs(area_of(&grid) / of_volume - 1));
-        e.worst_of_crofton = fmax(e.worst_of_crofton, fabs(crofton_area(&grid) / of_volume - 1));
-        ms_grid_free(&grid);
+        add_errors(&e, diameter, off);
     }
     return e;
 }
@@ -82,18 +111,38 @@ static void balls(void **state)
 {
     (void)state;
     double sum = 0, sum_of_crofton = 0;
-    for (double diameter = 20; diameter <= 40; diameter += 2) {
+    for (double diameter = 20; diameter <= 50; diameter += diameter < 40 ? 2 : 10) {
         const errors e = of_balls(diameter);
-        assert_true(e.worst < 0.015);
-        assert_true(e.worst_of_volume < 0.003);
-        sum += e.worst_of_volume;
-        sum_of_crofton += e.worst_of_crofton;
+        assert_true(e.area < 0.01);
+        assert_true(e.of_volume < 0.003);
+        sum += e.area;
+        sum_of_crofton += e.crofton;
     }
-    assert_true(sum_of_crofton > 2 * sum);
+    assert_true(sum_of_crofton > 1.5 * sum);
     for (double diameter = 8; diameter < 20; diameter += 0.5) {
-        const errors e = of_balls(diameter);
-        assert_true(e.worst_of_volume < 0.01);
+        assert_true(of_balls(diameter).of_volume < 0.01);
     }
+}
+
+/* About a voxel's middle, the middle of a face, and a corner, whole shells of voxels come and go at once: balls that
+ * differ by 1.3 % of their area have the same voxels, and no method can tell them apart. */
+static void balls_in_special_places(void **state)
+{
+    (void)state;
+    static const double PLACE[3][3] = {{0, 0, 0}, {0.5, 0, 0}, {0.5, 0.5, 0.5}};
+    const double smaller[3] = {11.92, 11.92, 11.92}, larger[3] = {12, 12, 12};
+    ms_grid small = digitise(smaller, PLACE[0]), large = digitise(larger, PLACE[0]);
+    assert_true(same_voxels(&small, &large));
+    for (double diameter = 20; diameter <= 40; diameter++) {
+        errors e = {0};
+        for (int place = 0; place < 3; place++) {
+            add_errors(&e, diameter, PLACE[place]);
+        }
+        assert_true(e.area < 0.015);
+        assert_true(e.of_volume < 0.004);
+    }
+    ms_grid_free(&small);
+    ms_grid_free(&large);
 }
 
 /* Faces along the axes, edges rounded off by less than two voxels. */
@@ -127,11 +176,30 @@ static void spheroids(void **state)
         for (int flat = 0; flat < 2; flat++) {
             double semi[3] = {20.5, 20.5, 20.5};
             semi[axis] = flat ? 10.3 : 41;
-            ms_grid grid = digitise(semi, OFF);
+            ms_grid upright_grid = digitise(semi, OFF), turned = digitise_body(ellipsoid, semi, OFF, askew);
             const double area = spheroid_area(20.5, semi[axis]);
-            expect_close(area_of(&grid), area, 0.02 * area); /* parts of one direction do not cancel */
-            ms_grid_free(&grid);
+            expect_close(area_of(&upright_grid), area, 0.02 * area); /* parts of one direction do not cancel */
+            expect_close(area_of(&turned), area, 0.01 * area);
+            ms_grid_free(&upright_grid);
+            ms_grid_free(&turned);
         }
+    }
+}
+
+/* Of an edge at right angles 0.4 voxels times its length are missing, up to 0.2 more or less by how it lies. */
+static void bodies_with_edges(void **state)
+{
+    (void)state;
+    static const double OFF[3] = {0.3, -0.2, 0.45},
+                        SIZE[3][3] = {{10.2, 10.2, 10.2}, {20.3, 20.3, 20.3}, {20.3, 15, 10.2}};
+    for (int s = 0; s < 3; s++) {
+        const double *a = SIZE[s], edges = 8 * (a[0] + a[1] + a[2]), rims = 4 * pi * a[0];
+        const double faces = 8 * (a[0] * a[1] + a[1] * a[2] + a[0] * a[2]), round = 2 * pi * a[0] * (a[0] + 2 * a[2]);
+        ms_grid turned = digitise_body(box, a, OFF, askew), drum = digitise_body(cylinder, a, OFF, askew);
+        expect_close(area_of(&turned), faces - 0.4 * edges, 0.2 * edges);
+        expect_close(area_of(&drum), round - 0.4 * rims, 0.2 * rims);
+        ms_grid_free(&turned);
+        ms_grid_free(&drum);
     }
 }
 
@@ -181,8 +249,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(balls),
+        cmocka_unit_test(balls_in_special_places),
         cmocka_unit_test(cubes),
         cmocka_unit_test(spheroids),
+        cmocka_unit_test(bodies_with_edges),
         cmocka_unit_test(a_hollow_ball),
         cmocka_unit_test(threads_and_borders),
     };

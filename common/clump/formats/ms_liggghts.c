@@ -173,6 +173,7 @@ ms_status ms_liggghts_settle(FILE *stream, const ms_packing *packing, const char
     fprintf(stream, "variable loosen index %.0f\nvariable steps index %.0f\n\n%s", s.loosen, s.end, STYLE);
     write_liggghts_domain(stream, &s);
     fprintf(stream, "neighbor %s bin\nneigh_modify delay 0\n\n", ms_script_number(s.least, &a));
+    fputs("soft_particles yes\n", stream); /* lets the modulus be below 5e6 */
     write_liggghts_law(stream, s.young);
     write_liggghts_walls(stream, (const double[]){s.lo[2], s.lo[0], s.hi[0], s.lo[1], s.hi[1]});
     fprintf(stream, "timestep %s\n\n# A template and a place for each.\ninclude ", ms_script_number(s.step, &a));

@@ -5,19 +5,20 @@
 #include "base/ms_escape.h"
 
 static const double GRAVITY = 9.81, POISSON = 0.3;
-static const double LOOSEN_STEPS = 20000, SLOWING_STEPS = 5;
+static const double LOOSEN_STEPS = 10000, SLOWING_STEPS = 5;
+static const double LEAST_YOUNG = 5e6; /* for LIGGGHTS without soft_particles */
 
-/* Stiff enough for what weighs on a particle below that height, and what LIGGGHTS demands. */
+/* Stiff enough for what weighs on a particle below that height. */
 static double young_below(double height, double density)
 {
-    return fmax(1e5 * density * GRAVITY * height, 5e6);
+    return 1e5 * density * GRAVITY * height;
 }
 
-/* A tenth of the Rayleigh time of the smallest sphere. */
-static double step_of(double least, double density, double young)
+/* A tenth of the Rayleigh time of a sphere of that radius. */
+static double step_of(double radius, double density, double young)
 {
     const double shear = young / (2 * (1 + POISSON));
-    const double rayleigh = acos(-1.0) * least * sqrt(density / shear) / (0.1631 * POISSON + 0.8766);
+    const double rayleigh = acos(-1.0) * radius * sqrt(density / shear) / (0.1631 * POISSON + 0.8766);
     return rayleigh / 10;
 }
 
@@ -25,7 +26,7 @@ ms_script_drop ms_script_drop_of(const ms_content *content)
 {
     const ms_particle *p = content->particle;
     const double reach = ms_template_reach(content->clump), least = ms_clump_smallest_radius(content->clump);
-    const double young = young_below(reach, p->density);
+    const double young = fmax(young_below(reach, p->density), LEAST_YOUNG);
     return (ms_script_drop){.reach = reach,
                             .young = young,
                             .step = step_of(least, p->density, young),
@@ -37,17 +38,19 @@ ms_script_settle ms_script_settle_of(const ms_packing *packing)
 {
     ms_script_settle s = {.least = HUGE_VAL, .drag = HUGE_VAL, .loosen = LOOSEN_STEPS};
     const double density = packing->placed[0].particle.density;
+    double lightest = HUGE_VAL;
     ms_packing_box(s.lo, s.hi, packing);
     for (size_t p = 0; p < packing->count; p++) {
         const ms_placed *placed = &packing->placed[p];
         s.reach = fmax(s.reach, placed->scale * ms_template_reach(&placed->clump));
         s.least = fmin(s.least, placed->scale * ms_clump_smallest_radius(&placed->clump));
         s.drag = fmin(s.drag, placed->particle.mass / (double)placed->clump.n_spheres);
+        lightest = fmin(lightest, placed->particle.mass);
     }
     s.young = young_below(s.hi[2] - s.lo[2], density);
-    s.step = step_of(s.least, density, s.young);
+    s.step = step_of(cbrt(0.75 * lightest / (acos(-1.0) * density)), density, s.young);
     s.drag /= SLOWING_STEPS * s.step;
-    s.end = ceil(2 * sqrt(2 * (s.hi[2] - s.lo[2]) / GRAVITY) / s.step);
+    s.end = ceil(4 * sqrt(2 * (s.hi[2] - s.lo[2]) / GRAVITY) / s.step);
     return s;
 }
 

@@ -22,13 +22,15 @@ ms_script_drop ms_script_drop_of(const ms_content *content);
 void ms_script_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *fifty);
 
 /** How a packing comes to rest in the box around it: first the clumps that overlap come apart, without weight and
- * slowed down, then they settle under gravity. */
+ * slowed down, then they settle under gravity. What swings in a contact is the mass of the bodies, not that of spheres,
+ * and no sphere makes a stiffer contact than a ball as large as its body: the step is that of the lightest body as a
+ * ball. A tenth of its Rayleigh time leaves room for some ten pairs of spheres in one contact. */
 typedef struct ms_script_settle {
     double lo[3], hi[3]; /* box around the spheres */
     double reach;        /* of the largest clump around its centre of mass */
     double least;        /* radius */
-    double young;        /* as in ms_script_drop, for the height of the packing */
-    double step;         /* likewise */
+    double young;        /* stiff enough for overlaps of a per mille under the height of the packing */
+    double step;         /* a tenth of the Rayleigh time of a ball of the least mass */
     double drag;         /* of each sphere, kg/s: slows the lightest body down within 5 steps */
     double loosen, end;  /* steps of both stages */
 } ms_script_settle;
