@@ -94,12 +94,17 @@ double ms_library_number(const ms_library *l, size_t chosen)
     for (size_t j = 0; j < l->choice.k; j++) {
         /* Of one size all have one mass; with sizes of their own a share by mass is one by number over the mass. */
         const int heavy = l->goal.with_size && l->goal.by_mass;
-        const double number =
-            l->choice.weight[j] / (heavy ? volume_of(&l->table->grain[l->choice.grain[j]]) : 1);
+        const double number = l->choice.weight[j] / (heavy ? volume_of(&l->table->grain[l->choice.grain[j]]) : 1);
         sum += number;
         own = j == chosen ? number : own;
     }
     return own / sum;
+}
+
+double ms_library_mass(const ms_library *l, size_t chosen)
+{
+    return ms_library_number(l, chosen) *
+           (l->goal.with_size ? volume_of(&l->table->grain[l->choice.grain[chosen]]) : 1);
 }
 
 /* Descriptors of the chosen, of their shapes or their clumps, to those of all. */
@@ -132,8 +137,8 @@ static double *sizes_of_library(size_t *count, const ms_library *l, int by_mass)
     double *diameter = malloc(2 * *count * sizeof *diameter);
     for (size_t c = 0; c < *count && diameter; c++) {
         diameter[c] = l->size ? l->size[c].diameter : l->table->grain[l->choice.grain[c]].shape[MS_LIBRARY_SIZE];
-        diameter[*count + c] = (l->size ? l->size[c].number : ms_library_number(l, c)) *
-                               (by_mass ? pow(diameter[c], 3) : 1);
+        diameter[*count + c] =
+            (l->size ? l->size[c].number : ms_library_number(l, c)) * (by_mass ? pow(diameter[c], 3) : 1);
     }
     return diameter;
 }
@@ -196,9 +201,9 @@ static ms_status measure_sizes(ms_library *l, int by_mass, ms_error *err)
 static ms_status measure_split(ms_library *l, const ms_population *p, ms_error *err)
 {
     l->far.split = (ms_population_split){.choice = (double)NAN, .halves = (double)NAN};
-    return p->n / 2 < l->goal.k ? MS_OK
-                                : ms_population_split_of(&l->far.split, p, l->goal.k, SPLITS, SPLIT_SHARE,
-                                                         l->goal.seed, err);
+    return p->n / 2 < l->goal.k
+               ? MS_OK
+               : ms_population_split_of(&l->far.split, p, l->goal.k, SPLITS, SPLIT_SHARE, l->goal.seed, err);
 }
 
 static ms_status measure_library(ms_library *l, const ms_population *p, ms_error *err)

@@ -31,8 +31,8 @@ typedef struct ms_library_distances {
     ms_population_distance noise;  /* of samples of as many grains as there are: what chance does */
     double energy;                 /* energy distance of the chosen grains */
     ms_population_split split;
-    double size, sieve;                /* Kolmogorov-Smirnov distances of the equivalent diameter, by number and by mass */
-    double of_all[3], of_library[3];   /* D5, D50, D95 by mass: diameters */
+    double size, sieve; /* Kolmogorov-Smirnov distances of the equivalent diameter, by number and by mass */
+    double of_all[3], of_library[3]; /* D5, D50, D95 by mass: diameters */
 } ms_library_distances;
 
 /** A library. */
@@ -59,6 +59,9 @@ void ms_library_free(ms_library *library);
 
 /** Share by number of a grain of the choice, of all particles. */
 double ms_library_number(const ms_library *library, size_t chosen);
+
+/** What all particles of that grain weigh, in some unit. */
+double ms_library_mass(const ms_library *library, size_t chosen);
 
 /** A choice that is this many times as far from the other half of the grains as the halves are from each other is
  * fitted to chance. */

@@ -63,7 +63,8 @@ ms_status ms_library_table_read(ms_library_table *table, const char *folder, ms_
     }
     ms_csv_close(&csv);
     if (status == MS_OK && table->count == 0) {
-        status = ms_fail(err, MS_ERR_SHAPE, "%s: no grain has a clump and all of size, sphericity, elongation, flatness and convexity%s",
+        status = ms_fail(err, MS_ERR_SHAPE,
+                         "%s: no grain has a clump and all of size, sphericity, elongation, flatness and convexity%s",
                          path, table->unmeasured ? "; convexity takes a build with qhull" : "");
     }
     if (status != MS_OK) {

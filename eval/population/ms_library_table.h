@@ -34,7 +34,7 @@ typedef struct ms_library_grain {
 typedef struct ms_library_table {
     ms_library_grain *grain;
     size_t count;
-    size_t without;   /* grains that have no clump */
+    size_t without;    /* grains that have no clump */
     size_t unmeasured; /* that have one, and lack a descriptor */
 } ms_library_table;
 

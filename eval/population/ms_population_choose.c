@@ -8,14 +8,13 @@
 
 #include "base/ms_random.h"
 #include "clump/ms_linear_program.h"
-#include "ms_population_distance.h"
 #include "ms_population_weights.h"
 
 /* Of an exchange: so many grains are tried for each of so many; so many are drawn anew where none helps. */
 enum { COMING = 5, GOING = 3, DRAWN = 2 };
 
 /* Programmes solved in a full search: at most MOST, and fewer where they are large. */
-static const double MOST = 6000, MOST_WORK = 6000 * 20.0 * 20.0, LEAST = 50;
+static const double MOST = 8000, MOST_WORK = 8000 * 20.0 * 20.0, LEAST = 50;
 
 /* Exchanges that bring less are rounding. */
 static const double ROUNDING = 1e-7;
@@ -29,7 +28,8 @@ typedef struct search {
     ms_population_weights now, trial, best_weights;
     double *gain; /* n */
     gsl_rng *random;
-    double solved, most; /* programmes */
+    double *value, best_mismatch; /* k x n_descriptors: room to judge a set */
+    double solved, most;          /* programmes */
 } search;
 
 static int solve(search *s, ms_population_weights *w)
@@ -141,24 +141,46 @@ static void draw_first(search *s)
     }
 }
 
-/* The mismatch of the best falls from round to round. */
-static void search_on(search *s)
+double ms_population_choice_mismatch(const ms_population_distance *distance)
 {
+    return fmax(distance->largest, distance->correlation / 2);
+}
+
+/* Keeps a set that is better than the best. */
+static ms_status judge(search *s, ms_error *err)
+{
+    const size_t m = s->p->n_descriptors;
+    ms_population_distance distance;
+    for (size_t j = 0; j < s->k; j++) {
+        memcpy(s->value + j * m, s->p->value + s->chosen[j] * m, m * sizeof *s->value);
+    }
+    const ms_status status = ms_population_distance_of(&distance, s->p, s->value, s->now.weight, s->k, err);
+    if (status == MS_OK && ms_population_choice_mismatch(&distance) < s->best_mismatch) {
+        s->best_mismatch = ms_population_choice_mismatch(&distance);
+        swap_weights(&s->best_weights, &s->now);
+        memcpy(s->best, s->chosen, s->k * sizeof *s->best);
+    }
+    return status;
+}
+
+/* The mismatch of the best falls from round to round. */
+static ms_status search_on(search *s, ms_error *err)
+{
+    ms_status status = MS_OK;
     draw_first(s);
-    solve(s, &s->now);
-    s->best_weights.mismatch = INFINITY;
+    int found = solve(s, &s->now);
+    s->best_mismatch = INFINITY;
     for (;;) {
         while (exchange(s)) {
         }
-        if (s->now.mismatch < s->best_weights.mismatch) {
-            swap_weights(&s->best_weights, &s->now);
-            memcpy(s->best, s->chosen, s->k * sizeof *s->best);
+        if (found || s->now.mismatch < 1) {
+            status = judge(s, err);
         }
-        if (s->solved >= s->most || s->k == s->p->n || s->best_weights.mismatch < ROUNDING) {
-            return;
+        if (status != MS_OK || s->solved >= s->most || s->k == s->p->n || s->best_mismatch < ROUNDING) {
+            return status;
         }
         draw_anew(s);
-        solve(s, &s->now);
+        found = solve(s, &s->now);
     }
 }
 
@@ -179,10 +201,10 @@ static ms_status run_search(void *context, ms_error *err)
         return ms_fail(err, MS_ERR_NOMEM, "GLPK could not go on with %zu grains; most likely it has no memory", s->k);
     }
     glp_error_hook(leave_search, &back);
-    search_on(s);
+    const ms_status status = search_on(s, err);
     glp_error_hook(NULL, NULL);
-    return s->best_weights.mismatch < 1
-               ? MS_OK
+    return status != MS_OK || s->best_mismatch <= 1
+               ? status
                : ms_fail(err, MS_ERR_LIMIT, "the simplex method finds no weights for %zu grains", s->k);
 }
 
@@ -192,6 +214,7 @@ static void end_search(search *s)
     free(s->best);
     free(s->is_in);
     free(s->gain);
+    free(s->value);
     ms_population_weights_free(&s->now);
     ms_population_weights_free(&s->trial);
     ms_population_weights_free(&s->best_weights);
@@ -206,9 +229,10 @@ static ms_status start_search(search *s, const ms_population *p, size_t k, doubl
     s->best = malloc(k * sizeof *s->best);
     s->is_in = calloc(p->n, 1);
     s->gain = malloc(p->n * sizeof *s->gain);
+    s->value = malloc(k * p->n_descriptors * sizeof *s->value);
     s->random = ms_random_new((unsigned long)seed);
     ms_population_weights *const weights[] = {&s->now, &s->trial, &s->best_weights};
-    ms_status status = s->chosen && s->best && s->is_in && s->gain && s->random
+    ms_status status = s->chosen && s->best && s->is_in && s->gain && s->value && s->random
                            ? MS_OK
                            : ms_fail(err, MS_ERR_NOMEM, "no memory to choose %zu grains", k);
     for (int w = 0; w < 3 && status == MS_OK; w++) {
@@ -228,7 +252,7 @@ static ms_status take_best(ms_population_choice *c, const search *s, ms_error *e
 {
     const size_t k = s->k;
     const size_t **place = malloc(k * sizeof *place);
-    *c = (ms_population_choice){.k = k, .mismatch = fmax(0, s->best_weights.mismatch)};
+    *c = (ms_population_choice){.k = k, .mismatch = s->best_mismatch};
     c->grain = malloc(k * sizeof *c->grain);
     c->weight = malloc(k * sizeof *c->weight);
     if (!place || !c->grain || !c->weight) {

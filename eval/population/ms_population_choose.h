@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "ms_population.h"
+#include "ms_population_distance.h"
 
 enum { MS_POPULATION_MAX_CHOSEN = 500 };
 
@@ -13,14 +13,18 @@ typedef struct ms_population_choice {
     size_t k;
     size_t *grain;   /* k, ascending */
     double *weight;  /* k, none below 0, sum 1; in the sense of the population's shares */
-    double mismatch; /* the largest Kolmogorov-Smirnov distance, or error of a correlation of ranks within the
-                        population over MS_POPULATION_CORRELATION_SCALE */
+    double mismatch; /* ms_population_choice_mismatch of its distance */
 } ms_population_choice;
 
+/** The largest Kolmogorov-Smirnov distance, or half the error of a correlation if that is larger: correlations span 2
+ * and distributions 1. */
+double ms_population_choice_mismatch(const ms_population_distance *distance);
+
 /**
- * Chooses k grains and weights of least mismatch: grains by exchange, those tried first that the prices of the linear
+ * Chooses k grains and weights of small mismatch: grains by exchange, those tried first that the prices of the linear
  * programme of the weights say to bring most, for those of least weight; where no exchange helps, two grains are drawn
  * anew and the search goes on from there, back to the best if nothing comes of it.
+ * The programme takes ranks within the population; what is best is judged by those within the choice.
  *
  * @param[out] c     the caller frees it; empty on failure
  * @param      k     from 1 to n and to MS_POPULATION_MAX_CHOSEN

@@ -4,9 +4,9 @@
 
 #include "ms_population.h"
 
-/** An error of a correlation counts as a distance of distributions this many times smaller: correlations span 2 and
- * distributions 1, and ranks within the few are not quite those within the population. */
-#define MS_POPULATION_CORRELATION_SCALE 1.8
+/** An error of a correlation counts as a distance of distributions this many times smaller: a little less than
+ * ms_population_choice_mismatch has, as ranks within the few are not quite those within the population. */
+#define MS_POPULATION_CORRELATION_SCALE 1.5
 
 /** Weights of k grains of a population, and what another grain would be worth. */
 typedef struct ms_population_weights {

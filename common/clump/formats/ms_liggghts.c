@@ -117,15 +117,15 @@ ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *
 }
 
 /* Mass and inertia that are given do not go with the scale. */
-static void write_liggghts_template(FILE *stream, const ms_placed *placed, size_t k)
+static void write_liggghts_template(FILE *stream, const ms_placed *placed, size_t k, unsigned seed)
 {
     ms_number a, b;
     char file[4096];
     snprintf(file, sizeof file, "%s.liggghts", placed->name);
     fprintf(stream,
-            "fix t%zu all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 density constant %s "
+            "fix t%zu all particletemplate/multisphere %u atom_type 1 volume_limit 1e-300 density constant %s "
             "nspheres %zu ntry 1000 spheres file ",
-            k, ms_script_number(placed->particle.density, &a), placed->clump.n_spheres);
+            k, seed, ms_script_number(placed->particle.density, &a), placed->clump.n_spheres);
     ms_escape_lammps(stream, file);
     fprintf(stream, " scale %s type %zu", ms_script_number(placed->scale, &b), k);
     write_liggghts_mass(stream, &placed->particle);
@@ -135,7 +135,7 @@ static void write_liggghts_template(FILE *stream, const ms_placed *placed, size_
 static void write_liggghts_placed(FILE *stream, const ms_placed *placed, size_t k, double speck)
 {
     ms_number a, b;
-    write_liggghts_template(stream, placed, k);
+    write_liggghts_template(stream, placed, k, 15485863);
     fprintf(stream, "fix d%zu all particledistribution/discrete 15485867 1 t%zu 1.0\nregion r%zu block", k, k, k);
     for (int axis = 0; axis < 3; axis++) {
         const double x = placed->centre[axis];
@@ -205,10 +205,24 @@ ms_status ms_liggghts_settle(FILE *stream, const ms_packing *packing, const char
     return MS_OK;
 }
 
-/* The shares are by number. */
+static unsigned next_prime(unsigned after)
+{
+    for (unsigned n = after + 1;; n++) {
+        unsigned divisor = 2;
+        while (divisor * divisor <= n && n % divisor != 0) {
+            divisor++;
+        }
+        if (divisor * divisor > n) {
+            return n;
+        }
+    }
+}
+
+/* The shares are by number. Seeds must be primes above 10000, each another. */
 ms_status ms_liggghts_mixture(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err)
 {
     const ms_script_drop d = ms_script_drop_of_mixture(mixture);
+    unsigned seed = 1000000;
     ms_number a;
     (void)err;
     ms_script_title_mixture(stream, name, "liggghts -in", ".in", "-var n 500");
@@ -216,7 +230,8 @@ ms_status ms_liggghts_mixture(FILE *stream, const ms_packing *mixture, const cha
     start_liggghts_drop(stream, &d, 0.2 * d.reach);
     fputs("# A template of each kind and size, and the share of each.\n", stream);
     for (size_t k = 0; k < mixture->count; k++) {
-        write_liggghts_template(stream, &mixture->placed[k], k + 1);
+        seed = next_prime(seed);
+        write_liggghts_template(stream, &mixture->placed[k], k + 1, seed);
     }
     fprintf(stream, "fix kinds all particledistribution/discrete/numberbased 15485867 %zu", mixture->count);
     for (size_t k = 0; k < mixture->count; k++) {
