@@ -1,8 +1,8 @@
 #!/bin/bash
 # The figures of docs/cluster.md, in a folder of its own that is removed: takes minutes, 3 GB and a million inodes.
-#   PATH=build/eval:$PATH bash docs/cluster-figures.sh [GRAINS OF THE LONG LISTS]
+#   PATH=build/eval:$PATH bash docs/cluster-figures.sh [GRAINS OF THE LONG LISTS] [GRAINS MADE]
 set -eu
-many=${1:-1000000} parts=16
+many=${1:-1000000} few=${2:-100} parts=16
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
@@ -11,14 +11,14 @@ say() { # what, command: seconds and memory of the command
 }
 
 mkdir small
-for k in {1..100}; do
+for k in $(seq "$few"); do
     mskit shape grain seed="$k" -o "small/$k.stl" >/dev/null 2>&1
 done
 for method in mss variational; do
-    say "100 grains by $method, templates for LAMMPS" mskit grains small -g "$method" -n 20 --cells 40 -j 1 \
+    say "$few grains by $method, templates for LAMMPS" mskit grains small -g "$method" -n 20 --cells 40 -j 1 \
         --format csv --format lammps --density 2600 -o "$method"
 done
-say "100 grains by mss, spheres alone" mskit grains small -g mss -n 20 --cells 40 -j 1 -o mss-csv
+say "$few grains by mss, spheres alone" mskit grains small -g mss -n 20 --cells 40 -j 1 -o mss-csv
 for run in mss mss-csv; do
     echo "$run: $(find $run -type f | wc -l) files, $(du -sb $run | cut -f 1) bytes," \
         "$(du -s --block-size=1 $run | cut -f 1) on the disk, $(wc -c <$run/grains.csv) of them the table"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The tables "The paper's way of counting" of docs/validation.md: sh docs/setcover-counts.sh path/to/mskit
+# The tables "Set cover against its paper" of docs/validation.md: sh docs/setcover-counts.sh path/to/mskit
 set -eu
 mskit=$(command -v "$1")
 cd "$(mktemp -d)"
@@ -39,3 +39,6 @@ row() {
 row voxels 100
 row cut 100 --set count=cut
 row cut 50 --set count=cut
+row skeleton-deq 100 --skeleton-deq 100
+row candidates=skeleton 100 --candidates skeleton
+row candidates=all 100 --candidates all

@@ -36,23 +36,40 @@ static ms_generate_request fill_in(const ms_generate_request *request)
     return all;
 }
 
-/* What the method says that it takes; 0 of an unknown one. */
-static double method_bytes(const ms_generate_request *request)
+static ms_status set_options(ms_settings *settings, const ms_generator *generator, const ms_generate_option *option,
+                             ms_error *err)
+{
+    ms_status status = ms_option_settings_init(settings, generator->options, err);
+    for (; status == MS_OK && option && option->name; option++) {
+        status = ms_option_settings_set(settings, option->name, option->text, err);
+    }
+    return status;
+}
+
+/* What the method says that it takes; of an unknown one nothing is said. */
+static ms_target_need find_need(const ms_generate_request *request)
 {
     const ms_generator *generator = ms_generator_find(request->generator, NULL);
-    return generator ? generator->bytes_per_voxel : 0;
+    ms_target_need need = {0};
+    ms_settings settings;
+    if (generator) {
+        const ms_status status = set_options(&settings, generator, request->options, NULL);
+        need = ms_generator_need(generator, status == MS_OK ? &settings : NULL, request->stop.coverage_cut > 0);
+        ms_option_settings_free(&settings);
+    }
+    return need;
 }
 
 static size_t max_voxels(const ms_generate_request *request)
 {
     const double one[3] = {1, 1, 1};
-    const double most = request->max_bytes / ms_target_bytes(one, method_bytes(request));
+    const double most = request->max_bytes / ms_target_bytes(one, 0, find_need(request));
     return most < 1e18 ? (size_t)most : (size_t)1e18;
 }
 
-static ms_status check_bytes(const double n[3], const ms_generate_request *request, ms_error *err)
+static ms_status check_bytes(const double n[3], double squares, const ms_generate_request *request, ms_error *err)
 {
-    const double bytes = ms_target_bytes(n, method_bytes(request)), max_bytes = request->max_bytes;
+    const double bytes = ms_target_bytes(n, squares, find_need(request)), max_bytes = request->max_bytes;
     return bytes <= max_bytes ? MS_OK
                               : ms_fail(err, MS_ERR_LIMIT,
                                         "a grid of %.6gx%.6gx%.6g voxels takes about %.3g GB, more than the %.3g GB "
@@ -93,7 +110,7 @@ static ms_status target_from_mesh(shape *s, const ms_generate_request *request, 
         return status;
     }
     ms_voxelize_extents(n, &s->mesh, h);
-    status = check_bytes(n, request, err);
+    status = check_bytes(n, ms_mesh_area(&s->mesh) / (h * h), request, err);
     return status == MS_OK ? ms_target_from_mesh(&s->target, &s->mesh, 1, h, MS_VOXEL_HALF, err) : status;
 }
 
@@ -105,7 +122,7 @@ static ms_status target_from_volume(shape *s, const ms_generate_request *request
     if (ms_target_label_box(lo, hi, &other, &s->volume, request->label)) { /* without voxels the target says why */
         const double n[3] = {hi[0] - lo[0] + 2 * MS_GRID_HULL, hi[1] - lo[1] + 2 * MS_GRID_HULL,
                              hi[2] - lo[2] + 2 * MS_GRID_HULL};
-        status = check_bytes(n, request, err);
+        status = check_bytes(n, ms_target_box_squares(n), request, err);
     }
     return status == MS_OK ? ms_target_from_volume(&s->target, &s->volume, request->label, err) : status;
 }
@@ -129,16 +146,6 @@ static ms_status read_shape(shape *s, const char *path, const ms_generate_reques
     }
     status = s->volume.label ? target_from_volume(s, request, &cause) : target_from_mesh(s, request, &cause);
     return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", path, cause.text);
-}
-
-static ms_status set_options(ms_settings *settings, const ms_generator *generator, const ms_generate_option *option,
-                             ms_error *err)
-{
-    ms_status status = ms_option_settings_init(settings, generator->options, err);
-    for (; status == MS_OK && option && option->name; option++) {
-        status = ms_option_settings_set(settings, option->name, option->text, err);
-    }
-    return status;
 }
 
 static ms_status run_and_measure(ms_clump *clump, ms_metrics *metrics, const ms_generator *generator,

@@ -60,6 +60,19 @@ int ms_generator_is_nested(const ms_generator *generator, const ms_settings *set
     return generator->nested && settings->value[flag - generator->options] == 0;
 }
 
+ms_target_need ms_generator_need(const ms_generator *generator, const ms_settings *settings, int cut)
+{
+    const ms_option *choice =
+        generator->cut_by && settings ? ms_option_find(generator->options, generator->cut_by) : NULL;
+    const double own = generator->bytes_per_voxel;
+    ms_target_need need = {own > 0 ? own : MS_TARGET_METHOD_BYTES, generator->bytes_per_square};
+    if (cut || (choice && settings->value[choice - generator->options] != 0)) {
+        need.voxel += MS_CUT_VOXEL_BYTES;
+        need.square += MS_CUT_SQUARE_BYTES;
+    }
+    return need;
+}
+
 static ms_status check_run(const ms_generator *generator, const ms_run *run, ms_error *err)
 {
     const ms_stop *stop = &run->stop;

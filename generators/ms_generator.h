@@ -62,7 +62,9 @@ typedef struct ms_generator {
     const char *source;       /* the paper: authors, year, DOI or arXiv number */
     int nested;               /* nonzero: the first k spheres of a run are the clump of k spheres */
     const char *unnested_by;  /* a FLAG among its options under which a nested one is not; NULL if there is none */
+    const char *cut_by;       /* a CHOICE among its options of which any but the first needs cut cells; NULL: none */
     double bytes_per_voxel;   /* that a run takes beyond the target's at its peak; 0: as ms_target_bytes */
+    double bytes_per_square;  /* the same, for each square of the surface (ms_target_need) */
     double kept_bytes;        /* of those, a voxel: stay with the target for runs to come */
     int baseline;             /* nonzero: something plain to compare with, by name; promises no quality */
     const ms_option *options; /* ends with a NULL name */
@@ -85,6 +87,10 @@ MS_API extern const ms_generator *const ms_generators[];
 
 /** Are the first k spheres of a run with these options the clump of k? @param settings NULL: defaults */
 MS_API int ms_generator_is_nested(const ms_generator *generator, const ms_settings *settings);
+
+/** What a run with these options takes beyond the target's bytes. @param settings NULL: defaults @param cut nonzero: cut
+ * cells are counted, whatever the options say */
+MS_API ms_target_need ms_generator_need(const ms_generator *generator, const ms_settings *settings, int cut);
 
 /** The generator of that name, or NULL with a message that lists the names. */
 MS_API const ms_generator *ms_generator_find(const char *name, ms_error *err);

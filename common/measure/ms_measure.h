@@ -65,15 +65,15 @@ MS_C_BEGIN
       "its root mean square over all of the mesh (0 where it is inside a sphere)", NULL, NULL) \
     X(NORMAL, NORMAL_MEDIAN, normal_median, LESS, 2, 0, "degrees", "median error of the normals, degrees", \
       "error of the normals, median", "mskit", \
-      "angle between the outer surface of the spheres and that of the shape where it is nearest; median by area", NULL, \
-      NULL) \
+      "angle between the outer surface of the spheres and that of the shape where it is nearest; median by area", \
+      NULL, NULL) \
     X(NORMAL, NORMAL_95, normal_95, LESS, 2, 0, "degrees", NULL, \
       "error of the normals, 95 %", "mskit", \
       "the same angle, which 95 % of that surface keep to. Both are without what is near sharp edges", NULL, NULL) \
     X(NORMAL, EDGE_PART, edge_part, NONE, 4, 0, NULL, NULL, \
       "part near sharp edges", "mskit", \
-      "part of that surface nearer than the least radius to a sharp edge of the mesh, where faces turn by over 30 degrees", \
-      NULL, NULL) \
+      "part of that surface nearer than the least radius to a sharp edge of the mesh, where faces turn by over 30 "  \
+      "degrees", NULL, NULL) \
     X(NORMAL, EDGE_NORMAL_MEDIAN, edge_normal_median, LESS, 2, 0, "degrees", NULL, \
       "normals near sharp edges, median", "mskit", \
       "the angle there; median by area", NULL, NULL) \
@@ -85,8 +85,8 @@ MS_C_BEGIN
       "least radius / radius of the ball of equal volume. Small spheres force small time steps", NULL, NULL) \
     X(SPHERES, WORK, work, LESS, 2, 0, NULL, NULL, \
       "work, n r_eq / r_min", "LIGGGHTS, fix check/timestep/gran", \
-      "number of spheres x equivalent / least radius: pairs to try x time steps, if the least sphere sets the step", NULL, \
-      NULL) \
+      "number of spheres x equivalent / least radius: pairs to try x time steps, if the least sphere sets the step", \
+      NULL, NULL) \
     X(COUNT, PIECES, pieces, ONE, 0, 0, "pieces", NULL, \
       "connected", "Yuan 3, note on fig. 4", \
       "number of pieces; spheres that overlap belong together", NULL, NULL) \

@@ -1,7 +1,7 @@
 #include "ms_normals.h"
 
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 
 #include "base/ms_vector.h"
 #include "mesh/ms_mesh_sharp.h"
@@ -13,7 +13,7 @@ ms_status ms_normals_open(ms_normals_shape *shape, const ms_target *target, doub
 {
     *shape = (ms_normals_shape){.target = target, .near = near};
     if (!target->mesh) {
-        return ms_signed_distance_open(&shape->field, target, 1, err);
+        return MS_OK;
     }
     ms_status status = ms_mesh_sharp_edges(&shape->edges, target->mesh, MS_NORMALS_SHARP, err);
     if (status == MS_OK && shape->edges.n_triangles > 0) {
@@ -32,38 +32,97 @@ void ms_normals_free(ms_normals_shape *shape)
     *shape = (ms_normals_shape){0};
 }
 
-/* Down the slope of the distance, which voxels know to half a voxel. @param place in voxels, moved */
-static void step_to_surface(const ms_signed_distance *field, double place[3])
+/* The voxel of the other kind that is nearest to a place, among those a number of steps along the longest axis from the
+ * voxel that holds the place. */
+typedef struct kind_search {
+    const ms_grid *grid;
+    const double *place; /* in voxels */
+    int centre[3], kind; /* the voxel that holds it */
+    double square;       /* of the distance to the nearest so far */
+    int nearest[3];
+} kind_search;
+
+static void try_voxel(kind_search *s, int i, int j, int k)
 {
-    double slope[3], from[3];
-    const double phi = ms_signed_distance_at(field, place);
-    memcpy(from, place, sizeof from);
-    for (int a = 0; a < 3; a++) {
-        double beside[3] = {from[0], from[1], from[2]};
-        beside[a] = from[a] + 1;
-        slope[a] = ms_signed_distance_at(field, beside);
-        beside[a] = from[a] - 1;
-        slope[a] -= ms_signed_distance_at(field, beside);
-    }
-    const double length = sqrt(ms_dot(slope, slope));
-    for (int a = 0; a < 3 && length > 0; a++) {
-        place[a] = from[a] - phi * slope[a] / length;
+    const double voxel[3] = {i, j, k}, square = ms_squared_distance(voxel, s->place);
+    if (square < s->square && s->grid->inside[ms_grid_index(s->grid, i, j, k)] != s->kind) {
+        s->square = square;
+        s->nearest[0] = i;
+        s->nearest[1] = j;
+        s->nearest[2] = k;
     }
 }
 
-/* Of voxels near a point. @return 0 if there is no surface to be found */
-static int find_nearest_normal(double normal[3], const ms_normals_shape *shape, const double point[3])
+/* The surface of a cube, what of it is in the grid: whole rows on four of its faces, the ends of rows on the others. */
+static void search_shell(kind_search *s, int reach)
 {
-    enum { STEPS = 3 }; /* near ridges of the distance the first goes astray */
-    const ms_grid *grid = &shape->target->grid;
+    int lo[3], hi[3];
+    for (int a = 0; a < 3; a++) {
+        lo[a] = s->centre[a] - reach > 0 ? s->centre[a] - reach : 0;
+        hi[a] = s->centre[a] + reach < s->grid->n[a] ? s->centre[a] + reach : s->grid->n[a] - 1;
+    }
+    for (int k = lo[2]; k <= hi[2]; k++) {
+        for (int j = lo[1]; j <= hi[1]; j++) {
+            const int whole = abs(k - s->centre[2]) == reach || abs(j - s->centre[1]) == reach;
+            for (int i = whole ? lo[0] : s->centre[0] - reach; i <= hi[0]; i += whole ? 1 : 2 * reach) {
+                if (i >= lo[0]) {
+                    try_voxel(s, i, j, k);
+                }
+            }
+        }
+    }
+}
+
+/* How far off the other kind is at least, in steps along an axis: by the distance field, or beyond the border. */
+static int find_first_reach(const ms_target *target, const kind_search *s)
+{
+    const ms_grid *grid = &target->grid;
+    int reach = 1;
+    if (s->kind) {
+        const float away = target->distance[ms_grid_index(grid, s->centre[0], s->centre[1], s->centre[2])];
+        reach = (int)((double)away / sqrt(3));
+    }
+    for (int a = 0; a < 3; a++) {
+        reach = -s->centre[a] > reach ? -s->centre[a] : reach;
+        reach = s->centre[a] - grid->n[a] >= reach ? s->centre[a] - grid->n[a] + 1 : reach;
+    }
+    return reach > 1 ? reach : 1;
+}
+
+/* To where the surface is, known to half a voxel. @param place in voxels, moved @return 0 without a surface */
+static int step_to_surface(const ms_target *target, double place[3])
+{
+    static const double FARTHEST = 1e6; /* in voxels */
+    const ms_grid *grid = &target->grid;
+    kind_search s = {.grid = grid, .place = place, .square = HUGE_VAL};
+    int in_grid = 1, most = 0;
+    for (int a = 0; a < 3; a++) {
+        if (!(fabs(place[a]) < FARTHEST)) {
+            return 0;
+        }
+        s.centre[a] = (int)rint(place[a]);
+        in_grid &= s.centre[a] >= 0 && s.centre[a] < grid->n[a];
+        most = (int)fmax(most, fmax(abs(s.centre[a]), abs(s.centre[a] - grid->n[a])));
+    }
+    s.kind = in_grid && grid->inside[ms_grid_index(grid, s.centre[0], s.centre[1], s.centre[2])];
+    for (int reach = find_first_reach(target, &s); reach <= most && s.square > (reach - 0.5) * (reach - 0.5); reach++) {
+        search_shell(&s, reach);
+    }
+    const double away = sqrt(s.square);
+    for (int a = 0; a < 3 && isfinite(away); a++) {
+        place[a] += (s.nearest[a] - place[a]) * (away - 0.5) / away;
+    }
+    return isfinite(away);
+}
+
+/* Of voxels near a point. @return 0 if there is no surface to be found */
+static int find_nearest_normal(double normal[3], const ms_target *target, const double point[3])
+{
     double place[3];
     for (int a = 0; a < 3; a++) {
-        place[a] = (point[a] - grid->origin[a]) / grid->h;
+        place[a] = (point[a] - target->grid.origin[a]) / target->grid.h;
     }
-    for (int step = 0; step < STEPS; step++) {
-        step_to_surface(&shape->field, place);
-    }
-    return ms_voxel_normal(normal, grid, place);
+    return step_to_surface(target, place) && ms_voxel_normal(normal, &target->grid, place);
 }
 
 double ms_normals_add(ms_normals_tally *tally, const ms_normals_shape *shape, const double point[3],
@@ -75,7 +134,7 @@ double ms_normals_add(ms_normals_tally *tally, const ms_normals_shape *shape, co
         distance = ms_closest_signed_normal(own, shape->target->closest, point);
         near = shape->closest && ms_closest_distance(NULL, shape->closest, point, shape->near) < shape->near;
     } else {
-        known = find_nearest_normal(own, shape, point);
+        known = find_nearest_normal(own, shape->target, point);
     }
     const double length = sqrt(ms_dot(own, own));
     if (known && length > 0) {

@@ -3,7 +3,6 @@
 #define MS_NORMALS_H
 
 #include "mesh/ms_closest.h"
-#include "voxel/ms_signed_distance.h"
 #include "voxel/ms_target.h"
 
 /** Faces of a mesh that turn by more than this, in degrees, meet at a sharp edge: the usual feature angle. */
@@ -18,19 +17,17 @@ typedef struct ms_normals {
 
 /** Normals of a shape. */
 typedef struct ms_normals_shape {
-    const ms_target *target;  /* borrowed */
-    double near;              /* nearer to a sharp edge than this is apart */
-    ms_mesh edges;            /* the sharp ones; none of a volume */
-    ms_closest *closest;      /* on them; NULL without any */
-    ms_signed_distance field; /* of a volume */
+    const ms_target *target; /* borrowed */
+    double near;             /* nearer to a sharp edge than this is apart */
+    ms_mesh edges;           /* the sharp ones; none of a volume */
+    ms_closest *closest;     /* on them; NULL without any */
 } ms_normals_shape;
 
 /**
  * @param[out] shape  freed by ms_normals_free; empty on failure
  * @param      target of a closed mesh or a volume
  * @param      near   in the mesh's unit
- * @return MS_OK; as ms_mesh_sharp_edges, ms_closest_build, ms_signed_distance_open. Cost: O(triangles), of a volume the
- *         first time two distance transforms
+ * @return MS_OK; as ms_mesh_sharp_edges, ms_closest_build. Cost: O(triangles log triangles), of a volume none
  */
 ms_status ms_normals_open(ms_normals_shape *shape, const ms_target *target, double near, ms_error *err);
 
@@ -42,6 +39,8 @@ typedef struct ms_normals_tally {
 
 /**
  * Adds a point of the exposed surface.
+ *
+ * Cost: two searches of a mesh; of a volume 1728 voxels and, outside, all that are nearer than its surface.
  *
  * @param point  in the mesh's frame
  * @param normal of the sphere there, of length 1

@@ -271,6 +271,7 @@ ms_status ms_bvh_build(ms_bvh *bvh, const ms_mesh *mesh, ms_bvh_effort effort, m
     free(b.list);
     ms_bvh_node *fitted = realloc(b.node, b.n_nodes * sizeof *fitted);
     bvh->node = fitted ? fitted : b.node;
+    bvh->n_nodes = b.n_nodes;
     return MS_OK;
 }
 

@@ -23,9 +23,10 @@ typedef struct ms_bvh_node {
 } ms_bvh_node;
 
 typedef struct ms_bvh {
-    double centre[3];  /* of the box; all coordinates here are relative to it */
-    double size;       /* longest edge of the box */
-    ms_bvh_node *node; /* node[0] is the root */
+    double centre[3]; /* of the box; all coordinates here are relative to it */
+    double size;      /* longest edge of the box */
+    size_t n_nodes;
+    ms_bvh_node *node; /* node[0] is the root; the nodes of its boxes stand behind a node */
     ms_bvh_triangle *triangle;
 } ms_bvh;
 

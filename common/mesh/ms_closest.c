@@ -11,6 +11,18 @@
 /* Planes that are measured at once: a leaf's. */
 enum { AT_ONCE = 4 };
 
+/* Triangles that a slab may hold: of larger patches the boxes tell as much. */
+enum { PATCH = 256 };
+
+/*
+ * What is in box c of a node lies between two parallel planes, lo[c] <= normal . x <= hi[c]: of a smooth patch they are
+ * closer together than the sides of the box, by the square of its extent. In single precision and in units of the mesh's
+ * size, as the planes of triangles; all 0 where no patch is meant.
+ */
+typedef struct slab {
+    float normal[3][2], lo[2], hi[2];
+} slab;
+
 /*
  * The planes of the triangles k of a leaf of n, for a first judgement: normal[a] at a n + k, the distance from the
  * centre at 3 n + k, so that a leaf's are together. Of single precision and in units of the mesh's size, which is
@@ -19,6 +31,7 @@ enum { AT_ONCE = 4 };
 struct ms_closest {
     ms_bvh bvh;
     float *plane; /* a leaf's at 4 times its first triangle; AT_ONCE more */
+    slab *slab;   /* of each node */
 };
 
 static void put_planes(float *plane, const ms_bvh *bvh, uint32_t first, uint32_t count)
@@ -50,25 +63,70 @@ static void put_all_planes(float *plane, const ms_bvh *bvh)
     }
 }
 
+/* The slab of the triangles from `first` to `end` - 1. */
+static void put_slab(slab *out, int c, const ms_bvh *bvh, uint32_t first, uint32_t end)
+{
+    double sum[3] = {0, 0, 0}, lo = HUGE_VAL, hi = -HUGE_VAL;
+    for (uint32_t t = first; t < end; t++) {
+        for (int a = 0; a < 3; a++) {
+            sum[a] += bvh->triangle[t].normal[a];
+        }
+    }
+    const double length = sqrt(ms_dot(sum, sum));
+    for (int a = 0; a < 3; a++) {
+        out->normal[a][c] = length > 0 ? (float)(sum[a] / length) : 0;
+        sum[a] = (double)out->normal[a][c] / bvh->size;
+    }
+    for (uint32_t t = first; t < end; t++) {
+        const ms_bvh_triangle *at = &bvh->triangle[t];
+        const double a = ms_dot(sum, at->a), b = a + ms_dot(sum, at->ab), d = a + ms_dot(sum, at->ac);
+        lo = fmin(lo, fmin(a, fmin(b, d)));
+        hi = fmax(hi, fmax(a, fmax(b, d)));
+    }
+    out->lo[c] = (float)lo;
+    out->hi[c] = (float)hi;
+}
+
+/* The slabs of all boxes of at most PATCH triangles. Boxes of a node stand behind it. @return 0 without memory */
+static int put_all_slabs(slab *out, const ms_bvh *bvh)
+{
+    typedef uint32_t range[2];
+    range *held =
+        malloc(bvh->n_nodes * sizeof *held); /* the triangles of each node, from the first to before the last */
+    for (size_t n = bvh->n_nodes; held && n-- > 0;) {
+        const ms_bvh_node *node = &bvh->node[n];
+        range of[2];
+        out[n] = (slab){0};
+        for (int c = 0; c < 2; c++) {
+            const int leaf = node->count[c] > 0;
+            of[c][0] = leaf ? node->first[c] : held[node->first[c]][0];
+            of[c][1] = leaf ? node->first[c] + node->count[c] : held[node->first[c]][1];
+            if (of[c][1] - of[c][0] <= PATCH) {
+                put_slab(&out[n], c, bvh, of[c][0], of[c][1]);
+            }
+        }
+        held[n][0] = of[0][0];
+        held[n][1] = of[1][1];
+    }
+    free(held);
+    return held != NULL;
+}
+
 ms_status ms_closest_build(ms_closest **out, const ms_mesh *mesh, ms_error *err)
 {
+    ms_closest *closest = calloc(1, sizeof *closest);
+    ms_status status = closest ? ms_bvh_build(&closest->bvh, mesh, MS_BVH_FOR_MANY_RAYS, err) : MS_ERR_NOMEM;
     *out = NULL;
-    ms_closest *closest = malloc(sizeof *closest);
-    float *plane = malloc((4 * mesh->n_triangles + AT_ONCE) * sizeof *plane);
-    if (!closest || !plane) {
-        free(closest);
-        free(plane);
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for a search structure");
+    if (status == MS_OK) {
+        closest->plane = calloc(4 * mesh->n_triangles + AT_ONCE, sizeof *closest->plane);
+        closest->slab = malloc(closest->bvh.n_nodes * sizeof *closest->slab);
+        status = closest->plane && closest->slab && put_all_slabs(closest->slab, &closest->bvh) ? MS_OK : MS_ERR_NOMEM;
     }
-    memset(plane + 4 * mesh->n_triangles, 0, AT_ONCE * sizeof *plane);
-    ms_status status = ms_bvh_build(&closest->bvh, mesh, MS_BVH_FOR_MANY_RAYS, err);
     if (status != MS_OK) {
-        free(closest);
-        free(plane);
-        return status;
+        ms_closest_free(closest);
+        return status == MS_ERR_NOMEM ? ms_fail(err, MS_ERR_NOMEM, "no memory for a search structure") : status;
     }
-    closest->plane = plane;
-    put_all_planes(plane, &closest->bvh);
+    put_all_planes(closest->plane, &closest->bvh);
     *out = closest;
     return MS_OK;
 }
@@ -78,6 +136,7 @@ void ms_closest_free(ms_closest *closest)
     if (closest) {
         ms_bvh_free(&closest->bvh);
         free(closest->plane);
+        free(closest->slab);
         free(closest);
     }
 }
@@ -193,6 +252,7 @@ typedef struct nearest_search {
     double point[3]; /* relative to the centre */
     double best;     /* squared: what is farther is of no interest */
     const float *plane;
+    const slab *slab;
     float place[3];    /* the point, in units of the mesh's size */
     float plane_limit; /* planes farther than that are of no interest */
     double nearest[3];
@@ -273,12 +333,21 @@ static void search_leaf(nearest_search *s, uint32_t first, uint32_t count)
     }
 }
 
+/* How far a place is outside a slab; below 0 within. */
+static float distance_to_slab(const slab *of, int c, const float p[3])
+{
+    const float at = of->normal[0][c] * p[0] + of->normal[1][c] * p[1] + of->normal[2][c] * p[2];
+    const float below = of->lo[c] - at, above = at - of->hi[c];
+    return below > above ? below : above;
+}
+
 /* The nearer box is searched first; the other waits and is dropped if a point nearer than it
    turns up. */
 static void search_tree(nearest_search *s)
 {
     struct {
         double square;
+        float beyond;
         uint32_t first, count;
     } stack[MS_BVH_STACK];
     int waiting = 0;
@@ -290,8 +359,10 @@ static void search_tree(nearest_search *s)
         int near = square[1] < square[0];
         for (int turn = 0; turn < 2; turn++) {
             int c = turn == 0 ? !near : near;
-            if (square[c] < s->best) {
+            const float beyond = square[c] < s->best ? distance_to_slab(&s->slab[at], c, s->place) : HUGE_VALF;
+            if (square[c] < s->best && !(beyond > s->plane_limit)) {
                 stack[waiting].square = square[c];
+                stack[waiting].beyond = beyond;
                 stack[waiting].first = node->first[c];
                 stack[waiting++].count = node->count[c];
             }
@@ -303,7 +374,7 @@ static void search_tree(nearest_search *s)
                     return;
                 }
                 waiting--;
-            } while (!(stack[waiting].square < s->best));
+            } while (!(stack[waiting].square < s->best) || stack[waiting].beyond > s->plane_limit);
             at = stack[waiting].first;
             count = stack[waiting].count;
             if (count > 0) {
@@ -315,7 +386,10 @@ static void search_tree(nearest_search *s)
 
 static void begin_search(nearest_search *s, const ms_closest *closest, const double point[3], double at_most)
 {
-    *s = (nearest_search){.bvh = &closest->bvh, .plane = closest->plane, .best = at_most > 0 ? at_most * at_most : 0};
+    *s = (nearest_search){.bvh = &closest->bvh,
+                          .plane = closest->plane,
+                          .slab = closest->slab,
+                          .best = at_most > 0 ? at_most * at_most : 0};
     for (int k = 0; k < 3; k++) {
         s->point[k] = point[k] - closest->bvh.centre[k];
         s->place[k] = (float)(s->point[k] / closest->bvh.size);

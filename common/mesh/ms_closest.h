@@ -38,8 +38,8 @@ MS_API double ms_closest_distance(double nearest[3], const ms_closest *closest, 
 MS_API double ms_closest_signed_distance(const ms_closest *closest, const double point[3]);
 
 /**
- * The same, and the outward normal of the mesh where it is nearest: that of the face, on an edge or a vertex the mean of
- * its faces', weighted as above.
+ * The same, and the outward normal of the mesh where it is nearest: that of the face, on an edge or a vertex the mean
+ * of its faces', weighted as above.
  *
  * @param[out] normal not of length 1; zeros where faces without area meet
  */

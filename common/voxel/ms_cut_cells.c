@@ -351,7 +351,7 @@ static int cut_planes(ms_cut_plane *planes, ms_cut_cells *cells, const ms_grid *
 }
 
 /* Of a volume: its voxels. */
-static void take_voxels(ms_cut_cells *cells, const ms_grid *grid)
+static void take_voxels_whole(ms_cut_cells *cells, const ms_grid *grid)
 {
     memcpy(cells->whole, grid->inside, ms_grid_voxels(grid));
     cells->total = (int64_t)ms_grid_count(grid) * MS_CUT_WHOLE;
@@ -376,7 +376,7 @@ ms_status ms_cut_cells_build(ms_cut_cells **out, const ms_grid *grid, const ms_m
     if (complete && mesh) {
         complete = cut_planes(planes, cells, grid, mesh) && ms_cut_parts_join(cells, planes);
     } else if (complete) {
-        take_voxels(cells, grid);
+        take_voxels_whole(cells, grid);
     }
     for (int k = 0; planes && k < grid->n[2]; k++) {
         free(planes[k].part);

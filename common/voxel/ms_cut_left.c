@@ -42,8 +42,8 @@ static int find_side(const ms_cut_block *block, const ms_ball *ball)
 }
 
 /* What is left of the cells of a block; covers it, if `mark` is the same. */
-static int64_t count_block(const ms_cut_left *left, ms_cut_left *mark, ms_cut_taken *taken, size_t b,
-                           const ms_ball *ball)
+static int64_t count_left_block(const ms_cut_left *left, ms_cut_left *mark, ms_cut_taken *taken, size_t b,
+                                const ms_ball *ball)
 {
     const ms_cut_block *block = &left->cells->block[b];
     const int side = left->in_block[b] > 0 ? find_side(block, ball) : -1;
@@ -71,7 +71,7 @@ static void find_blocks(int *from, int *to, const ms_cut_cells *cells, const ms_
     *to = (int)fmin(fmax(floor((ball->centre[axis] + reach) / MS_CUT_BLOCK) + 1, *from), blocks);
 }
 
-static int64_t count_blocks(const ms_cut_left *left, ms_cut_left *mark, ms_cut_taken *taken, const ms_ball *ball)
+static int64_t count_left_blocks(const ms_cut_left *left, ms_cut_left *mark, ms_cut_taken *taken, const ms_ball *ball)
 {
     int from[3], to[3];
     int64_t sum = 0;
@@ -82,7 +82,7 @@ static int64_t count_blocks(const ms_cut_left *left, ms_cut_left *mark, ms_cut_t
         for (int j = from[1]; j < to[1]; j++) {
             const size_t row = ms_cut_cells_block(left->cells, 0, j, k);
             for (int i = from[0]; i < to[0]; i++) {
-                sum += count_block(left, mark, taken, row + (size_t)i, ball);
+                sum += count_left_block(left, mark, taken, row + (size_t)i, ball);
             }
         }
     }
@@ -118,7 +118,7 @@ static int sum_flags(const uint8_t *flag, int n)
     return sum;
 }
 
-static void take_voxels(ms_cut_left *mark, ms_cut_taken *taken, int from, int to, int j, size_t row, int k)
+static void take_left_voxels(ms_cut_left *mark, ms_cut_taken *taken, int from, int to, int j, size_t row, int k)
 {
     uint8_t *voxel = mark->voxel + (size_t)mark->cells->n[0] * row;
     for (int i = from; i < to; i++) {
@@ -131,7 +131,7 @@ static void take_voxels(ms_cut_left *mark, ms_cut_taken *taken, int from, int to
 }
 
 /* What is left of the whole voxels. */
-static int64_t count_voxels(const ms_cut_left *left, ms_cut_left *mark, ms_cut_taken *taken, const ms_ball *ball)
+static int64_t count_left_voxels(const ms_cut_left *left, ms_cut_left *mark, ms_cut_taken *taken, const ms_ball *ball)
 {
     const int *n = left->cells->n;
     int64_t sum = 0;
@@ -147,7 +147,7 @@ static int64_t count_voxels(const ms_cut_left *left, ms_cut_left *mark, ms_cut_t
                 const int found = sum_flags(left->voxel + (size_t)n[0] * row + from, to - from);
                 sum += found;
                 if (mark && found > 0) {
-                    take_voxels(mark, taken, from, to, j, row, k);
+                    take_left_voxels(mark, taken, from, to, j, row, k);
                 }
             }
         }
@@ -157,12 +157,12 @@ static int64_t count_voxels(const ms_cut_left *left, ms_cut_left *mark, ms_cut_t
 
 int64_t ms_cut_left_count(const ms_cut_left *left, const ms_ball *ball)
 {
-    return count_blocks(left, NULL, NULL, ball) + count_voxels(left, NULL, NULL, ball);
+    return count_left_blocks(left, NULL, NULL, ball) + count_left_voxels(left, NULL, NULL, ball);
 }
 
 int64_t ms_cut_left_cover(ms_cut_left *left, const ms_ball *ball, ms_cut_taken *taken)
 {
-    return count_blocks(left, left, taken, ball) + count_voxels(left, left, taken, ball);
+    return count_left_blocks(left, left, taken, ball) + count_left_voxels(left, left, taken, ball);
 }
 
 int64_t ms_cut_left_fallen(const ms_cut_taken *taken, uint64_t from, const ms_ball *ball)

@@ -13,7 +13,7 @@ typedef struct cut_parts {
     size_t *into;   /* which it is joined to; itself, if it stays */
 } cut_parts;
 
-static size_t row_of(const ms_cut_cells *cells, int j, int k)
+static size_t find_cut_row(const ms_cut_cells *cells, int j, int k)
 {
     return (size_t)j + (size_t)cells->n[1] * (size_t)k;
 }
@@ -23,7 +23,7 @@ static int is_by_the_surface(const ms_cut_cells *cells, int i, int j, int k)
 {
     const int at[3] = {i, j, k};
     const size_t step[3] = {1, (size_t)cells->n[0], (size_t)cells->n[0] * (size_t)cells->n[1]};
-    const uint8_t *voxel = cells->whole + (size_t)i + step[1] * row_of(cells, j, k);
+    const uint8_t *voxel = cells->whole + (size_t)i + step[1] * find_cut_row(cells, j, k);
     int open = 0;
     for (int a = 0; a < 3 && *voxel; a++) {
         open |= at[a] == 0 || at[a] + 1 == cells->n[a] || !*(voxel - step[a]) || !*(voxel + step[a]);
@@ -47,9 +47,9 @@ static void put_whole_parts(cut_parts *p, size_t at, int i, int j, int k)
 }
 
 /* Puts the parts of a row where row[] says, or counts them: those of a plane, and of whole voxels by the surface. */
-static size_t fill_row(cut_parts *p, const ms_cut_plane *plane, int j, int k, int fill)
+static size_t fill_part_row(cut_parts *p, const ms_cut_plane *plane, int j, int k, int fill)
 {
-    const size_t first = p->row[row_of(p->cells, j, k)];
+    const size_t first = p->row[find_cut_row(p->cells, j, k)];
     size_t at = first, next = j > 0 ? plane->end[j - 1] : 0;
     for (int i = 0; i < p->cells->n[0]; i++) {
         if (is_by_the_surface(p->cells, i, j, k)) {
@@ -70,7 +70,7 @@ static size_t fill_row(cut_parts *p, const ms_cut_plane *plane, int j, int k, in
 static void fill_plane(cut_parts *p, ms_cut_plane *plane, int k)
 {
     for (int j = 0; j < p->cells->n[1]; j++) {
-        fill_row(p, plane, j, k, 1);
+        fill_part_row(p, plane, j, k, 1);
     }
     free(plane->part);
     free(plane->end);
@@ -81,12 +81,12 @@ static void fill_plane(cut_parts *p, ms_cut_plane *plane, int k)
 static int fill_planes(cut_parts *p, ms_cut_plane *plane)
 {
     const ms_cut_cells *cells = p->cells;
-    const size_t rows = row_of(cells, 0, cells->n[2]);
+    const size_t rows = find_cut_row(cells, 0, cells->n[2]);
     size_t *count = calloc(rows + 1, sizeof *count);
     p->row = calloc(rows + 1, sizeof *p->row);
     for (int k = 0; p->row && count && k < cells->n[2]; k++) {
         for (int j = 0; j < cells->n[1]; j++) {
-            count[row_of(cells, j, k)] = fill_row(p, &plane[k], j, k, 0);
+            count[find_cut_row(cells, j, k)] = fill_part_row(p, &plane[k], j, k, 0);
         }
     }
     for (size_t row = 0; p->row && count && row < rows; row++) {
@@ -108,7 +108,7 @@ static int fill_planes(cut_parts *p, ms_cut_plane *plane)
 static void clear_parted(const cut_parts *p)
 {
     const ms_cut_cells *cells = p->cells;
-    for (size_t row = 0; row < row_of(cells, 0, cells->n[2]); row++) {
+    for (size_t row = 0; row < find_cut_row(cells, 0, cells->n[2]); row++) {
         for (size_t c = p->row[row]; c < p->row[row + 1]; c++) {
             cells->whole[(size_t)(p->place[c] / 8) + (size_t)cells->n[0] * row] = 0;
         }
@@ -122,7 +122,7 @@ static size_t find_part(const cut_parts *p, int x, int y, int z)
     if (x < 0 || y < 0 || z < 0 || x >= 2 * cells->n[0] || y >= 2 * cells->n[1] || z >= 2 * cells->n[2]) {
         return SIZE_MAX;
     }
-    const size_t row = row_of(cells, y / 2, z / 2), end = p->row[row + 1];
+    const size_t row = find_cut_row(cells, y / 2, z / 2), end = p->row[row + 1];
     const int32_t place = 8 * (x / 2) + x % 2 + 2 * (y % 2) + 4 * (z % 2);
     size_t from = p->row[row], to = end;
     while (from < to) {
@@ -163,7 +163,7 @@ static void choose_neighbours(cut_parts *p)
 #pragma omp parallel for schedule(dynamic, 1)
     for (int k = 0; k < cells->n[2]; k++) {
         for (int j = 0; j < cells->n[1]; j++) {
-            for (size_t c = p->row[row_of(cells, j, k)]; c < p->row[row_of(cells, j, k) + 1]; c++) {
+            for (size_t c = p->row[find_cut_row(cells, j, k)]; c < p->row[find_cut_row(cells, j, k) + 1]; c++) {
                 p->into[c] = p->cell[c].weight < MS_CUT_PART / 2 ? find_neighbour(p, c, j, k) : c;
             }
         }
@@ -185,6 +185,34 @@ static void join_slivers(cut_parts *p)
     }
 }
 
+/* Drops what was joined, which takes a third of the memory before the cells are sorted. */
+static void drop_joined(cut_parts *p)
+{
+    size_t kept = 0, next = 0;
+    for (size_t row = 0; row < find_cut_row(p->cells, 0, p->cells->n[2]); row++) {
+        for (const size_t end = p->row[row + 1]; next < end; next++) {
+            if (p->into[next] == next) {
+                put_part(p, kept++, p->cell[next], p->place[next]);
+            }
+        }
+        p->row[row + 1] = kept;
+    }
+    p->count = kept;
+    free(p->into);
+    p->into = NULL;
+    ms_cut_cell *cell = realloc(p->cell, (kept + 1) * sizeof *cell);
+    int32_t *place = realloc(p->place, (kept + 1) * sizeof *place);
+    p->cell = cell ? cell : p->cell;
+    p->place = place ? place : p->place;
+}
+
+/* The block of a cell of a row. */
+static size_t find_block(const cut_parts *p, size_t row, size_t cell)
+{
+    const int j = (int)(row % (size_t)p->cells->n[1]), k = (int)(row / (size_t)p->cells->n[1]);
+    return ms_cut_cells_block(p->cells, p->place[cell] / 8 / MS_CUT_BLOCK, j / MS_CUT_BLOCK, k / MS_CUT_BLOCK);
+}
+
 static void put_in_block(ms_cut_cells *cells, ms_cut_block *block, ms_cut_cell cell)
 {
     for (int a = 0; a < 3; a++) {
@@ -194,38 +222,34 @@ static void put_in_block(ms_cut_cells *cells, ms_cut_block *block, ms_cut_cell c
     cells->cell[block[1].first++] = cell;
 }
 
-/* What is not joined, by blocks: the first pass counts, the second one puts; while it does, block[b + 1].first is where
- * the next cell of block b goes. */
+/* Sorts the cells by block; while they are put, block[b + 1].first is where the next one of block b goes. */
 static int sort_into_blocks(const cut_parts *p)
 {
     ms_cut_cells *cells = p->cells;
+    const size_t rows = find_cut_row(cells, 0, cells->n[2]);
     const size_t blocks = ms_cut_cells_block(cells, 0, 0, cells->blocks[2]);
-    for (int put = 0; put < 2; put++) {
-        for (size_t row = 0; row < row_of(cells, 0, cells->n[2]); row++) {
-            const int j = (int)(row % (size_t)cells->n[1]) / MS_CUT_BLOCK;
-            const int k = (int)(row / (size_t)cells->n[1]) / MS_CUT_BLOCK;
-            for (size_t c = p->row[row]; c < p->row[row + 1]; c++) {
-                const size_t b = ms_cut_cells_block(cells, p->place[c] / 8 / MS_CUT_BLOCK, j, k);
-                if (p->into[c] == c && put) {
-                    put_in_block(cells, &cells->block[b], p->cell[c]);
-                } else if (p->into[c] == c) {
-                    cells->count++;
-                    cells->block[b + 1].first++;
-                }
-            }
+    cells->count = p->count;
+    cells->cell = malloc((cells->count + 1) * sizeof *cells->cell);
+    if (!cells->cell) {
+        return 0;
+    }
+    for (size_t row = 0; row < rows; row++) {
+        for (size_t c = p->row[row]; c < p->row[row + 1]; c++) {
+            cells->block[find_block(p, row, c) + 1].first++;
         }
-        for (size_t b = 0, sum = 0; !put && b < blocks; b++) {
-            const size_t count = cells->block[b + 1].first;
-            cells->block[b + 1].first = sum;
-            sum += count;
-            for (int a = 0; a < 3; a++) {
-                cells->block[b].lo[a] = HUGE_VALF;
-                cells->block[b].hi[a] = -HUGE_VALF;
-            }
+    }
+    for (size_t b = 0, sum = 0; b < blocks; b++) {
+        const size_t count = cells->block[b + 1].first;
+        cells->block[b + 1].first = sum;
+        sum += count;
+        for (int a = 0; a < 3; a++) {
+            cells->block[b].lo[a] = HUGE_VALF;
+            cells->block[b].hi[a] = -HUGE_VALF;
         }
-        cells->cell = put ? cells->cell : malloc((cells->count + 1) * sizeof *cells->cell);
-        if (!cells->cell) {
-            return 0;
+    }
+    for (size_t row = 0; row < rows; row++) {
+        for (size_t c = p->row[row]; c < p->row[row + 1]; c++) {
+            put_in_block(cells, &cells->block[find_block(p, row, c)], p->cell[c]);
         }
     }
     return 1;
@@ -236,7 +260,7 @@ static void sum_weights(ms_cut_cells *cells)
     for (size_t c = 0; c < cells->count; c++) {
         cells->total += cells->cell[c].weight;
     }
-    for (size_t v = 0; v < (size_t)cells->n[0] * row_of(cells, 0, cells->n[2]); v++) {
+    for (size_t v = 0; v < (size_t)cells->n[0] * find_cut_row(cells, 0, cells->n[2]); v++) {
         cells->total += cells->whole[v] ? MS_CUT_WHOLE : 0;
     }
 }
@@ -251,6 +275,7 @@ int ms_cut_parts_join(ms_cut_cells *cells, ms_cut_plane *plane)
         clear_parted(&p);
         choose_neighbours(&p);
         join_slivers(&p);
+        drop_joined(&p);
         complete = sort_into_blocks(&p);
     }
     if (complete) {

@@ -30,7 +30,7 @@ typedef struct ms_cut_plane {
  * @param plane n[2] of them, whose parts are freed
  * @return 0 without memory
  *
- * Cost: O(voxels + parts); 60 bytes a part while it works.
+ * Cost: O(voxels + parts); 28 bytes a part while it works.
  */
 int ms_cut_parts_join(ms_cut_cells *cells, ms_cut_plane *plane);
 

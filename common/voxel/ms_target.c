@@ -10,9 +10,15 @@
 #include "ms_signed_distance.h"
 #include "ms_tally.h"
 
-double ms_target_bytes(const double n[3], double method)
+double ms_target_bytes(const double n[3], double squares, ms_target_need need)
 {
-    return (MS_TARGET_OWN_BYTES + (method > 0 ? method : MS_TARGET_METHOD_BYTES)) * n[0] * n[1] * n[2];
+    const double voxel = MS_TARGET_OWN_BYTES + (need.voxel > 0 ? need.voxel : MS_TARGET_METHOD_BYTES);
+    return voxel * n[0] * n[1] * n[2] + need.square * squares;
+}
+
+double ms_target_box_squares(const double n[3])
+{
+    return 2 * (n[0] * n[1] + n[1] * n[2] + n[2] * n[0]);
 }
 
 double ms_target_default_bytes(void)

@@ -29,16 +29,26 @@ typedef struct ms_target {
     struct ms_descriptors *descriptors; /* where ms_descriptors_add has put them; else NULL */
 } ms_target;
 
-/* S: 1, E: 4; a generator, if it does not say: E~ 4, first-cover index 2, flags 1. */
+/* S: 1, E: 4; a run, if it does not say: another field 4, first-cover index 2, flags 1. */
 enum { MS_TARGET_OWN_BYTES = 5, MS_TARGET_METHOD_BYTES = 7 };
 enum { MS_TARGET_BYTES_PER_VOXEL = MS_TARGET_OWN_BYTES + MS_TARGET_METHOD_BYTES };
 
+/** Bytes that a run takes beyond the target's. */
+typedef struct ms_target_need {
+    double voxel;  /* for each voxel of the grid; 0: MS_TARGET_METHOD_BYTES */
+    double square; /* for each square of the surface, a voxel's side wide: of cells and maxima by the surface */
+} ms_target_need;
+
 /**
- * Bytes that the grid, the fields of the target and of a generator take at their peak.
+ * Bytes that the grid, the fields of the target and a run take at their peak.
  *
- * @param method bytes a voxel of the generator (ms_generator's bytes_per_voxel); 0: MS_TARGET_METHOD_BYTES
+ * @param squares area of the surface over that of a voxel's face
+ * @param need    of the run (ms_generator_need)
  */
-MS_API double ms_target_bytes(const double n[3], double method);
+MS_API double ms_target_bytes(const double n[3], double squares, ms_target_need need);
+
+/** The squares of a grid's outside: of the surface of a volume, of which only the box is known, a guess. */
+MS_API double ms_target_box_squares(const double n[3]);
 
 /** Three quarters of the machine's memory: how much a grid may take if no one says otherwise. */
 MS_API double ms_target_default_bytes(void);

@@ -4,9 +4,9 @@
 
 #include "base/ms_vector.h"
 
-/* Width of the weights, and where they have come down to 0, so that it does not matter where among the voxels the window
- * ends; voxels along each axis. With the width of 1.35 that is enough for an area, single normals err by twice as much:
- * steps of the voxels are as far apart. */
+/* Width of the weights, and where they have come down to 0, so that it does not matter where among the voxels the
+ * window ends; voxels along each axis. With the width of 1.35 that is enough for an area, single normals err by twice
+ * as much: the steps of the voxels are wider apart. */
 static const double SIGMA = 2, REACH = 6;
 enum { WINDOW = 12 };
 

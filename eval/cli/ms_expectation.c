@@ -40,6 +40,11 @@ double ms_expectation_dice(const ms_expect *expect, size_t spheres)
                                                    : (double)NAN;
 }
 
+double ms_expectation_spheres(const ms_expect *expect, double dice)
+{
+    return expect->curve[MS_EXPECT_FREE].count > 0 ? ms_expect_spheres(expect, MS_EXPECT_FREE, dice) : (double)NAN;
+}
+
 void ms_expectation_say(FILE *stream, const ms_expect *expect, const ms_metrics *metrics)
 {
     const double dice = ms_expectation_dice(expect, metrics->spheres);

@@ -29,6 +29,9 @@ json_t *ms_expectation_factor_json(const ms_expect *expect, const ms_metrics *me
 /** D expected of that many spheres; NAN for empty curves. */
 double ms_expectation_dice(const ms_expect *expect, size_t spheres);
 
+/** Number of spheres of which that D is expected; NAN for empty curves. */
+double ms_expectation_spheres(const ms_expect *expect, double dice);
+
 /** Tables for people: D by number of spheres, and numbers by D. */
 void ms_expectation_print(FILE *stream, const ms_expect *expect);
 

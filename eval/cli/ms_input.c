@@ -9,6 +9,7 @@
 #include "base/ms_file.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "ms_progress.h"
+#include "voxel/ms_cut_cells.h"
 
 static void open_line(const ms_input *input, const char *stage)
 {
@@ -233,9 +234,25 @@ static void say_coarser(const ms_input *input, const ms_input_flags *flags, doub
     }
 }
 
-static ms_status check_memory(const double n[3], const ms_input_flags *flags, ms_error *err)
+/* What is taken beyond the target: without a method, by a score. */
+static ms_target_need find_input_need(const ms_input_flags *flags)
 {
-    const double bytes = ms_target_bytes(n, flags->method_bytes);
+    const ms_target_need score = {MS_TARGET_METHOD_BYTES + MS_CUT_VOXEL_BYTES, MS_CUT_SQUARE_BYTES};
+    return flags->cut && !(flags->need.voxel > 0) ? score : flags->need;
+}
+
+static double find_mesh_bytes(const double n[3], double h, const ms_input *input, const ms_input_flags *flags)
+{
+    return ms_target_bytes(n, ms_mesh_area(&input->mesh) / (h * h), find_input_need(flags));
+}
+
+static double find_volume_bytes(const double n[3], const ms_input_flags *flags)
+{
+    return ms_target_bytes(n, ms_target_box_squares(n), find_input_need(flags));
+}
+
+static ms_status check_memory(const double n[3], double bytes, const ms_input_flags *flags, ms_error *err)
+{
     if (bytes > flags->max_memory) {
         return ms_fail(err, MS_ERR_LIMIT,
                        "a grid of %.6gx%.6gx%.6g voxels takes about %.3g GB, more than the %.3g GB allowed; use fewer "
@@ -295,7 +312,7 @@ static ms_status target_from_mesh(ms_input *input, const ms_input_flags *flags, 
     }
     say_coarser(input, flags, h);
     ms_voxelize_extents(n, &input->mesh, h);
-    status = check_memory(n, flags, err);
+    status = check_memory(n, find_mesh_bytes(n, h, input, flags), flags, err);
     if (status == MS_OK) {
         const double start = omp_get_wtime();
         open_line(input, "voxels");
@@ -351,7 +368,7 @@ static ms_status target_from_volume(ms_input *input, const ms_input_flags *flags
                        input->path, (unsigned long)input->labels.entry[1].label);
     }
     if (measure_label(n, input, flags)) { /* without voxels the target says why */
-        status = check_memory(n, flags, err);
+        status = check_memory(n, find_volume_bytes(n, flags), flags, err);
     }
     if (status == MS_OK) {
         const double start = omp_get_wtime();
@@ -372,13 +389,13 @@ double ms_input_bytes(const ms_input *input, const ms_input_flags *flags)
     double h, n[3];
     ms_error ignored;
     if (input->is_volume) {
-        return measure_label(n, input, flags) ? ms_target_bytes(n, flags->method_bytes) : 0;
+        return measure_label(n, input, flags) ? find_volume_bytes(n, flags) : 0;
     }
     if (choose_voxel_size(&h, input, flags, &ignored) != MS_OK) {
         return 0;
     }
     ms_voxelize_extents(n, &input->mesh, h);
-    return ms_target_bytes(n, flags->method_bytes);
+    return find_mesh_bytes(n, h, input, flags);
 }
 
 ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err)
@@ -397,7 +414,7 @@ ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error
 size_t ms_input_max_voxels(const ms_input_flags *flags)
 {
     const double one[3] = {1, 1, 1};
-    return (size_t)(flags->max_memory / ms_target_bytes(one, flags->method_bytes));
+    return (size_t)(flags->max_memory / ms_target_bytes(one, 0, find_input_need(flags)));
 }
 
 void ms_input_free(ms_input *input)

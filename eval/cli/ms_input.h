@@ -24,7 +24,7 @@ typedef struct ms_input_flags {
     int cut;              /* nonzero: coverage_cut is counted */
     uint32_t label;
     double max_memory;   /* bytes */
-    double method_bytes; /* a voxel: what the method takes beyond the target (ms_generator); 0: as ms_target_bytes */
+    ms_target_need need; /* what the method takes beyond the target (ms_generator_need) */
     int threads;         /* 0: all */
     int quiet;           /* nonzero: the size of the grid is not said */
 } ms_input_flags;
@@ -35,6 +35,9 @@ typedef struct ms_input_flags {
     {"fill-holes", 0, "EDGES", "fill holes of at most so many edges (0: none)"}, \
     {"drop-bodies", 0, "SHARE", "drop pieces that hold less than this part of the largest (0: none)"}
 
+#define MS_INPUT_CUT_FLAG \
+    {"cut", 0, NULL, "count coverage_cut, too, which takes about as long as the other measures"}
+
 #define MS_INPUT_FLAGS \
     {"cells", 0, "N", "cells along the shortest side of the shape's box (100)"}, \
     {"deq", 0, "N", "voxel size = diameter of the ball of equal volume / N"}, \
@@ -42,7 +45,7 @@ typedef struct ms_input_flags {
     {"max-voxels", 0, "N", "voxels of the whole grid at most, as 500k or 20M; alone: the finest such grid"}, \
     {"rule", 0, "half|centre", "a voxel is inside if more than half of it is, or if its centre is (half)"}, \
     {"allow-open", 0, NULL, "take a mesh with holes: majority of the parities along three axes"}, \
-    {"cut", 0, NULL, "count coverage_cut, too, which takes about as long as the other measures"}, \
+    MS_INPUT_CUT_FLAG, \
     MS_INPUT_MENDING_FLAGS, \
     MS_INPUT_VOLUME_FLAGS, \
     {"max-memory", 0, "SIZE", "refuse grids beyond this, as 500M or 8G (3/4 of the machine's)"}, \

@@ -124,15 +124,16 @@ static double find_kept_bytes(const ms_methods *methods, const ms_generator *of)
     return most;
 }
 
-double ms_methods_bytes(const ms_methods *methods)
+ms_target_need ms_methods_need(const ms_methods *methods, int cut)
 {
-    double most = 0;
+    ms_target_need most = {0};
     for (size_t m = 0; m < methods->count; m++) {
-        const ms_generator *generator = methods->method[m].generator;
-        if (generator) {
-            const double own = generator->bytes_per_voxel > 0 ? generator->bytes_per_voxel : MS_TARGET_METHOD_BYTES;
-            const double bytes = own + find_kept_bytes(methods, generator);
-            most = bytes > most ? bytes : most;
+        const ms_method *method = &methods->method[m];
+        if (method->generator) {
+            const ms_target_need own = ms_generator_need(method->generator, &method->settings, cut);
+            const double voxel = own.voxel + find_kept_bytes(methods, method->generator);
+            most.voxel = voxel > most.voxel ? voxel : most.voxel;
+            most.square = own.square > most.square ? own.square : most.square;
         }
     }
     return most;

@@ -41,8 +41,9 @@ ms_status ms_methods_check(ms_methods *methods, ms_error *err);
 /** Adds the files that methods read: clumps of other tools, and those to start from. @return MS_OK; MS_ERR_NOMEM */
 ms_status ms_methods_list_files(ms_files *files, const ms_methods *methods, ms_error *err);
 
-/** Bytes a voxel of the one that takes most, with what others leave with the target (ms_generator); 0: no generator. */
-double ms_methods_bytes(const ms_methods *methods);
+/** The most that one takes, with what others leave with the target (ms_generator); 0: no generator. @param cut as
+ * ms_generator_need */
+ms_target_need ms_methods_need(const ms_methods *methods, int cut);
 
 /** Number of clumps among them. */
 size_t ms_methods_clumps(const ms_methods *methods);

@@ -32,6 +32,9 @@ ms_status ms_until_flag(int *taken, ms_stop *stop, const char *name, const char 
     if (strcmp(name, "until") == 0) {
         return take_until(stop, value, err);
     }
+    if (strcmp(name, "min-radius") == 0) {
+        return ms_flags_number(&stop->radius, name, value, 1e-300, 1e300, err);
+    }
     if (strcmp(name, "spheres") == 0) {
         const ms_status status = ms_flags_whole(&number, name, value, 1, MS_CLUMP_MAX_SPHERES, err);
         stop->spheres = status == MS_OK ? (size_t)number : 0;

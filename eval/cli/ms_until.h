@@ -10,7 +10,8 @@
     {"spheres", 'n', "N", "at most N spheres (50, if no --until is given)"}, \
     {"until", 0, "MEASURE=VALUE", \
      "end when " MS_MEASURE_GOAL_NAMES \
-     "whichever is named, is as good, or spheres would be smaller than radius; may be repeated"}
+     "whichever is named, is as good, or spheres would be smaller than radius; may be repeated"}, \
+    {"min-radius", 0, "R", "no sphere smaller than this, for the sake of the time step; as --until radius=R"}
 /* clang-format on */
 
 /** Takes a flag if it is one of MS_UNTIL_FLAGS. @param[out] taken 0 if it is not */

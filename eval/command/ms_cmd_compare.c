@@ -26,6 +26,7 @@ static const ms_flag FLAGS[] = {
     {"json", 0, NULL, "all rows of FILE as JSON on standard output, too"},
     {"charts", 0, "DIR", "draw charts of all results into this folder, by gnuplot"},
     {"allow-open", 0, NULL, "take a mesh with holes: majority of the parities along three axes"},
+    MS_INPUT_CUT_FLAG,
     MS_INPUT_MENDING_FLAGS,
     MS_INPUT_VOLUME_FLAGS,
     {"max-memory", 0, "SIZE", "refuse grids beyond this, as 500M or 8G (3/4 of the machine's)"},

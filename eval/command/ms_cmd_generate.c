@@ -1,4 +1,5 @@
 /* mskit generate SHAPE */
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,7 @@
 #include "cli/ms_expectation.h"
 #include "cli/ms_input.h"
 #include "cli/ms_json_object.h"
+#include "cli/ms_least_work.h"
 #include "cli/ms_mass.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_progress.h"
@@ -20,6 +22,7 @@
 static const ms_flag FLAGS[] = {
     MS_RECIPE_FLAGS,
     MS_UNTIL_FLAGS,
+    MS_LEAST_WORK_FLAGS,
     MS_OUTPUT_FLAGS,
     {"correct", 0, NULL, "give the spheres masses that sum to the true mass and inertia; takes --density"},
     MS_MASS_FLAGS,
@@ -37,7 +40,9 @@ typedef struct generate_arguments {
     const char *shape;
     ms_input_flags input;
     ms_recipe recipe;
-    ms_stop stop;
+    ms_stop stop; /* with --least-work in the end that of the run kept */
+    ms_least_work work;
+    ms_least_work_tries tries;
     ms_outputs outputs;
     ms_mass_flags mass;
     int correct;
@@ -58,6 +63,9 @@ static ms_status take_generate_flag(void *context, const char *name, const char 
     }
     if (!taken) {
         status = ms_until_flag(&taken, &a->stop, name, value, err);
+    }
+    if (!taken) {
+        status = ms_least_work_flag(&taken, &a->work, name, value, err);
     }
     if (taken) {
         return status;
@@ -155,6 +163,29 @@ static ms_run make_run(const generate_arguments *a, const ms_input *input)
     return run;
 }
 
+/* Where nothing can be expected. */
+static const double FIRST_SPHERES = 50;
+
+/* Numbers of spheres and least radii are tried; from then on the stop rule is that of the run kept. */
+static ms_status try_clumps(ms_result *r, generate_arguments *a, const ms_input *input, const ms_expect *expect,
+                            ms_error *err)
+{
+    ms_progress_line line = {.name = a->recipe.generator->name};
+    ms_run run = make_run(a, input);
+    const double expected = ms_expectation_spheres(expect, a->work.dice);
+    const double first = isnan(expected) ? FIRST_SPHERES : fmin(expected, MS_CLUMP_MAX_SPHERES);
+    ms_progress_say_remarks(&run, &line);
+    const double start = omp_get_wtime();
+    const ms_status status = ms_least_work_generate(&r->clump, &a->tries, &a->work, a->recipe.generator, &run,
+                                                    (size_t)first, ms_input_max_voxels(&a->input), err);
+    r->generate_seconds = omp_get_wtime() - start;
+    if (status == MS_OK) {
+        a->stop = ms_least_work_stop(&a->tries);
+        r->reason = a->tries.row[a->tries.kept].reason;
+    }
+    return status;
+}
+
 static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_input *input, ms_error *err)
 {
     const char *name = a->recipe.generator->name;
@@ -167,7 +198,7 @@ static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_
         ms_generator_is_nested(a->recipe.generator, run.settings)); /* what others have before their end is no clump */
     ms_status status = ms_generator_run(&r->clump, &r->reason, a->recipe.generator, &run, err);
     ms_progress_catch(0);
-    const double generated = omp_get_wtime();
+    r->generate_seconds = omp_get_wtime() - start;
     ms_progress_close();
     if (status == MS_OK && r->reason == MS_STOP_EXHAUSTED) {
         fprintf(stderr,
@@ -175,11 +206,15 @@ static ms_status make_clump(ms_result *r, const generate_arguments *a, const ms_
                 "%s)\n",
                 name, r->clump.n_spheres, name);
     }
-    if (status == MS_OK) {
-        status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump, ms_input_max_voxels(&a->input), err);
-    }
-    r->score_seconds = omp_get_wtime() - generated;
-    r->generate_seconds = generated - start;
+    return status;
+}
+
+static ms_status score_clump(ms_result *r, const generate_arguments *a, const ms_input *input, ms_error *err)
+{
+    const double start = omp_get_wtime();
+    const ms_status status =
+        ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump, ms_input_max_voxels(&a->input), err);
+    r->score_seconds = omp_get_wtime() - start;
     return status;
 }
 
@@ -276,6 +311,9 @@ static ms_status report_generate(const generate_arguments *a, const ms_input *in
     free(record);
     if (a->json && status == MS_OK) {
         ms_json_object_set(&json, "expected", ms_expectation_factor_json(expect, &r->metrics));
+        if (a->work.dice > 0) {
+            ms_json_object_set(&json, "least_work", ms_least_work_json(&a->tries, &a->work));
+        }
         return ms_report_print(stdout, json, err);
     }
     json_decref(json);
@@ -308,7 +346,7 @@ static ms_status look_ahead(ms_expect *expect, const generate_arguments *a, cons
     return status;
 }
 
-static int execute_generate(const ms_command *command, const generate_arguments *a)
+static int execute_generate(const ms_command *command, generate_arguments *a)
 {
     ms_error err;
     ms_input input;
@@ -327,7 +365,10 @@ static int execute_generate(const ms_command *command, const generate_arguments 
         status = look_ahead(&expect, a, &input, &err);
     }
     if (status == MS_OK) {
-        status = make_clump(&r, a, &input, &err);
+        status = a->work.dice > 0 ? try_clumps(&r, a, &input, &expect, &err) : make_clump(&r, a, &input, &err);
+    }
+    if (status == MS_OK) {
+        status = score_clump(&r, a, &input, &err);
     }
     if (status == MS_OK) {
         status = write_and_say(a, &input, &r, &expect, &err);
@@ -340,11 +381,17 @@ static int execute_generate(const ms_command *command, const generate_arguments 
 /* What follows from all flags together. */
 static ms_status resolve_generate(generate_arguments *a, ms_error *err)
 {
-    ms_until_resolve(&a->stop);
+    const ms_status refused = ms_least_work_resolve(&a->work, &a->stop, err);
+    if (refused != MS_OK) {
+        return refused;
+    }
+    if (!(a->work.dice > 0)) {
+        ms_until_resolve(&a->stop);
+    }
     a->input.cut |= a->stop.coverage_cut > 0;
     ms_status status = ms_recipe_resolve(&a->recipe, err);
     if (status == MS_OK) {
-        a->input.method_bytes = a->recipe.generator->bytes_per_voxel;
+        a->input.need = ms_generator_need(a->recipe.generator, &a->recipe.settings, a->input.cut);
         const char *const inputs[] = {a->shape, a->recipe.settings.clump_file};
         status = ms_files_check_standard(inputs, 2, err);
     }
@@ -356,7 +403,7 @@ static ms_status resolve_generate(generate_arguments *a, ms_error *err)
 
 static int run_generate(const ms_command *command, int argc, char **argv)
 {
-    generate_arguments a = {.recipe = {.name = MS_GENERATOR_DEFAULT, .seed = 1}};
+    generate_arguments a = {.recipe = {.name = MS_GENERATOR_DEFAULT, .seed = 1}, .work = {.power = 1}};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);

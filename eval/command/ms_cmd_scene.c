@@ -353,7 +353,7 @@ static int run_scene(const ms_command *command, int argc, char **argv)
     ms_status status = ms_recipe_resolve(&a.recipe, &err);
     if (status == MS_OK) {
         a.input.cut |= a.goal.measure == &ms_measures[MS_MEASURE_COVERAGE_CUT];
-        a.input.method_bytes = a.recipe.generator->bytes_per_voxel;
+        a.input.need = ms_generator_need(a.recipe.generator, &a.recipe.settings, a.input.cut);
         const char *const inputs[] = {a.source, a.recipe.settings.clump_file};
         status = ms_files_check_standard(inputs, 2, &err);
     }

@@ -127,7 +127,7 @@ static ms_status resolve_stability(stability_arguments *a, const char *const *sh
         a->plan.wanted[c] |= !any || c == 0;
     }
     ms_status status = ms_methods_check(&a->methods, err);
-    a->input.method_bytes = ms_methods_bytes(&a->methods);
+    a->input.need = ms_methods_need(&a->methods, a->input.cut);
     for (size_t s = 0; s < n_shapes && status == MS_OK; s++) {
         if (ms_file_is_standard(shape[s])) {
             status = ms_fail(err, MS_ERR_ARG, "stability reads a shape twice, and - once; save it and name the file");

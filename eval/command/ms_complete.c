@@ -170,8 +170,9 @@ typedef struct words_of {
 
 /* What the argument of a flag is. Of others the table of flags says it: one of "a|b", a file, or a number. */
 static const words_of ARGUMENTS[] = {
-    {"generator", offer_generators}, {"format", offer_formats}, {"until", offer_stops},     {"tolerance", offer_goals},
-    {"mean-tolerance", offer_mean},  {"set", offer_settings},   {"perturb", offer_changes}, {0},
+    {"generator", offer_generators}, {"format", offer_formats},      {"until", offer_stops},
+    {"tolerance", offer_goals},      {"mean-tolerance", offer_mean}, {"least-work", offer_mean},
+    {"set", offer_settings},         {"perturb", offer_changes},     {0},
 };
 
 /* What the words of a command are; files where it does not stand here. */

@@ -131,7 +131,7 @@ static ms_status plan_shape(compare_planner *p, const char *shape, ms_error *err
         stage->shape = shape;
         stage->cells = is_volume ? (double)NAN : p->a->cells.value[c];
         flags.cells = is_volume ? 0 : stage->cells;
-        flags.method_bytes = ms_methods_bytes(&p->a->methods);
+        flags.need = ms_methods_need(&p->a->methods, flags.cut);
         ms_shared_input_begin(&stage->shared, shape, read_as_it_is, &flags, 0);
         for (size_t m = 0; m < p->a->methods.count && status == MS_OK; m++) {
             status = plan_method(p, stage, &p->a->methods.method[m], err);

@@ -12,6 +12,7 @@
 
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
+#include "cli/ms_files.h"
 #include "mesh/formats/ms_mesh_read.h"
 #include "ms_grain_manifest.h"
 
@@ -20,42 +21,18 @@ static const double KEPT_PART = 0.25;
 
 enum { LONGEST_NAME = 200 };
 
-/* How many characters of a name are not its ending, .gz and what is before that included. */
-static size_t measure_stem(const char *base, size_t length)
-{
-    for (int packed = 0; packed < 2; packed++) {
-        size_t dot = length > 0 ? length - 1 : 0;
-        while (dot > 0 && base[dot] != '.') {
-            dot--;
-        }
-        const int is_packed = length - dot == 3 && strncmp(base + dot, ".gz", 3) == 0;
-        length = dot > 0 ? dot : length;
-        if (!is_packed) {
-            break;
-        }
-    }
-    return length;
-}
-
 /* The name of a grain's files: that of its source without folder and ending, and the label. */
 static char *make_name(const char *path, uint32_t label)
 {
-    size_t end_of_path = strlen(path);
-    while (end_of_path > 1 && path[end_of_path - 1] == '/') { /* a folder of slices */
-        end_of_path--;
-    }
-    size_t begin = end_of_path;
-    while (begin > 0 && path[begin - 1] != '/') {
-        begin--;
-    }
-    const char *base = path + begin;
-    const int length = (int)measure_stem(base, end_of_path - begin);
+    size_t length;
+    const char *stem = ms_files_stem(&length, path);
     char *name = malloc(LONGEST_NAME + 16);
     if (name) {
-        const int used = snprintf(name, LONGEST_NAME + 1, "%.*s", length, base);
-        const size_t end = used < LONGEST_NAME ? (size_t)used : LONGEST_NAME;
+        length = length < LONGEST_NAME ? length : LONGEST_NAME;
+        memcpy(name, stem, length);
+        name[length] = '\0';
         if (label) {
-            snprintf(name + end, 16, "-%lu", (unsigned long)label);
+            snprintf(name + length, 16, "-%lu", (unsigned long)label);
         }
         ms_escape_script_name(name);
     }

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
@@ -261,6 +262,23 @@ static void write_row(FILE *stream, char *row, const char *folder, size_t file_c
     fputc('\n', stream);
 }
 
+/* A table that is there may be replaced by one of the same run alone. */
+static ms_status check_whole(const merge_parts *m, const char *path, ms_error *err)
+{
+    ms_csv csv = {.fd = -1};
+    size_t grain, grains;
+    char run[RUN_LENGTH + 1];
+    ms_status status = access(path, F_OK) == 0 ? ms_csv_read(&csv, path, m->header, err) : MS_OK;
+    if (status == MS_OK && csv.n_rows &&
+        !(read_start(&grain, &grains, run, csv.row[0]) && grains == m->grains && strcmp(run, m->run) == 0)) {
+        status =
+            ms_fail(err, MS_ERR_ARG, "%s: is of another run than %s and would be replaced; name another folder by -o",
+                    path, m->part[0].path);
+    }
+    ms_csv_close(&csv);
+    return status;
+}
+
 static ms_status write_rows(const merge_parts *m, const char *path, ms_error *err)
 {
     ms_output output;
@@ -315,6 +333,9 @@ ms_status ms_grain_merge(const char *folder, char *const *parts, size_t count, m
     }
     if (status == MS_OK) {
         snprintf(path, sizeof path, "%s/grains.csv", folder);
+        status = check_whole(&m, path, err);
+    }
+    if (status == MS_OK) {
         status = write_rows(&m, path, err);
     }
     if (status == MS_OK) {

@@ -12,8 +12,9 @@
  * stay where they are; of parts in other folders the table names them from its own folder on. FOLDER is made if it is
  * not there. Cost: the tables are held in memory; rows times log(parts).
  *
- * @return MS_OK; MS_ERR_ARG for parts that are missing, do not fit together or lack rows; MS_ERR_IO, also for a part
- *         that another process is still writing; MS_ERR_FORMAT; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for parts that are missing, do not fit together or lack rows, and where the table of
+ *         another run would be replaced; MS_ERR_IO, also for a part that another process is still writing;
+ *         MS_ERR_FORMAT; MS_ERR_NOMEM
  */
 ms_status ms_grain_merge(const char *folder, char *const *parts, size_t count, ms_error *err);
 

@@ -237,8 +237,8 @@ static ms_status make_grain(ms_grain_row *row, ms_result *r, const grains_work *
     ms_input_flags flags = grain->how->input;
     ms_input input;
     flags.threads = 0; /* those of the queue */
-    flags.method_bytes = grain->how->recipe.generator->bytes_per_voxel;
     flags.cut |= grain->how->stop.coverage_cut > 0;
+    flags.need = ms_generator_need(grain->how->recipe.generator, &grain->how->recipe.settings, flags.cut);
     flags.label = grain->label;
     if (grain->source->is_volume) { /* has voxels of its own */
         flags.cells = flags.deq = flags.voxel_size = 0;

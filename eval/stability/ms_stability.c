@@ -42,11 +42,13 @@ static ms_status make_target(ms_target *target, const ms_changed *c, const ms_st
 {
     double n[3];
     ms_voxelize_extents(n, &c->mesh, c->voxel_size);
-    if (ms_target_bytes(n, s->flags->method_bytes) > s->flags->max_memory) {
+    const double squares = ms_mesh_area(&c->mesh) / (c->voxel_size * c->voxel_size);
+    const double bytes = ms_target_bytes(n, squares, s->flags->need);
+    if (bytes > s->flags->max_memory) {
         return ms_fail(err, MS_ERR_LIMIT, "a grid of %.6gx%.6gx%.6g voxels takes more than the memory allowed", n[0],
                        n[1], n[2]);
     }
-    ms_queue_need_memory(s->place, ms_target_bytes(n, s->flags->method_bytes), s->flags->max_memory);
+    ms_queue_need_memory(s->place, bytes, s->flags->max_memory);
     return ms_target_from_mesh(target, &c->mesh, s->input->report.closed, c->voxel_size, s->flags->rule, err);
 }
 

@@ -109,6 +109,7 @@ const ms_generator ms_generator_euclid = {
     .source = "V. Angelidakis et al. (CLUMP), SoftwareX 15 (2021) 100735",
     .nested = 1,
     .baseline = 1,
+    .bytes_per_voxel = 8, /* distance field 4, first-cover index 2, what is left 1, and a plane for each thread */
     .options = OPTIONS,
     .generate = generate_by_euclid,
 };

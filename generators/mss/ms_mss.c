@@ -78,7 +78,8 @@ const ms_generator ms_generator_mss = {
     .source = "F. Buchele, T. Poeschel, P. Mueller, Powder Technology (2026), arXiv:2603.05877",
     .nested = 1,
     .unnested_by = "polish",
-    .bytes_per_voxel = 8, /* E~ 4, first-cover index 2, covered 1, open voxels 1/4, blocks and a column 3/4 */
+    .bytes_per_voxel = 9,    /* E~ 4, first-cover index 2, covered 1, open voxels 1/4, blocks, columns, planes */
+    .bytes_per_square = 120, /* the maxima of a sheet */
     .options = OPTIONS,
     .generate = generate_by_mss,
 };

@@ -1,12 +1,15 @@
 #include "ms_cut_cover.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 
 #include "shared/ms_overlap.h"
 #include "voxel/ms_cut_left.h"
 
 #define NEVER UINT64_MAX
+
+enum { MOST_AT_ONCE = 64 };
 
 /* A candidate and what it would cover. */
 typedef struct cut_bound {
@@ -70,40 +73,66 @@ static void admit_cut_neighbours(ms_cut_cover *cover, const ms_ball *ball)
 }
 
 /* Counts a candidate anew, or takes from its count what has been covered since. */
-static void count_candidate(ms_cut_cover *cover, uint32_t c)
+static cut_bound count_candidate(const ms_cut_cover *cover, uint32_t c, cut_bound bound)
 {
-    cut_bound *bound = &cover->bound[c];
     const ms_cut_taken *taken = cover->taken;
-    if (bound->counted != NEVER && taken->count - bound->counted <= MS_CUT_TAKEN) {
-        bound->weight -= ms_cut_left_fallen(taken, bound->counted, &cover->candidate[c]);
+    if (bound.counted != NEVER && taken->count - bound.counted <= MS_CUT_TAKEN) {
+        bound.weight -= ms_cut_left_fallen(taken, bound.counted, &cover->candidate[c]);
     } else {
-        bound->weight = ms_cut_left_count(cover->left, &cover->candidate[c]);
+        bound.weight = ms_cut_left_count(cover->left, &cover->candidate[c]);
     }
-    bound->counted = taken->count;
+    bound.counted = taken->count;
+    return bound;
+}
+
+static int is_outdated(const ms_cut_cover *cover, uint32_t c)
+{
+    return bound_of(cover, c) > 0 && cover->bound[c].counted != cover->taken->count;
+}
+
+/* Counts the best bounds again, up to so many at once as long as they are no exact counts. More than are needed may be
+ * counted, which changes no choice. */
+static void count_best_bounds(ms_cut_cover *cover, int at_once)
+{
+    uint32_t which[MOST_AT_ONCE];
+    cut_bound bound[MOST_AT_ONCE];
+    int n = 0;
+    for (uint32_t best; n < at_once && is_outdated(cover, best = cover->winner[1]); n++) {
+        which[n] = best;
+        bound[n] = cover->bound[best];
+        cover->bound[best].weight = 0; /* out of the way */
+        replay(cover, best);
+    }
+#pragma omp parallel for schedule(dynamic, 1) if (n > 1)
+    for (int e = 0; e < n; e++) {
+        bound[e] = count_candidate(cover, which[e], bound[e]);
+    }
+    for (int e = 0; e < n; e++) {
+        cover->bound[which[e]] = bound[e];
+        replay(cover, which[e]);
+    }
 }
 
 int64_t ms_cut_cover_next(size_t *which, ms_cut_cover *cover)
 {
-    uint32_t best;
-    while (bound_of(cover, best = cover->winner[1]) > 0) {
-        cut_bound *first = &cover->bound[best];
-        const int64_t weight = first->weight;
-        if (first->counted != cover->taken->count) {
-            count_candidate(cover, best);
-            replay(cover, best);
-            continue;
-        }
+    const int many = omp_get_max_threads() > 1;
+    for (int at_once = 1; is_outdated(cover, cover->winner[1]);) {
+        count_best_bounds(cover, at_once);
+        at_once = many && at_once < MOST_AT_ONCE ? 2 * at_once : at_once;
+    }
+    const uint32_t best = cover->winner[1];
+    const int64_t weight = bound_of(cover, best);
+    if (weight > 0) {
         ms_cut_left_cover(cover->left, &cover->candidate[best], cover->taken);
-        first->weight = 0;
+        cover->bound[best].weight = 0;
         cover->n_taken++;
         replay(cover, best);
         if (cover->connected) {
             admit_cut_neighbours(cover, &cover->candidate[best]);
         }
         *which = best;
-        return weight;
     }
-    return 0;
+    return weight;
 }
 
 /* As much as a ball can hold: its cells lie in a ball larger by a voxel's diagonal. */

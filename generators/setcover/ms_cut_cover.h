@@ -26,7 +26,7 @@ ms_status ms_cut_cover_build(ms_cut_cover **out, const ms_cut_cells *cells, cons
 
 /**
  * Takes the candidate that covers the largest weight not yet covered: of equals the one of larger radius, then the
- * earlier one. Lazy, as ms_cover_next, and exactly the greedy choice (Yuan 2019, algorithm 2).
+ * earlier one. Lazy, as ms_cover_next, on all cores, and exactly the greedy choice (Yuan 2019, algorithm 2).
  *
  * @return that weight; 0: no candidate covers any, and nothing was taken
  */

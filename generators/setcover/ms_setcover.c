@@ -131,6 +131,7 @@ const ms_generator ms_generator_setcover = {
     .summary = "inscribed spheres on the thinned medial surface, each the one that covers most of what is left",
     .source = "F.-L. Yuan, Granular Matter 21 (2019) 19",
     .nested = 1,
+    .cut_by = "count",
     .bytes_per_voxel = 12,
     .options = OPTIONS,
     .generate = generate_by_setcover,

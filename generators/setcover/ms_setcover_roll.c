@@ -7,10 +7,10 @@
 #include "base/ms_vector.h"
 
 /* All in voxels of the lattice. */
-static const double SLACK = 1;    /* by as much the field may rise too little before the rolling ends: its own error */
+static const double SLACK = 0.6;  /* by as much the field may rise too little before the rolling ends: its own error */
 static const double CLOSE = 0.25; /* the end of the way is found within this */
 static const double SHORT = 1.2;  /* and by this much it is left out: what the field sees too late */
-static const double CELL = 0.25;  /* spheres whose centres are in a cell of this side are as good as one */
+static const double CELL = 0.35;  /* spheres whose centres are in a cell of this side are as good as one */
 static const double BORDER = 0.5; /* the field counts from the voxels outside, the surface is this much nearer */
 
 /* The field between its points. */

@@ -14,7 +14,8 @@
 #include "ms_cover_bits.h"
 #include "ms_overlap.h"
 
-enum { MOST_AT_ONCE = 64 };
+/* Bounds that are counted at once: whatever the number of threads, since the choice among estimates hangs on it. */
+enum { AT_ONCE = 8 };
 
 #define NEVER UINT32_MAX
 
@@ -28,11 +29,17 @@ static const double SHARE = 1.0 / 512;
  * dissolved when a ball was taken for less than this part of that radius' ball. */
 static const double GROUP_SIDE = 0.0625, GROUP_GAIN = 0.125;
 
+/* Of groups' candidates every 8th, 4th or 2nd row of every such plane is counted first, as long as the ball's radius is
+ * at least so many of these steps, and its bound as many voxels as give so many in such rows. What is in all rows is
+ * estimated to be at most by a twentieth, and twice the root of what was counted, more. */
+static const double SAMPLED_RADIUS = 4, SAMPLED_VOXELS = 100, ESTIMATE = 1.05, ESTIMATE_ROOTS = 2;
+
 /* A candidate and what it would cover. */
 typedef struct heap_entry {
     uint64_t gain;    /* exact when it was counted, an upper bound before and since */
     uint32_t index;   /* of the candidate */
     uint32_t counted; /* how many balls had been taken by then; NEVER */
+    int estimated;    /* from some of its rows */
 } heap_entry;
 
 /* All that was left of a ball when it was last counted. */
@@ -59,14 +66,11 @@ struct ms_cover {
     size_t n_heap, n_entries;
 };
 
-/* Keeps the runs of a candidate if they are few enough for the room that is left; whether they are kept changes no
- * count, so that threads may race for it. */
-static void keep_remains(ms_cover *cover, remains *part, const ms_cover_room *room, size_t n)
+/* Keeps the runs of a candidate if they are few enough for the room that is left to each that is counted at once. */
+static void keep_remains(const ms_cover *cover, remains *part, const ms_cover_room *room, size_t n)
 {
-    size_t left;
-#pragma omp atomic read
-    left = cover->free_runs;
-    if (n + 1 > room->room || (double)(n + 1) > SHARE * (double)left + 16 || n + 1 > left / (size_t)cover->threads) {
+    const size_t left = cover->free_runs;
+    if (n + 1 > room->room || (double)(n + 1) > SHARE * (double)left + 16 || n + 1 > left / AT_ONCE) {
         return;
     }
     part->run = malloc((n + 1) * sizeof *part->run);
@@ -74,49 +78,62 @@ static void keep_remains(ms_cover *cover, remains *part, const ms_cover_room *ro
         memcpy(part->run, room->found, n * sizeof *part->run);
         part->n = (uint32_t)n;
         part->room = (uint32_t)n + 1;
-#pragma omp atomic
-        cover->free_runs -= part->room;
     }
 }
 
 /* Gives back what is no longer needed of the room of a candidate's runs. */
-static void shrink_remains(ms_cover *cover, remains *part)
+static void shrink_remains(remains *part)
 {
     if (part->n + 1 > part->room / 2) {
         return;
     }
     ms_cover_run *smaller = realloc(part->run, (part->n + 1) * sizeof *smaller);
     if (smaller) {
-#pragma omp atomic
-        cover->free_runs += part->room - (part->n + 1);
         part->run = smaller;
         part->room = part->n + 1;
     }
 }
 
-/* The voxels of a candidate that are left; its runs are kept once they are few. */
-static size_t count_left(ms_cover *cover, uint32_t index)
+/* How many rows there are to one that is counted of a candidate. */
+static int choose_step(const ms_cover *cover, const heap_entry *entry)
 {
-    remains *part = &cover->remains[index];
-    if (part->run) {
-        const size_t sum = ms_cover_bits_recount(&cover->left, part->run, &part->n);
-        shrink_remains(cover, part);
-        return sum;
+    const double radius = cover->candidate[entry->index].radius, gain = (double)entry->gain;
+    int step = cover->rule != MS_COVER_GROUPED || (entry->estimated && entry->counted == cover->n_taken) ? 1 : 8;
+    while (step > 1 && (radius < SAMPLED_RADIUS * step || gain < SAMPLED_VOXELS * step * step)) {
+        step /= 2;
     }
+    return step;
+}
+
+/* The voxels of a candidate that are left, or at first an estimate; its runs are kept once they are few. */
+static void count_left(const ms_cover *cover, heap_entry *entry)
+{
+    remains *part = &cover->remains[entry->index];
+    const ms_ball *ball = &cover->candidate[entry->index];
+    const int step = part->run ? 1 : choose_step(cover, entry);
     ms_cover_room *room = &cover->scratch[omp_get_thread_num()];
     size_t n = 0;
-    const size_t sum = ms_cover_bits_walk(&cover->left, room, &n, &cover->candidate[index]);
-    keep_remains(cover, part, room, n);
-    return sum;
+    if (part->run) {
+        entry->gain = ms_cover_bits_recount(&cover->left, part->run, &part->n);
+        shrink_remains(part);
+    } else if (step == 1) {
+        entry->gain = ms_cover_bits_walk(&cover->left, room, &n, ball);
+        keep_remains(cover, part, room, n);
+    } else {
+        const double sum = (double)ms_cover_bits_sample(&cover->left, ball, step);
+        const uint64_t most = (uint64_t)((ESTIMATE * sum + ESTIMATE_ROOTS * sqrt(sum)) * step * step);
+        entry->gain = most < entry->gain ? most : entry->gain;
+    }
+    entry->estimated = step > 1;
+    entry->counted = cover->n_taken;
 }
 
 /* Covers what is left of a candidate. */
 static void cover_ball(ms_cover *cover, uint32_t index)
 {
     remains *part = &cover->remains[index];
-    size_t none = 0;
     if (!part->run) {
-        ms_cover_bits_walk(&cover->left, NULL, &none, &cover->candidate[index]);
+        ms_cover_bits_remove(&cover->left, &cover->candidate[index]);
     }
     ms_cover_bits_take(&cover->left, part->run, part->n);
 }
@@ -263,21 +280,27 @@ static heap_entry borrow_first(ms_cover *cover)
     return first;
 }
 
-/* Counts the best bounds again, up to so many at once as long as they are no exact counts. More than are needed may be
- * counted, which changes no choice. */
-static void count_best(ms_cover *cover, int at_once)
+static int is_stale(const ms_cover *cover, const heap_entry *entry)
 {
-    heap_entry stale[MOST_AT_ONCE];
+    return entry->counted != cover->n_taken || entry->estimated;
+}
+
+/* Counts the best bounds again, as long as they are no exact counts. More than are needed may be counted. */
+static void count_best(ms_cover *cover)
+{
+    const int at_once = cover->threads > 1 || cover->rule == MS_COVER_GROUPED ? AT_ONCE : 1;
+    heap_entry stale[AT_ONCE];
     int n = 0;
-    while (n < at_once && cover->n_heap > 0 && cover->entry[0].counted != cover->n_taken) {
+    while (n < at_once && cover->n_heap > 0 && is_stale(cover, &cover->entry[0])) {
+        cover->free_runs += cover->remains[cover->entry[0].index].room;
         stale[n++] = borrow_first(cover);
     }
 #pragma omp parallel for schedule(dynamic, 1) num_threads(cover->threads) if (n > 1)
     for (int e = 0; e < n; e++) {
-        stale[e].gain = count_left(cover, stale[e].index);
-        stale[e].counted = cover->n_taken;
+        count_left(cover, &stale[e]);
     }
     for (int e = n; e-- > 0;) { /* where they were put, in the order of a stack */
+        cover->free_runs -= cover->remains[stale[e].index].room;
         cover->entry[cover->n_heap] = stale[e];
         sift_up(cover, cover->n_heap++);
     }
@@ -300,11 +323,9 @@ static int settle_first(ms_cover *cover)
 
 size_t ms_cover_next(size_t *which, ms_cover *cover)
 {
-    int at_once = 1;
     while (cover->n_heap > 0) {
-        if (cover->entry[0].counted != cover->n_taken) {
-            count_best(cover, at_once);
-            at_once = cover->threads > 1 && at_once < MOST_AT_ONCE ? 2 * at_once : at_once;
+        if (is_stale(cover, &cover->entry[0])) {
+            count_best(cover);
         } else if (settle_first(cover)) {
             const size_t gain = cover->entry[0].gain;
             *which = cover->entry[0].index;

@@ -12,8 +12,10 @@ MS_C_BEGIN
 /** 64 voxels of a row in a word. */
 typedef struct ms_cover_bits {
     int n[3];
-    size_t words;   /* per row */
-    uint64_t *left; /* rows along x; one word more, so that a window may overhang */
+    size_t words;           /* per row */
+    uint64_t *left;         /* rows along x; one word more, so that a window may overhang */
+    size_t columns, groups; /* tiles of 8 voxels along a row, and groups of 64 rows in a plane */
+    uint64_t *tiles;        /* by plane, column and group: of which rows the tile has anything left */
 } ms_cover_bits;
 
 /** What a row of a ball holds of the set, within one word. */
@@ -37,10 +39,16 @@ void ms_cover_bits_free(ms_cover_bits *set);
  * rule CENTRE.
  *
  * @param[out]    n_found how many runs they are
- * @param[in,out] room    where the runs are put; NULL: the voxels are taken out of the set
- * Cost: a test a row of the ball, a root for each that has any in the ball's box.
+ * @param[in,out] room    where the runs are put
+ * Cost: a root for each tile in the ball's box that has anything left, and for each row of such tiles.
  */
-size_t ms_cover_bits_walk(ms_cover_bits *set, ms_cover_room *room, size_t *n_found, const ms_ball *ball);
+size_t ms_cover_bits_walk(const ms_cover_bits *set, ms_cover_room *room, size_t *n_found, const ms_ball *ball);
+
+/** The same in every 1st, 2nd, 4th or 8th row (`step`) of such planes only: of about 1/step^2 of them. */
+size_t ms_cover_bits_sample(const ms_cover_bits *set, const ms_ball *ball, int step);
+
+/** Takes what a ball holds out of the set. */
+void ms_cover_bits_remove(ms_cover_bits *set, const ms_ball *ball);
 
 /** Counts what is left of n runs, and drops those of which nothing is. */
 size_t ms_cover_bits_recount(const ms_cover_bits *set, ms_cover_run *run, uint32_t *n);

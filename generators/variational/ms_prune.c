@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "ms_surface_tally.h"
 #include "shared/ms_overlap.h"
@@ -83,6 +84,22 @@ static int is_surface_sharper(const ms_surface_fit *fit)
     return ms_signed_distance_is_exact(fit->field) && !(across[0] || across[1] || across[2]);
 }
 
+/* What the surface would come to be too far without each. */
+static ms_status add_gap_losses(double *loss, const ms_ball *ball, size_t count, const ms_surface_fit *fit,
+                                ms_error *err)
+{
+    double *far = malloc((count + 1) * sizeof *far);
+    if (!far) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", count);
+    }
+    ms_gap_losses(far, fit->gap, ball, count);
+    for (size_t b = 0; b < count; b++) {
+        loss[b] += MS_GAP_PRICE * far[b];
+    }
+    free(far);
+    return MS_OK;
+}
+
 /* The same in voxels of the target; where few are counted, by the exposed surface. */
 static ms_status find_losses(double *loss, const ms_ball *ball, size_t count, const ms_coarse_view *view,
                              const ms_surface_fit *fit, ms_error *err)
@@ -96,10 +113,10 @@ static ms_status find_losses(double *loss, const ms_ball *ball, size_t count, co
         status = ms_surface_tally(fine, NULL, fit, ball, count, err);
     }
     for (size_t b = 0; b < count && status == MS_OK; b++) {
-        loss[b] = exact && fabs(loss[b]) < FEW ? fine[b].loss : loss[b] * cell;
+        loss[b] = exact && (fit->slant > 0 || fabs(loss[b]) < FEW) ? fine[b].loss : loss[b] * cell;
     }
     free(fine);
-    return status;
+    return status == MS_OK && fit->gap ? add_gap_losses(loss, ball, count, fit, err) : status;
 }
 
 static void move_nearest_onto_plane(ms_ball *ball, size_t count, const ms_mirror *m)
@@ -161,15 +178,16 @@ ms_status ms_prune_cheapest(ms_ball *ball, size_t *count, size_t most, const ms_
     return status;
 }
 
-/* Once; a sphere that stays may become idle when a later one goes. Returns how many went. */
+/* Once; a sphere that stays may become idle when a later one goes. Where what the surface would come to be too far has
+ * a say (NULL: it has none), one at most, as each may stand in for another. Returns how many went. */
 static size_t drop_idle(ms_ball *ball, size_t *count, ms_coverage_count *o, const ms_surface_worth *worth, double least,
-                        const ms_coarse_view *view, const ms_mirror *m)
+                        const double *far, const ms_coarse_view *view, const ms_mirror *m)
 {
     size_t kept = 0;
     for (size_t b = 0; b < *count; b++) {
         ms_ball image[8];
         size_t images;
-        if (worth[b].loss > least) {
+        if (worth[b].loss > least || (far && (far[b] > 0 || kept < b))) {
             ball[kept++] = ball[b];
         } else if (take_away(o, image, &images, &ball[b], view, m) > 0) {
             put_back(o, image, images);
@@ -186,19 +204,25 @@ ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_surface_fit *fit,
 {
     const ms_coarse_view whole = {.step = 1, .grid = fit->field->target->grid}; /* borrows the voxels */
     ms_surface_worth *worth = calloc(*count + 1, sizeof *worth);
-    double mismatch = 0;
+    double mismatch = 0, *far = malloc((*count + 1) * sizeof *far);
     size_t all, gone = 1;
     ms_coverage_count o = {0};
-    ms_status status = worth ? count_all(&o, &all, ball, *count, &whole, &fit->mirror, err)
-                             : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
+    ms_status status = worth && far ? count_all(&o, &all, ball, *count, &whole, &fit->mirror, err)
+                                    : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
     while (status == MS_OK && gone > 0) {
         if (is_surface_sharper(fit)) {
             status = ms_surface_tally(worth, &mismatch, fit, ball, *count, err);
         }
         const double least = IDLE * mismatch / (double)*count;
-        gone = status == MS_OK ? drop_idle(ball, count, &o, worth, least, &whole, &fit->mirror) : 0;
+        memset(far, 0, *count * sizeof *far);
+        if (status == MS_OK && fit->gap) {
+            status = add_gap_losses(far, ball, *count, fit, err);
+        }
+        gone =
+            status == MS_OK ? drop_idle(ball, count, &o, worth, least, fit->gap ? far : NULL, &whole, &fit->mirror) : 0;
     }
     ms_coverage_count_close(&o);
+    free(far);
     free(worth);
     return status;
 }

@@ -22,12 +22,17 @@ static const double MOMENTUM = 0.5;
  * more than to fit by it. */
 static const double STIFF = 1000;
 
+/* Weight of what pulls pieces together, in that of all else at the sphere. */
+static const double TIE = 3;
+
 /* Distances below this, in voxels, weigh the same: 1 / |phi| has to be bounded. */
 static const double NEAR = 0.25;
 
 /* Part of the points of the first level that have to be exposed, or the next level with twice as many is taken; above
  * the other, the one before. More take longer. */
 static const double ENOUGH = 0.12, PLENTY = 0.3;
+
+static const double FOUR_PI = 12.566370614359172954;
 
 /* The steps that the spheres want to make. */
 typedef struct move {
@@ -41,6 +46,8 @@ typedef struct workspace {
     ms_caps_window window;
     uint8_t *level; /* of the lattice, for each sphere: the more of it is covered, the more points */
     move *move;
+    ms_tie *tie; /* what pulls spheres together */
+    size_t ties;
     double (*velocity)[4]; /* what was made of the last steps, before damping: centre, radius */
 } workspace;
 
@@ -81,16 +88,10 @@ static void find_place(double place[3], const ms_ball *ball, const double normal
     }
 }
 
-/* `beyond`: how far the place is beyond a plane; below 0: it is not. */
-static void add_place(normal_equations *e, const ms_surface_fit *fit, const ms_ball *ball, const double normal[3],
-                      double beyond)
+/* A place with this normal that is to move by -phi along it. */
+static void add_equation(normal_equations *e, const double normal[3], double phi, double w)
 {
     const double row[4] = {normal[0], normal[1], normal[2], 1};
-    double place[3];
-    find_place(place, ball, normal);
-    const double away = ms_signed_distance_at(fit->field, place), phi = away > beyond ? away : beyond;
-    const double size = fabs(phi) > NEAR ? fabs(phi) : NEAR;
-    const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) / size;
     for (int i = 0; i < 4; i++) {
         for (int j = 0; j <= i; j++) {
             e->a[i][j] += w * row[i] * row[j];
@@ -98,6 +99,23 @@ static void add_place(normal_equations *e, const ms_surface_fit *fit, const ms_b
         e->b[i] -= w * phi * row[i];
     }
     e->weight += w;
+}
+
+static double find_size(double phi)
+{
+    return fabs(phi) > NEAR ? fabs(phi) : NEAR;
+}
+
+/* `beyond`: how far the place is beyond a plane; below 0: it is not. */
+static void add_place(normal_equations *e, const ms_surface_fit *fit, const ms_ball *ball, const double normal[3],
+                      double beyond)
+{
+    double place[3];
+    find_place(place, ball, normal);
+    const double away = ms_signed_distance_at(fit->field, place), phi = away > beyond ? away : beyond;
+    const double price = phi > 0 ? 1 - fit->slant : 1 + fit->slant;
+    const double w = (beyond > 0 || phi > fit->bounds.protrusion ? STIFF : 1) * price;
+    add_equation(e, normal, phi, w / find_size(phi));
 }
 
 /* Places beyond planes, whether they are covered or not: of the first level, as they are not to weigh but to stop. */
@@ -111,6 +129,32 @@ static void add_places_beyond(normal_equations *e, const ms_surface_fit *fit, co
         const double beyond = ms_bounds_beyond_planes(&fit->bounds, &fit->field->target->grid, ball->centre, place);
         if (beyond > 0) {
             add_place(e, fit, ball, normal, beyond);
+        }
+    }
+}
+
+/* Places of the surface that no sphere is near enough to and this one is the nearest to: one of the sphere's own is to
+ * move towards each. `share`: of the surface that a point of the sphere stands for. */
+static void add_far_places(normal_equations *e, const ms_gap *gap, const ms_ball *ball, uint32_t self, double share)
+{
+    for (size_t i = gap->first[self]; i < gap->first[self + 1]; i++) {
+        const double *place = gap->place[gap->far[i]], too_far = gap->away[gap->far[i]] - gap->aim;
+        const double way = sqrt(ms_squared_distance(place, ball->centre));
+        double normal[3];
+        for (int c = 0; c < 3; c++) {
+            normal[c] = (place[c] - ball->centre[c]) / way;
+        }
+        add_equation(e, normal, -too_far, MS_GAP_PRICE * gap->area / share / find_size(too_far));
+    }
+}
+
+/* What pulls this sphere to another piece outweighs all that holds it. */
+static void add_ties(normal_equations *e, const workspace *work, uint32_t self)
+{
+    const double weight = e->weight > 0 ? e->weight : 1;
+    for (size_t t = 0; t < work->ties; t++) {
+        if (work->tie[t].ball == self) {
+            add_equation(e, work->tie[t].normal, -work->tie[t].away, TIE * weight);
         }
     }
 }
@@ -130,9 +174,13 @@ static move find_move(const ms_surface_fit *fit, const workspace *work, ms_expos
     for (int p = 0; p < exposed->count; p++) {
         add_place(&e, fit, ball, exposed->normal[p], -HUGE_VAL);
     }
+    if (fit->gap) {
+        add_far_places(&e, fit->gap, ball, self, FOUR_PI * ball->radius * ball->radius / exposed->points);
+    }
     if (fit->bounds.planes && fit->bounds.planes->n_planes > 0) {
         add_places_beyond(&e, fit, ball);
     }
+    add_ties(&e, work, self);
     if (e.weight > 0) {
         for (int i = 0; i < 4; i++) {
             e.a[i][i] += RIDGE * e.weight;
@@ -173,8 +221,10 @@ static void share_radius(move *moves, const ms_ball *ball, size_t count, const m
     }
 }
 
-static void make_move(ms_ball *ball, double velocity[4], const move *step, double damping)
+/* Returns how far the sphere's surface moves at most. */
+static double make_move(ms_ball *ball, double velocity[4], const move *step, double damping, double least)
 {
+    const ms_ball before = *ball;
     for (int c = 0; c < 4; c++) {
         velocity[c] = MOMENTUM * velocity[c] + (c < 3 ? step->centre[c] : step->radius);
     }
@@ -183,7 +233,8 @@ static void make_move(ms_ball *ball, double velocity[4], const move *step, doubl
     for (int c = 0; c < 3; c++) {
         ball->centre[c] += part * velocity[c];
     }
-    ball->radius += fmin(fmax(damping * velocity[3], -longest), longest);
+    ball->radius = fmax(ball->radius + fmin(fmax(damping * velocity[3], -longest), longest), least);
+    return sqrt(ms_squared_distance(ball->centre, before.centre)) + fabs(ball->radius - before.radius);
 }
 
 static void free_workspace(workspace *work)
@@ -193,6 +244,7 @@ static void free_workspace(workspace *work)
     free(work->move);
     free(work->velocity);
     free(work->level);
+    free(work->tie);
 }
 
 static ms_status alloc_workspace(workspace *work, const ms_surface_fit *fit, size_t count, ms_error *err)
@@ -239,6 +291,7 @@ ms_status ms_surface_fit_steps(ms_surface_fit *fit, ms_ball *ball, size_t count,
                                ms_error *err)
 {
     workspace work;
+    double travel = HUGE_VAL;
     ms_status status = alloc_workspace(&work, fit, count, err);
     if (status != MS_OK) {
         return status;
@@ -249,6 +302,15 @@ ms_status ms_surface_fit_steps(ms_surface_fit *fit, ms_ball *ball, size_t count,
     for (int step = 0; step < steps && status == MS_OK; step++, fit->turns++) {
         const double d = damping[0] + (damping[1] - damping[0]) * step / fmax(1, steps - 1);
         ms_lattice_turn(fit->lattice, (unsigned long)(fit->seed * 1000003u + fit->turns));
+        if (fit->gap) {
+            ms_gap_find(fit->gap, ball, count, travel);
+        }
+        free(work.tie);
+        work.tie = NULL;
+        if (fit->connected &&
+            (status = ms_connect_find(&work.tie, &work.ties, ball, count, &fit->mirror, err)) != MS_OK) {
+            break;
+        }
         if (!find_moves(fit, &work, ball, count)) {
             status = ms_fail(err, MS_ERR_NOMEM, "no memory to fit %zu spheres", count);
             break;
@@ -256,12 +318,12 @@ ms_status ms_surface_fit_steps(ms_surface_fit *fit, ms_ball *ball, size_t count,
         if (fit->bounds.equal) {
             share_radius(work.move, ball, count, &fit->mirror);
         }
+        travel = 0;
         for (size_t s = 0; s < count; s++) {
             if (fit->moving && !fit->moving[s]) {
                 continue;
             }
-            make_move(&ball[s], work.velocity[s], &work.move[s], d);
-            ball[s].radius = fmax(ball[s].radius, fit->bounds.least);
+            travel = fmax(travel, make_move(&ball[s], work.velocity[s], &work.move[s], d, fit->bounds.least));
         }
     }
     free_workspace(&work);

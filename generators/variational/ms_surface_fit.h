@@ -5,6 +5,8 @@
 #include <stdint.h>
 
 #include "ms_bounds.h"
+#include "ms_connect.h"
+#include "ms_gap.h"
 #include "ms_lattice.h"
 #include "ms_mirror.h"
 
@@ -17,6 +19,9 @@ typedef struct ms_surface_fit {
     uint64_t seed;         /* of the turns of the points */
     uint64_t turns;        /* made so far */
     const uint8_t *moving; /* for each sphere: 0: it stays where it is; NULL: all move */
+    ms_gap *gap;           /* borrowed; spheres are pulled to its places that are too far; NULL: there are none */
+    int connected;         /* nonzero: spheres are pulled together until they are one piece */
+    double slant;          /* D, below 1: it is |S xor U| - D |U| that is to be least; 0: |S xor U| */
 } ms_surface_fit;
 
 /**

@@ -29,7 +29,7 @@ static ms_surface_worth tally_sphere(const ms_surface_fit *fit, const ms_caps_wi
         const double phi = ms_signed_distance_at(fit->field, place);
         const double begin = 1 - ms_exposed_depth(exposed, fit->lattice, u), border = fmax(begin, fmin(1, 1 - phi / r));
         sum.mismatch += fabs(phi);
-        sum.loss += cone_volume(begin, border) - cone_volume(border, 1);
+        sum.loss += (1 + fit->slant) * cone_volume(begin, border) - (1 - fit->slant) * cone_volume(border, 1);
     }
     const double part = FOUR_PI * r * r / exposed->points;
     return (ms_surface_worth){.loss = part * r * sum.loss, .mismatch = part * sum.mismatch};

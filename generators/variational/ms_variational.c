@@ -9,11 +9,12 @@
 #include <stdlib.h>
 
 #include "base/ms_vector.h"
+#include "ms_gap.h"
 #include "ms_variational_solve.h"
 #include "shared/ms_bisect_count.h"
 #include "shared/ms_judge.h"
 
-enum { EFFORT, POINTS, PROTRUSION, EQUAL_RADIUS, SYMMETRY, PLANES, REFINE };
+enum { EFFORT, POINTS, PROTRUSION, GAP, CONNECTED, EQUAL_RADIUS, SYMMETRY, PLANES, REFINE };
 
 static const ms_option OPTIONS[] = {
     [EFFORT] = {"effort", MS_OPTION_INTEGER, 0, 0, 3, NULL, NULL,
@@ -21,6 +22,9 @@ static const ms_option OPTIONS[] = {
     [POINTS] = {"points", MS_OPTION_INTEGER, 192, 16, 4096, NULL, NULL, "places on each sphere where it is fitted"},
     [PROTRUSION] = {"protrusion", MS_OPTION_REAL, -1, -1, 1e6, NULL, "voxels",
                     "no sphere sticks out of the shape by more; 0: inscribed; below 0: no bound"},
+    [GAP] = {"gap", MS_OPTION_REAL, -1, -1, 1e6, NULL, "voxels",
+             "no part of the surface is farther from the spheres; below 0: no bound"},
+    [CONNECTED] = {"connected", MS_OPTION_FLAG, 0, 0, 1, NULL, NULL, "the spheres are one piece"},
     [EQUAL_RADIUS] = {"equal-radius", MS_OPTION_FLAG, 0, 0, 1, NULL, NULL, "all spheres of one radius"},
     [SYMMETRY] = {"symmetry", MS_OPTION_CHOICE, 0, 0, 0, "none|x|y|z|xy|xz|yz|xyz", NULL,
                   "the spheres are mirror images across planes through the centroid, normal to these axes"},
@@ -30,6 +34,9 @@ static const ms_option OPTIONS[] = {
                 "spheres to start from, of any method: a clump in any format that mskit score reads"},
     {0},
 };
+
+/* Of places and radii in the frame of the shape. */
+static const double ROUNDING = 1e-9;
 
 /* Of each effort. */
 static const int ROUNDS[] = {0, 5, 20, 80};
@@ -85,10 +92,54 @@ static ms_variational_settings read_settings(const ms_run *run)
                                         .bounds = {.protrusion = value[PROTRUSION] < 0 ? HUGE_VAL : value[PROTRUSION],
                                                    .equal = value[EQUAL_RADIUS] != 0,
                                                    .planes = run->settings},
+                                        .gap = value[GAP] < 0 ? HUGE_VAL : value[GAP] * (1 - ROUNDING),
+                                        .connected = value[CONNECTED] != 0,
                                         .mirror = {.across = {across[0], across[1], across[2]}},
                                         .refine = &run->settings->clump};
     ms_grid_at(settings.mirror.at, &run->target->grid, run->target->body.centroid);
     return settings;
+}
+
+/* Says how far the surface is from the spheres, if that is farther than is allowed. */
+static ms_status check_gap(const ms_clump *clump, const ms_run *run, ms_error *err)
+{
+    const double bound = run->settings->value[GAP];
+    ms_ball *ball = malloc((clump->n_spheres + 1) * sizeof *ball);
+    double largest = 0;
+    if (!ball) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", clump->n_spheres);
+    }
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        ball[s] = ms_grid_ball(&run->target->grid, &clump->sphere[s]);
+    }
+    const ms_status status = ms_gap_largest(&largest, NULL, run->target, ball, clump->n_spheres, bound, err);
+    if (status == MS_OK && clump->n_spheres > 0 && largest > bound) {
+        ms_generator_remark(run,
+                            "gap=%g cannot be held by %zu spheres within their other bounds: part of the surface is "
+                            "%.2f voxels from them, the least that was found; more spheres or a larger protrusion help",
+                            bound, clump->n_spheres, largest);
+    }
+    free(ball);
+    return status;
+}
+
+/* Says if the spheres are not one piece, or fewer so that they are. */
+static ms_status check_connected(const ms_clump *clump, size_t asked, const ms_run *run, ms_error *err)
+{
+    size_t pieces;
+    const ms_status status = ms_clump_pieces(&pieces, clump, err);
+    if (status == MS_OK && pieces > 1) {
+        ms_generator_remark(run,
+                            "connected cannot be held by %zu spheres within their other bounds: they are in %zu "
+                            "pieces; more spheres or a larger protrusion help",
+                            clump->n_spheres, pieces);
+    } else if (status == MS_OK && clump->n_spheres < asked) {
+        ms_generator_remark(run,
+                            "%zu of %zu spheres are one piece; what could not be joined to them, or was of no use, is "
+                            "left out",
+                            clump->n_spheres, asked);
+    }
+    return status;
 }
 
 /* Each number of spheres is a run of its own, since the best n spheres are not among the best n + 1. */
@@ -101,6 +152,12 @@ static ms_status generate_for(void *context, ms_clump *clump, ms_stop_reason *re
     ms_status status = ms_variational_solve(&ball, &count, run, &settings, n, err);
     if (status == MS_OK) {
         status = to_clump(clump, ball, count, run, err);
+    }
+    if (status == MS_OK && settings.gap < HUGE_VAL) {
+        status = check_gap(clump, run, err);
+    }
+    if (status == MS_OK && settings.connected) {
+        status = check_connected(clump, n, run, err);
     }
     if (status == MS_OK) {
         status = judge_clump(reason, clump, n, run, err);
@@ -182,7 +239,8 @@ const ms_generator ms_generator_variational = {
     .source = "mskit (2026); objective: Buchele et al., MSS eq. 2",
     .nested = 0,
     .bytes_per_voxel = 7,
-    .kept_bytes = 4.5, /* signed distances at steps 1 and 2 */
+    .bytes_per_square = 60, /* places to start from */
+    .kept_bytes = 4.5,      /* signed distances at steps 1 and 2 */
     .options = OPTIONS,
     .generate = generate_by_variational,
 };

@@ -9,6 +9,8 @@ typedef struct ms_variational_settings {
     int rounds;       /* of adding spheres and dropping others after the fit */
     int points;       /* per sphere */
     ms_bounds bounds; /* `least` is found from the stop rule */
+    double gap;       /* no part of the surface is to be farther from the spheres, voxels; HUGE_VAL: no bound */
+    int connected;    /* nonzero: one piece */
     ms_mirror mirror;
     const ms_clump *refine; /* spheres to start from; empty: none */
 } ms_variational_settings;

@@ -107,7 +107,7 @@ class Rows(Compare):
     def test_a_large_run_is_alone(self):
         """12 cells fit into a third of the memory allowed, 24 only into all of it."""
         rows = self.compare("box.obj", "-g", "mss", "-g", "variational", "-n", "5", "--cells", "12,24", "-j", "3",
-                            "--max-memory", "3M")
+                            "--max-memory", "5M")
         self.assertEqual([(row["cells"], row["threads"], row["beside"], row["cause"]) for row in rows],
                          [("12", "1", "2", "")] * 2 + [("24", "3", "0", "")] * 2)
 
@@ -410,7 +410,7 @@ class Charts(Compare):
         self.assertEqual(len(self.rows()), 1)
         names = sorted(os.listdir(self.path("charts")))
         sheet = ["box-mss-3.csv", "box-sheet.gp", "box-tiles.png"]
-        kinds = ["dice", "time", "inertia"] + (["corrected"] if self.rows()[0]["epsilon"] else [])
+        kinds = ["dice", "normal_median", "time", "work", "inertia"] + (["corrected"] if self.rows()[0]["epsilon"] else [])
         self.assertEqual(names, sorted(sheet + [f"box-{k}.{e}" for k in kinds for e in ("dat", "gp")]))
 
     def test_same_names(self):

@@ -57,6 +57,7 @@ class Words(Case):
             (("generate", "--until", ""), ["eta=", "dice=", "coverage=", "inertia=", "coverage_cut=", "radius="]),
             (("scene", "--tolerance", ""), ["eta=", "dice=", "coverage=", "inertia=", "coverage_cut="]),
             (("scene", "--mean-tolerance", ""), ["dice="]),
+            (("generate", "--least-work", ""), ["dice="]),
             (("convert", "--format", "l"), ["liggghts", "lammps"]),
             (("stability", "--perturb", "r"), ["rotation", "resolution", "refine"]),
             (("stability", "c"), ["cube", "cone", "/"]),

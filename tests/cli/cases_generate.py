@@ -203,6 +203,14 @@ class Stop(Generate):
         self.assertLessEqual(len(spheres), 4)
         self.assertGreaterEqual(min(r for *_, r in spheres), 0.3)
 
+    def test_min_radius_is_the_same_rule(self):
+        for method in (MSS, ("-g", "variational")):
+            rule, flag = (self.clump(*method, "-n", "8", *words) for words in
+                          (("--until", "radius=0.58"), ("--min-radius", "0.58")))
+            self.assertEqual(rule, flag)
+            self.assertGreaterEqual(min(r for *_, r in flag), 0.58)
+        self.assertLess(min(r for *_, r in self.clump("-g", "variational", "-n", "8")), 0.58)
+
     def test_unreachable(self):
         """A measure that cannot be reached ends with all spheres that there is room for, and says so."""
         result = self.mskit("generate", self.grain, *MSS, "--cells", "12", "--until", "eta=1e-9", "-j", "1", "--json",
@@ -211,8 +219,9 @@ class Stop(Generate):
         self.assert_says(result, "no place for a further sphere")
 
     def test_no_room_for_any(self):
-        self.assert_refused("generate", self.grain, "--cells", "12", "--until", "radius=99", "-o", "c.csv", code=1,
-                            says=("placed no sphere", "least radius"))
+        for words in (("--until", "radius=99"), ("--min-radius", "99")):
+            self.assert_refused("generate", self.grain, "--cells", "12", *words, "-o", "c.csv", code=1,
+                                says=("placed no sphere", "least radius"))
 
 
 class Options(Generate):

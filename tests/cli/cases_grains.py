@@ -3,6 +3,7 @@ import csv
 import fcntl
 import io
 import os
+import resource
 import signal
 import struct
 import subprocess
@@ -88,10 +89,11 @@ class Rows(Grains):
             self.assertEqual(float(row["volume"]), record["input"].get("volume", float(row["volume"])))
 
     def test_stop_rules_and_patterns(self):
-        rows = self.grains("stones/*.obj", "-g", "setcover", "--until", "coverage=0.6", "--cells", "12")
+        rows = self.grains("stones/*.obj", "-g", "setcover", "--until", "coverage=0.6", "--cells", "12",
+                           "--min-radius", "0.001")
         self.assertEqual([row["source"] for row in rows], ["stones/a.obj", "stones/b.obj"])
         for row in rows:
-            self.assertEqual((row["n_asked"], row["until"], row["stopped_by"]), ("", "coverage=0.6", "coverage"))
+            self.assertEqual((row["n_asked"], row["until"], row["stopped_by"]), ("", "coverage=0.6 radius=0.001", "coverage"))
             self.assertGreaterEqual(float(row["coverage"]), 0.6)
 
     def test_templates_with_the_true_mass(self):
@@ -181,20 +183,34 @@ class Faults(Grains):
         self.assertEqual(self.tree("out"), before)
 
     def test_two_runs_into_one_folder(self):
-        args = ("grains", "stones", "-g", "mss", "-n", "2", "--cells", "6", "-o", "out")
-        self.mskit(*args)
-        with open(self.path("out/grains.csv"), "rb+") as table:
-            fcntl.flock(table, fcntl.LOCK_EX)
-            self.assert_says(self.mskit(*args, "--resume", code=1), "another run is writing it")
+        """The second is refused with and without --resume while the first is at work, which does not notice."""
+        args = ("grains", "scan.npy", "stones", "-g", "mss", "-n", "4", "--cells", "20")
+        self.mskit(*args, "-o", "whole")
+        first = subprocess.Popen([MSKIT, *args, "-o", "out"], cwd=self.dir, stdout=subprocess.DEVNULL)
+        self.addCleanup(first.wait)
+        self.addCleanup(first.kill)
+        while not (os.path.exists(self.path("out/grains.csv")) and self.read("out/grains.csv")):
+            time.sleep(0.001)
+        first.send_signal(signal.SIGSTOP)
+        self.assertIsNone(first.poll(), "it should be at work still")
+        self.assert_says(self.mskit(*args, "-o", "out", "--resume", code=1), "another run is writing it")
+        self.assert_says(self.mskit(*args, "-o", "out", code=1), "exists")
+        first.send_signal(signal.SIGCONT)
+        self.assertEqual(first.wait(), 0)
+        self.assertEqual(self.known(), self.known("whole/grains.csv"))
 
     def test_a_full_disk(self):
-        """A table that may not grow: the rows that are there are whole."""
-        import resource
-        args = ("grains", "stones", "-g", "mss", "-n", "2", "--cells", "6", "-o", "out")
-        result = self.mskit(*args, code=1, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (800, 800)))
-        self.assert_says(result, "out/")
-        for row in self.table() if os.path.exists(self.path("out/grains.csv")) else []:
-            self.assertNotIn(None, row.values())
+        """Files may not grow beyond the first row and a half: this row is whole and the run goes on when there is room."""
+        args = ("grains", "stones", "scan.npy", "-g", "mss", "-n", "2", "--cells", "6")
+        self.mskit(*args, "-o", "whole")
+        ends = [at for at, byte in enumerate(self.read("whole/grains.csv")) if byte == ord("\n")]
+        most = (ends[1] + ends[2]) // 2
+        result = self.mskit(*args, "-o", "out", code=1,
+                            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+        self.assert_says(result, "out/grains.csv", "is the disk full", "1 rows before are intact")
+        self.assertEqual(self.known(), self.known("whole/grains.csv")[:1])
+        self.mskit(*args, "-o", "out", "--resume")
+        self.assertEqual(self.known(), self.known("whole/grains.csv"))
 
 
 class Manifest(Grains):
@@ -291,6 +307,18 @@ class Parts(Grains):
         clean = {k: v for k, v in self.tree("whole").items() if k != "grains.csv"}
         self.assertEqual({k: v for k, v in self.tree("out").items() if ".csv" in k and "grains" not in k}, clean)
 
+    def test_table_of_another_run_is_not_replaced(self):
+        self.grains("stones", "-g", "mss", "-n", "2", "--cells", "6")
+        self.run_parts(1, 2, of=2, out="parts")
+        before = self.tree("out")
+        self.assert_says(self.mskit("grains", "--merge", "parts", "-o", "out", code=1), "out/grains.csv", "another run")
+        self.assertEqual(self.tree("out"), before)
+        for _ in range(2):  # that of the same run is
+            self.mskit("grains", "--merge", "parts", "-o", "parts")
+        self.assertEqual(len(self.table("parts/grains.csv")), 5)
+        self.write("parts/grains.csv", "x,y\n")
+        self.assert_says(self.mskit("grains", "--merge", "parts", "-o", "parts", code=1), "something else")
+
     def test_parts_in_folders_of_their_own(self):
         self.run_parts(1, of=2, out="one")
         self.run_parts(2, of=2, out="two")
@@ -313,7 +341,6 @@ class Parts(Grains):
             self.assertEqual([row["file"] for row in self.table(name + "/grains.csv")], [way + file for file in whole])
 
     def test_more_parts_than_open_files(self):
-        import resource
         self.run_parts(*range(1, 31), of=30)
         self.mskit("grains", "--merge", "out", "-o", "out",
                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (20, 20)))

@@ -153,7 +153,7 @@ class Stability(Case):
 
     def test_a_shape_that_cannot_be_used_is_no_failure_of_the_method(self):
         """Twice the cells do not fit the memory allowed."""
-        groups = self.mskit("stability", "cube", "-g", "mss", "-n", "2", "--cells", "40", "--max-memory", "2M",
+        groups = self.mskit("stability", "cube", "-g", "mss", "-n", "2", "--cells", "40", "--max-memory", "4M",
                             "--perturb", "resolution", "--runs", "2", "--json", "-o", "s.csv").json
         rows = rows_of(self.read("s.csv").decode())
         self.assertEqual([row["status"] for row in rows if row["perturbation"] == "resolution"][1], "unusable")

@@ -136,6 +136,7 @@ class WrongUsage(Case):
              ("above 0, up to 1",)),
             ("--until", ("dice=0", "eta=0", "inertia=0"), ("above 0, up to 1", "1e-9")),
             ("--until", ("radius=-1", "radius=inf", "radius=nan", "radius=0"), ("above 0",)),
+            ("--min-radius", ("0", "-1", "nan", "inf", "1 mm"), ("--min-radius",)),
             ("--spacing", ("-1", "1e9", "", "nan"), ("spacing", "0 to 1000")),
             ("--radius-offset", ("-3", "3"), ("radius-offset", "-2 to 2")),
             ("--plane", ("1,0,0", "1,0,0,0,", "1,0,0,0,0", "nan,0,0,1", "a,b,c,d", "1 0 0 0", ""), ("a,b,c,d",)),

@@ -104,9 +104,9 @@ static void what_is_near_an_edge_is_apart(void **state)
 }
 
 /*
- * Spheres of radius 1 along the axis of a capsule, d apart: at s from the nearest centre the normal is turned by asin s,
- * and s is spread evenly over their surface (Archimedes). The half balls at the ends fit. Over a straight part of length
- * l so much of the surface is turned by less than a: (2 + l 2 sin a / d) / (2 + l).
+ * Spheres of radius 1 along the axis of a capsule, d apart: at s from the nearest centre the normal is turned by asin
+ * s, and s is spread evenly over their surface (Archimedes). The half balls at the ends fit. Over a straight part of
+ * length l so much of the surface is turned by less than a: (2 + l 2 sin a / d) / (2 + l).
  */
 static void a_chain_in_a_capsule_is_turned_by_an_arc_sine(void **state)
 {
@@ -357,6 +357,33 @@ static void normals_of_voxels_are_those_of_the_body(void **state)
     free(label);
 }
 
+/* Deep within a digitised ball, and far beyond its grid, the nearest place of its surface lies along the radius. */
+static void voxels_are_found_from_anywhere(void **state)
+{
+    enum { SIDE = 44 };
+    static uint32_t label[SIDE * SIDE * SIDE];
+    const double middle = 21.3, radius = 18.7;
+    (void)state;
+    for (int v = 0; v < SIDE * SIDE * SIDE; v++) {
+        const double x = v % SIDE - middle, y = v / SIDE % SIDE - middle, z = v / SIDE / SIDE - middle;
+        label[v] = x * x + y * y + z * z < radius * radius;
+    }
+    const ms_volume volume = {.n = {SIDE, SIDE, SIDE}, .spacing = 0.5, .origin = {-3, 4, 5}, .label = label};
+    ms_target target;
+    assert_int_equal(ms_target_from_volume(&target, &volume, 0, NULL), MS_OK);
+    const double at[3] = {-3 + middle / 2, 4 + middle / 2, 5 + middle / 2};
+    for (int k = 0; k < 9; k++) { /* far off many voxels are about as near as the nearest */
+        static const double PARTS[] = {0.15, 0.3, 0.6, 0.9, 1, 1.1, 1.7, 2.6, 4.2};
+        const ms_metrics m = measure_one(&target, at[0], at[1], at[2], PARTS[k] * radius / 2);
+        const int close = fabs(PARTS[k] - 1) < 0.2;
+        assert_true(m.normal_median < (close ? 2.5 : 7) && m.normal_95 < (close ? 5 : 11));
+    }
+    /* So far off that only one place is the nearest: normals are turned evenly, by the cosine. */
+    const ms_metrics m = measure_one(&target, at[0] + 50, at[1], at[2], 1);
+    expect_close(m.normal_median, 90, 6);
+    ms_target_free(&target);
+}
+
 /* What is not asked for is not known, and what is asked for is the same. */
 static void kinds_are_measured_as_they_are_asked_for(void **state)
 {
@@ -411,6 +438,7 @@ int main(void)
         cmocka_unit_test(spheres_through_a_slab_are_turned_up_to_a_right_angle),
         cmocka_unit_test(normals_agree_with_brute_force),
         cmocka_unit_test(normals_of_voxels_are_those_of_the_body),
+        cmocka_unit_test(voxels_are_found_from_anywhere),
         cmocka_unit_test(kinds_are_measured_as_they_are_asked_for),
         cmocka_unit_test(an_open_mesh_has_no_outside),
     };

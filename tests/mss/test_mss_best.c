@@ -1,4 +1,4 @@
-/* MSS with variant=best: it gives the spheres asked for, or says that there are none; gains and radii by brute force. */
+/* MSS with variant=best: the spheres asked for, or a word that there are none; gains and radii by brute force. */
 #include <stdlib.h>
 
 #include "mss/ms_mss_open.h"

@@ -2,6 +2,7 @@
 #include "support/test_support.h"
 
 #include "shared/ms_cover.h"
+#include "shared/ms_cover_bits.h"
 
 enum { MAX_BALLS = 40 };
 
@@ -170,6 +171,39 @@ static void groups_lose_nothing(void **state)
     ms_grid_free(&grid);
 }
 
+/* What a ball holds in every so many-th row of such planes; once another ball was taken out, too. */
+static void samples_are_of_every_so_many_rows(void **state)
+{
+    (void)state;
+    srand(11);
+    for (int round = 0; round < 100; round++) {
+        problem p;
+        ms_cover_bits set;
+        make_problem(&p, 30 + 3 * round);
+        assert_true(ms_cover_bits_alloc(&set, &p.grid));
+        for (size_t b = 0; b < p.count; b++) {
+            const ms_ball *ball = &p.ball[b];
+            for (int step = 1; step <= 8; step *= 2) {
+                size_t count = 0;
+                for (int k = 0; k < p.grid.n[2]; k += step) {
+                    for (int j = 0; j < p.grid.n[1]; j += step) {
+                        for (int i = 0; i < p.grid.n[0]; i++) {
+                            count += p.grid.inside[ms_grid_index(&p.grid, i, j, k)] && holds(ball, i, j, k);
+                        }
+                    }
+                }
+                assert_int_equal(ms_cover_bits_sample(&set, ball, step), count);
+            }
+            if (b % 3 == 0) {
+                ms_cover_bits_remove(&set, ball);
+                brute_count(p.grid.inside, &p.grid, ball, 1);
+            }
+        }
+        ms_cover_bits_free(&set);
+        ms_grid_free(&p.grid);
+    }
+}
+
 /* By the rule of voxel centres the union on the grid grows by just what each ball is said to add. */
 static void gains_are_those_of_the_raster(void **state)
 {
@@ -217,6 +251,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_choice_is_the_greedy_one),
         cmocka_unit_test(groups_lose_nothing),
+        cmocka_unit_test(samples_are_of_every_so_many_rows),
         cmocka_unit_test(gains_are_those_of_the_raster),
         cmocka_unit_test(nothing_to_cover),
     };

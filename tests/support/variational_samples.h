@@ -44,6 +44,18 @@ static inline double dice_of(const ms_target *target, const ms_clump *clump)
     return score_of(clump, target).dice;
 }
 
+static inline void write_clump(const char *path, const ms_clump *clump)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        const ms_sphere *sphere = &clump->sphere[s];
+        fprintf(file, "%.17g,%.17g,%.17g,%.17g\n", sphere->centre[0], sphere->centre[1], sphere->centre[2],
+                sphere->radius);
+    }
+    fclose(file);
+}
+
 /* |S xor U| by voxels' centres, by brute force. */
 static inline int64_t brute_mismatch(const ms_grid *grid, const ms_ball *ball, size_t count)
 {

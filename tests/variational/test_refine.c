@@ -3,18 +3,6 @@
 
 #include <string.h>
 
-static void write_clump(const char *path, const ms_clump *clump)
-{
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    for (size_t s = 0; s < clump->n_spheres; s++) {
-        const ms_sphere *sphere = &clump->sphere[s];
-        fprintf(file, "%.17g,%.17g,%.17g,%.17g\n", sphere->centre[0], sphere->centre[1], sphere->centre[2],
-                sphere->radius);
-    }
-    fclose(file);
-}
-
 /* A clump read from a file comes back better, with as many spheres as asked for. */
 static void refining_improves(void **state)
 {

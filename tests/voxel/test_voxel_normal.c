@@ -14,7 +14,7 @@ static void random_direction(double u[3], uint64_t *seed)
     u[2] = z;
 }
 
-/* Voxels with their centre below a plane through a place, or, with a radius above 0, within the ball that touches it. */
+/* Voxels with their centre below a plane through a place, or, with a radius above 0, in the ball that touches it. */
 static void digitise(ms_grid *grid, const double place[3], const double u[3], double radius)
 {
     for (int k = 0; k < SIDE; k++) {
