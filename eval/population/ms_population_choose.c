@@ -20,7 +20,7 @@ static const double MOST = 8000, MOST_WORK = 8000 * 20.0 * 20.0, LEAST = 50;
 static const double ROUNDING = 1e-7;
 
 /* A set of grains on the way. */
-typedef struct search {
+typedef struct choosing {
     const ms_population *p;
     size_t k;
     size_t *chosen, *best; /* k */
@@ -30,9 +30,9 @@ typedef struct search {
     gsl_rng *random;
     double *value, best_mismatch; /* k x n_descriptors: room to judge a set */
     double solved, most;          /* programmes */
-} search;
+} choosing;
 
-static int solve(search *s, ms_population_weights *w)
+static int solve(choosing *s, ms_population_weights *w)
 {
     s->solved++;
     return ms_population_weights_solve(w, s->p, s->chosen);
@@ -45,7 +45,7 @@ static void swap_weights(ms_population_weights *a, ms_population_weights *b)
     *b = c;
 }
 
-static void replace(search *s, size_t place, size_t grain)
+static void replace(choosing *s, size_t place, size_t grain)
 {
     s->is_in[s->chosen[place]] = 0;
     s->chosen[place] = grain;
@@ -53,7 +53,7 @@ static void replace(search *s, size_t place, size_t grain)
 }
 
 /* The grains outside that bring most, the best first. @return how many */
-static size_t find_coming(size_t coming[COMING], search *s)
+static size_t find_coming(size_t coming[COMING], choosing *s)
 {
     size_t count = 0;
     for (size_t g = 0; g < s->p->n; g++) {
@@ -75,7 +75,7 @@ static size_t find_coming(size_t coming[COMING], search *s)
 }
 
 /* Places of those of least weight, the least first. @return how many */
-static size_t find_going(size_t going[GOING], const search *s)
+static size_t find_going(size_t going[GOING], const choosing *s)
 {
     size_t count = 0;
     for (size_t j = 0; j < s->k; j++) {
@@ -93,7 +93,7 @@ static size_t find_going(size_t going[GOING], const search *s)
 }
 
 /* Takes the first exchange that helps. @return 0 if there is none */
-static int exchange(search *s)
+static int exchange(choosing *s)
 {
     size_t coming[COMING], going[GOING];
     const size_t n_coming = find_coming(coming, s), n_going = find_going(going, s);
@@ -110,7 +110,7 @@ static int exchange(search *s)
 }
 
 /* Goes on from the best so far, with a few grains drawn anew. */
-static void draw_anew(search *s)
+static void draw_anew(choosing *s)
 {
     for (size_t j = 0; j < s->k; j++) {
         s->is_in[s->chosen[j]] = 0;
@@ -130,7 +130,7 @@ static void draw_anew(search *s)
 }
 
 /* The first k of a random order. */
-static void draw_first(search *s)
+static void draw_first(choosing *s)
 {
     for (size_t j = 0; j < s->k;) {
         const size_t grain = s->k == s->p->n ? j : gsl_rng_uniform_int(s->random, s->p->n);
@@ -147,7 +147,7 @@ double ms_population_choice_mismatch(const ms_population_distance *distance)
 }
 
 /* Keeps a set that is better than the best. */
-static ms_status judge(search *s, ms_error *err)
+static ms_status judge(choosing *s, ms_error *err)
 {
     const size_t m = s->p->n_descriptors;
     ms_population_distance distance;
@@ -164,7 +164,7 @@ static ms_status judge(search *s, ms_error *err)
 }
 
 /* The mismatch of the best falls from round to round. */
-static ms_status search_on(search *s, ms_error *err)
+static ms_status search_on(choosing *s, ms_error *err)
 {
     ms_status status = MS_OK;
     draw_first(s);
@@ -193,7 +193,7 @@ static void leave_search(void *back)
 /* In a thread of its own, which GLPK keeps its memory for. */
 static ms_status run_search(void *context, ms_error *err)
 {
-    search *s = context;
+    choosing *s = context;
     jmp_buf back;
     if (setjmp(back)) {
         glp_error_hook(NULL, NULL);
@@ -208,7 +208,7 @@ static ms_status run_search(void *context, ms_error *err)
                : ms_fail(err, MS_ERR_LIMIT, "the simplex method finds no weights for %zu grains", s->k);
 }
 
-static void end_search(search *s)
+static void end_search(choosing *s)
 {
     free(s->chosen);
     free(s->best);
@@ -221,10 +221,10 @@ static void end_search(search *s)
     ms_random_free(s->random);
 }
 
-static ms_status start_search(search *s, const ms_population *p, size_t k, double share, uint64_t seed, ms_error *err)
+static ms_status start_search(choosing *s, const ms_population *p, size_t k, double share, uint64_t seed, ms_error *err)
 {
     const double work = fmin(MOST, MOST_WORK / ((double)k * (double)k));
-    *s = (search){.p = p, .k = k, .most = fmax(LEAST, share * work)};
+    *s = (choosing){.p = p, .k = k, .most = fmax(LEAST, share * work)};
     s->chosen = malloc(k * sizeof *s->chosen);
     s->best = malloc(k * sizeof *s->best);
     s->is_in = calloc(p->n, 1);
@@ -248,7 +248,7 @@ static int compare_places(const void *a, const void *b)
 }
 
 /* By ascending number of the grain. */
-static ms_status take_best(ms_population_choice *c, const search *s, ms_error *err)
+static ms_status take_best(ms_population_choice *c, const choosing *s, ms_error *err)
 {
     const size_t k = s->k;
     const size_t **place = malloc(k * sizeof *place);
@@ -277,7 +277,7 @@ static ms_status take_best(ms_population_choice *c, const search *s, ms_error *e
 ms_status ms_population_choose(ms_population_choice *c, const ms_population *p, size_t k, double share, uint64_t seed,
                                ms_error *err)
 {
-    search s;
+    choosing s;
     *c = (ms_population_choice){0};
     if (k < 1 || k > p->n || k > MS_POPULATION_MAX_CHOSEN) {
         return ms_fail(err, MS_ERR_ARG, "of %zu grains 1 to %zu can be chosen, not %zu", p->n,
