@@ -88,8 +88,8 @@ MS_API extern const ms_generator *const ms_generators[];
 /** Are the first k spheres of a run with these options the clump of k? @param settings NULL: defaults */
 MS_API int ms_generator_is_nested(const ms_generator *generator, const ms_settings *settings);
 
-/** What a run with these options takes beyond the target's bytes. @param settings NULL: defaults @param cut nonzero: cut
- * cells are counted, whatever the options say */
+/** What a run with these options takes beyond the target's bytes. @param settings NULL: defaults @param cut nonzero:
+ * cut cells are counted, whatever the options say */
 MS_API ms_target_need ms_generator_need(const ms_generator *generator, const ms_settings *settings, int cut);
 
 /** The generator of that name, or NULL with a message that lists the names. */

@@ -12,7 +12,9 @@
 static const double GIVEN_UP = 0.1, WHOLE = 0.02;
 static const double MOST_SPHERES = 1e9;
 
-ms_status ms_expect_mesh(ms_expect *expect, const ms_mesh *mesh, ms_error *err)
+/* closest: of the mesh, or NULL. spheres: a number about which alone the curve of free spheres is wanted; 0: all. */
+static ms_status compute(ms_expect *expect, const ms_mesh *mesh, const ms_closest *closest, double spheres,
+                         ms_error *err)
 {
     ms_body body;
     *expect = (ms_expect){0};
@@ -24,12 +26,13 @@ ms_status ms_expect_mesh(ms_expect *expect, const ms_mesh *mesh, ms_error *err)
     if (!points) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %d points of the surface", MS_EXPECT_POINTS);
     }
-    status = ms_expect_points_spread(points, mesh, err);
+    status = ms_expect_points_spread(points, spheres > 0 ? ms_expect_price_step(spheres) : 1, mesh, err);
     if (status == MS_OK) {
-        status = ms_expect_points_inscribe(points, mesh, err);
+        status = ms_expect_points_inscribe(points, mesh, closest, err);
     }
     if (status == MS_OK) {
-        status = ms_expect_price_curves(expect, points, body.volume, err);
+        status = spheres > 0 ? ms_expect_price_near(&expect->curve[MS_EXPECT_FREE], points, body.volume, spheres, err)
+                             : ms_expect_price_curves(expect, points, body.volume, err);
     }
     if (status != MS_OK) {
         *expect = (ms_expect){0};
@@ -38,16 +41,32 @@ ms_status ms_expect_mesh(ms_expect *expect, const ms_mesh *mesh, ms_error *err)
     return status;
 }
 
-ms_status ms_expect_grid(ms_expect *expect, const ms_grid *grid, ms_error *err)
+static ms_status compute_grid(ms_expect *expect, const ms_grid *grid, double spheres, ms_error *err)
 {
     ms_mesh mesh;
     *expect = (ms_expect){0};
     ms_status status = ms_expect_surface(&mesh, grid, err);
     if (status == MS_OK) {
-        status = ms_expect_mesh(expect, &mesh, err);
+        status = compute(expect, &mesh, NULL, spheres, err);
         ms_mesh_free(&mesh);
     }
     return status;
+}
+
+ms_status ms_expect_mesh(ms_expect *expect, const ms_mesh *mesh, ms_error *err)
+{
+    return compute(expect, mesh, NULL, 0, err);
+}
+
+ms_status ms_expect_grid(ms_expect *expect, const ms_grid *grid, ms_error *err)
+{
+    return compute_grid(expect, grid, 0, err);
+}
+
+ms_status ms_expect_near(ms_expect *expect, const ms_target *target, double spheres, ms_error *err)
+{
+    return target->mesh ? compute(expect, target->mesh, target->closest, spheres, err)
+                        : compute_grid(expect, &target->grid, spheres, err);
 }
 
 /* |S xor U| / (|S| + |U|): what the union lacks is what is lost, since the rest is as much outside as inside. */

@@ -4,14 +4,12 @@
 #include <stdlib.h>
 
 #include "base/ms_vector.h"
-#include "mesh/ms_closest.h"
 #include "mesh/ms_inertia.h"
 
 /* Triangles that bend by less belong to one smooth surface: cosine of 30 degrees. */
 static const double CREASE = 0.8660254037844387;
-/* A ball may stick out by this part of its radius, so that rounding and a point on a neighbouring triangle do not
- * shrink it; of a smooth surface the mesh itself is no better. */
-static const double TOLERANCE = 1e-4;
+/* A ball may stick out by this part of its radius. From 0.05 to 0.3 the figures are the same. */
+static const double TOLERANCE = 0.2;
 
 /* A triangle by where it stands on the curve. */
 typedef struct curve_place {
@@ -141,10 +139,9 @@ static void put_point(ms_expect_points *points, int i, const ms_mesh *mesh, cons
         points->at[a][i] = at[a];
         points->normal[a][i] = normal[a];
     }
-    points->slack[i] = fmax(0, 1 - ms_dot(normal, face));
 }
 
-ms_status ms_expect_points_spread(ms_expect_points *points, const ms_mesh *mesh, ms_error *err)
+ms_status ms_expect_points_spread(ms_expect_points *points, int step, const ms_mesh *mesh, ms_error *err)
 {
     fans f = {0};
     curve_place *order = malloc(mesh->n_triangles * sizeof *order);
@@ -161,8 +158,9 @@ ms_status ms_expect_points_spread(ms_expect_points *points, const ms_mesh *mesh,
             cross_triangle(cross, mesh, order[t].triangle);
             sum += sqrt(ms_dot(cross, cross)) / 2;
             /* the last triangle takes what rounding has left */
-            while (i < MS_EXPECT_POINTS && ((i + 0.5) * points->weight <= sum || t + 1 == mesh->n_triangles)) {
-                put_point(points, i++, mesh, &f, order[t].triangle);
+            for (; i < MS_EXPECT_POINTS && ((i + 0.5) * points->weight <= sum || t + 1 == mesh->n_triangles);
+                 i += step) {
+                put_point(points, i, mesh, &f, order[t].triangle);
             }
         }
     }
@@ -184,16 +182,21 @@ static double radius_through(const ms_expect_points *points, int i, const double
 {
     const double d[3] = {points->at[0][i] - other[0], points->at[1][i] - other[1], points->at[2][i] - other[2]};
     const double n[3] = {points->normal[0][i], points->normal[1][i], points->normal[2][i]};
-    const double height = ms_dot(d, n);
-    return height > 0 ? fmin(radius, ms_dot(d, d) / (2 * height)) : radius;
+    const double square = ms_dot(d, d), height = ms_dot(d, n);
+    return square < 2 * radius * height ? square / (2 * height) : radius;
 }
 
-/* The largest ball at point i that none of the points with balls lies in; the least ratio of them all. */
+/* The largest ball at point i that none of the points with balls lies in. Those nearer than half of their distance in
+ * the mean say more of the bend from triangle to triangle than of the body's. */
 static double radius_among_points(const ms_expect_points *points, int i, double radius)
 {
+    const double self[3] = {points->at[0][i], points->at[1][i], points->at[2][i]};
+    const double near = points->weight * MS_EXPECT_BALL_STEP / 4;
     for (int j = 0; j < MS_EXPECT_POINTS; j += MS_EXPECT_BALL_STEP) {
         const double other[3] = {points->at[0][j], points->at[1][j], points->at[2][j]};
-        radius = radius_through(points, i, other, radius);
+        if (ms_squared_distance(self, other) >= near) {
+            radius = radius_through(points, i, other, radius);
+        }
     }
     return radius;
 }
@@ -201,7 +204,7 @@ static double radius_among_points(const ms_expect_points *points, int i, double 
 static double shrink_ball(const ms_expect_points *points, int i, const ms_closest *closest, double radius)
 {
     enum { MOST_STEPS = 60 };
-    const double allowed = 1 - TOLERANCE - 1.5 * points->slack[i];
+    const double allowed = 1 - TOLERANCE;
     for (int step = 0; step < MOST_STEPS; step++) {
         double centre[3], nearest[3];
         centre_of(centre, points, i, radius);
@@ -209,23 +212,18 @@ static double shrink_ball(const ms_expect_points *points, int i, const ms_closes
             break;
         }
         const double smaller = radius_through(points, i, nearest, radius);
-        if (smaller >= radius) { /* the place lies beside the point, at an edge that the normal passes over */
-            radius *= 0.5;
-        } else if (smaller >
-                   allowed * radius) { /* near a centre of curvature all is as near: no more is to be gained */
-            return smaller;
-        } else {
-            radius = smaller;
-        }
+        radius =
+            smaller < radius ? smaller : radius / 2; /* it may lie beside the point, where the normal passes over */
     }
     return radius;
 }
 
-ms_status ms_expect_points_inscribe(ms_expect_points *points, const ms_mesh *mesh, ms_error *err)
+ms_status ms_expect_points_inscribe(ms_expect_points *points, const ms_mesh *mesh, const ms_closest *closest,
+                                    ms_error *err)
 {
-    ms_closest *closest = NULL;
+    ms_closest *own = NULL;
     double lo[3], hi[3];
-    const ms_status status = ms_closest_build(&closest, mesh, err);
+    const ms_status status = closest ? MS_OK : ms_closest_build(&own, mesh, err);
     if (status != MS_OK) {
         return status;
     }
@@ -234,8 +232,8 @@ ms_status ms_expect_points_inscribe(ms_expect_points *points, const ms_mesh *mes
 #pragma omp parallel for schedule(dynamic, 16)
     for (int b = 0; b < MS_EXPECT_POINTS / MS_EXPECT_BALL_STEP; b++) {
         const int i = b * MS_EXPECT_BALL_STEP;
-        points->radius[b] = shrink_ball(points, i, closest, radius_among_points(points, i, most));
+        points->radius[b] = shrink_ball(points, i, own ? own : closest, radius_among_points(points, i, most));
     }
-    ms_closest_free(closest);
+    ms_closest_free(own);
     return MS_OK;
 }

@@ -1,29 +1,17 @@
 #include "ms_expect_price.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
+
+#include "ms_expect_view.h"
 
 enum { KINDS = MS_EXPECT_KINDS, FREE = MS_EXPECT_FREE };
 
 /* A point of which another ball is cheaper by this part is served by that one: less is the noise of counting points. */
-static const double CHEAPER = 0.15;
+static const double CHEAPER = 0.3;
 
-/* A level: each `step`-th point, and a ball at each `every`-th of them; for numbers of spheres up to its last, which
- * have from 50 to 200 of these points each. */
-typedef struct level {
-    int step, every, points, balls, most; /* most: points that are kept of a ball's neighbours */
-    double weight;                        /* area of a point */
-    double last;                          /* number of spheres */
-} level;
-
-/* A point as a ball sees it. */
-typedef struct view {
-    double power; /* squared distance to the centre less the squared radius */
-    double slope; /* what the surface is off for each unit of that: 1 / twice the radius about the ball's own point */
-    int point;    /* of the level */
-} view;
+typedef ms_expect_level level;
+typedef ms_expect_view view;
 
 /* What a ball costs that serves its first k + 1 points, by error summed over points. */
 typedef struct offer {
@@ -34,80 +22,8 @@ typedef struct offer {
     view *neighbour;      /* those of the points that have balls, nearest first; point: the ball */
 } offer;
 
-static int compare_views(const void *a, const void *b)
-{
-    const view *v = a, *w = b;
-    return v->power != w->power ? (v->power > w->power) - (v->power < w->power) : v->point - w->point;
-}
-
-/* Moves the `keep` nearest to the front. Source: Hoare, Algorithm 65 (1961). */
-static void select_nearest(view *v, int count, int keep)
-{
-    int lo = 0, hi = count - 1;
-    while (lo < hi) {
-        const double pivot = v[lo + (hi - lo) / 2].power;
-        int i = lo, j = hi;
-        while (i <= j) {
-            while (v[i].power < pivot) {
-                i++;
-            }
-            while (v[j].power > pivot) {
-                j--;
-            }
-            if (i <= j) {
-                const view swap = v[i];
-                v[i++] = v[j];
-                v[j--] = swap;
-            }
-        }
-        if (keep - 1 <= j) {
-            hi = j;
-        } else if (keep - 1 >= i) {
-            lo = i;
-        } else {
-            return;
-        }
-    }
-}
-
-/*
- * The points that a ball faces, nearest first. Along the normal of a point at height b above the centre and x beside
- * it, a sphere of radius R is off by b - sqrt(R^2 - x^2) = (b^2 + x^2 - R^2) / (b + sqrt(R^2 - x^2)), of which 2 b is
- * the denominator to first order.
- */
-static int see_points(view *v, const ms_expect_points *points, const level *l, int ball)
-{
-    const int own = ball * l->every * l->step;
-    const double radius = points->radius[own / MS_EXPECT_BALL_STEP];
-    double centre[3];
-    int count = 0;
-    for (int a = 0; a < 3; a++) {
-        centre[a] = points->at[a][own] - radius * points->normal[a][own];
-    }
-    for (int p = 0; p < l->points; p++) {
-        const int at = p * l->step;
-        const double x = points->at[0][at] - centre[0], y = points->at[1][at] - centre[1],
-                     z = points->at[2][at] - centre[2];
-        const double square = x * x + y * y + z * z, power = square - radius * radius;
-        const double height = x * points->normal[0][at] + y * points->normal[1][at] + z * points->normal[2][at];
-        if (height <= 0 || height * height < 0.01 * square || power > 4 * radius * height) {
-            continue;
-        }
-        const double slope = 1 / (2 * height);
-        if (power * slope < 2 * radius) {
-            v[count++] = (view){power, slope, p};
-        }
-    }
-    if (count > l->most) {
-        select_nearest(v, count, l->most);
-        count = l->most;
-    }
-    qsort(v, (size_t)count, sizeof *v, compare_views);
-    return count;
-}
-
 /* Sums of errors over the first points, for the sphere that is best for just these (the weighted median of their
- * powers), and for the inscribed ball. */
+ * powers), and for the largest that none of the points lies in: that through the nearest. */
 static void sum_errors(offer *o, const view *v)
 {
     double slopes = 0, all = 0, slopes_below = 0, below = 0;
@@ -122,14 +38,14 @@ static void sum_errors(offer *o, const view *v)
         }
         o->middle[k] = v[middle].power;
         o->error[FREE][k] = all - 2 * below - v[middle].power * (slopes - 2 * slopes_below);
-        o->error[!FREE][k] = all;
+        o->error[!FREE][k] = all - v[0].power * slopes;
     }
 }
 
 static void make_offer(offer *o, view *v, const ms_expect_points *points, const level *l, int ball)
 {
     o->radius = points->radius[ball * l->every * l->step / MS_EXPECT_BALL_STEP];
-    o->count = see_points(v, points, l, ball);
+    o->count = ms_expect_view_see(v, points, l, ball);
     sum_errors(o, v);
     o->neighbours = 0;
     for (int k = 0; k < o->count; k++) {
@@ -173,8 +89,9 @@ static void offer_to_neighbours(choice *low, const offer *o, const choice *own)
             return;
         }
         choice *c = &low[o->neighbour[k].point];
-        if (fmax(error, own->value) < c->value) {
-            *c = (choice){fmax(error, own->value), 0, error > own->value ? 0 : own->served};
+        const double value = error > own->value ? error : own->value;
+        if (value < c->value) {
+            *c = (choice){value, 0, error > own->value ? 0 : own->served};
         }
     }
 }
@@ -245,7 +162,7 @@ static ms_status make_offers(offer *o, const ms_expect_points *points, const lev
     int failed = 0;
 #pragma omp parallel
     {
-        view *v = malloc((size_t)l->points * sizeof *v);
+        view *v = malloc(2 * (size_t)l->most * sizeof *v);
         if (!v) {
 #pragma omp atomic write
             failed = 1;
@@ -258,60 +175,152 @@ static ms_status make_offers(offer *o, const ms_expect_points *points, const lev
         }
         free(v);
     }
-    return failed ? ms_fail(err, MS_ERR_NOMEM, "no memory for the views of %d points", l->points) : MS_OK;
+    return failed ? ms_fail(err, MS_ERR_NOMEM, "no memory for the views of %d points", l->most) : MS_OK;
 }
 
-/* Prices from high to low until there are too many spheres for the level. from: a price in error, and the last one */
-static void add_pairs(ms_expect_curve *curve, double *from, store *r, const level *l, int kind, double volume)
+static ms_status open_level(store *r, level *l, const ms_expect_points *points, ms_error *err)
 {
-    static const double STEP = 1.4;
+    ms_status status = ms_expect_view_open(l, points, err);
+    if (status == MS_OK && (status = alloc_store(r, l, err)) == MS_OK &&
+        (status = make_offers(r->offer, points, l, err)) != MS_OK) {
+        free_store(r);
+    }
+    ms_expect_view_close(l);
+    return status;
+}
+
+/* How deep columns are for all of them to make up the volume; in radii of their balls. */
+static double column_depth(const store *r, const level *l, double volume)
+{
     double sum = 0;
     for (int b = 0; b < l->balls; b++) {
         sum += r->offer[b].radius;
+    }
+    return fmin(1, volume / (l->weight * l->points) * l->balls / sum);
+}
+
+static void reset_choices(store *r, const level *l)
+{
+    for (int b = 0; b < l->balls; b++) {
         r->choice[b].served = l->most;
     }
-    const double area = l->weight * l->points;
-    const double depth = fmin(1, volume / area * l->balls / sum), least = 1e-12 * volume;
-    for (double price = *from; curve->count < MS_EXPECT_MOST_PAIRS && price > least; price /= STEP) {
+}
+
+static const double STEP = 1.4, LEAST_PRICE = 1e-12; /* from a price to the next; in volumes */
+
+/* Prices from high to low until there are too many spheres for the level, or enough. from: a price in error, and the
+ * last one */
+static void add_pairs(ms_expect_curve *curve, double *from, store *r, const level *l, int kind, double volume,
+                      double enough)
+{
+    const double depth = column_depth(r, l, volume);
+    reset_choices(r, l);
+    for (double price = *from; curve->count < MS_EXPECT_MOST_PAIRS && price > LEAST_PRICE * volume; price /= STEP) {
         const ms_expect_pair pair =
             settle(r->choice, r->choice + l->balls, r->offer, l, kind, price / l->weight, depth);
-        if (pair.spheres > l->last && (pair.lost < 0.02 || pair.spheres > l->points / 8.0)) {
+        if (pair.spheres > l->last && (pair.lost < 0.02 || pair.spheres > l->wall)) {
             return;
         }
         *from = price;
         if (pair.spheres > curve->pair[curve->count - 1].spheres) {
             curve->pair[curve->count++] = pair;
         }
+        if (pair.spheres >= enough) {
+            return;
+        }
     }
+}
+
+/* A price at which there are fewer spheres, in long strides. */
+static double find_price(store *r, const level *l, int kind, double volume, double spheres)
+{
+    static const double STRIDE = 5.4; /* STEP^5 */
+    const double depth = column_depth(r, l, volume);
+    double price = volume;
+    reset_choices(r, l);
+    while (price > LEAST_PRICE * volume &&
+           settle(r->choice, r->choice + l->balls, r->offer, l, kind, price / STRIDE / l->weight, depth).spheres <
+               spheres) {
+        price /= STRIDE;
+    }
+    return price;
+}
+
+static void begin_curve(ms_expect_curve *curve)
+{
+    curve->pair[0] = (ms_expect_pair){0, 1, 1};
+    curve->count = 1;
+}
+
+static const level LEVELS[] = {{.step = 8, .every = 2, .most = 1024, .last = 12},
+                               {.step = 2, .every = 4, .most = 768, .last = 85},
+                               {.step = 1, .every = 8, .most = 384, .last = 170, .wall = 1024}};
+enum { N_LEVELS = sizeof LEVELS / sizeof *LEVELS };
+
+static int level_of(double spheres)
+{
+    int i = 0;
+    while (i + 1 < N_LEVELS && LEVELS[i].last < spheres) {
+        i++;
+    }
+    return i;
+}
+
+int ms_expect_price_step(double spheres)
+{
+    const int i = level_of(spheres);
+    return LEVELS[i + 1 < N_LEVELS ? i + 1 : i].step;
 }
 
 ms_status ms_expect_price_curves(ms_expect *expect, const ms_expect_points *points, double volume, ms_error *err)
 {
-    static const int STEPS[] = {8, 2, 1}, EVERY[] = {2, 4, 8}, MOST[] = {1024, 768, 384};
-    static const double LAST[] = {10, 40, 170};
     double from[KINDS];
     ms_status status = MS_OK;
     for (int kind = 0; kind < KINDS; kind++) {
         from[kind] = volume;
-        expect->curve[kind].pair[0] = (ms_expect_pair){0, 1, 1};
-        expect->curve[kind].count = 1;
+        begin_curve(&expect->curve[kind]);
     }
-    for (int i = 0; i < 3 && status == MS_OK; i++) {
-        level l = {.step = STEPS[i], .every = EVERY[i], .points = MS_EXPECT_POINTS / STEPS[i]};
+    for (int i = 0; i < N_LEVELS && status == MS_OK; i++) {
+        level l = LEVELS[i];
         store r;
-        l.weight = points->weight * l.step;
-        l.balls = l.points / l.every;
-        l.last = LAST[i];
-        l.most = MOST[i];
-        status = alloc_store(&r, &l, err);
+        status = open_level(&r, &l, points, err);
+        for (int kind = 0; kind < KINDS && status == MS_OK; kind++) {
+            add_pairs(&expect->curve[kind], &from[kind], &r, &l, kind, volume, HUGE_VAL);
+            from[kind] *= 4;
+        }
         if (status == MS_OK) {
-            status = make_offers(r.offer, points, &l, err);
-            for (int kind = 0; kind < KINDS && status == MS_OK; kind++) {
-                add_pairs(&expect->curve[kind], &from[kind], &r, &l, kind, volume);
-                from[kind] *= 4;
-            }
             free_store(&r);
         }
+    }
+    return status;
+}
+
+/* The pairs about a number, at one level. */
+static ms_status add_near(ms_expect_curve *curve, level l, const ms_expect_points *points, double volume,
+                          double spheres, ms_error *err)
+{
+    static const double SHARES = 3; /* of the points that a sphere serves in the mean: no ball serves many more */
+    store r;
+    const int beyond = l.wall > 0 && spheres > l.last / STEP; /* the slope of the last quarter is wanted, too */
+    l.most = beyond ? l.most : (int)fmin(l.most, SHARES * MS_EXPECT_POINTS / (l.step * spheres));
+    const ms_status status = open_level(&r, &l, points, err);
+    begin_curve(curve);
+    if (status == MS_OK) {
+        double from = find_price(&r, &l, FREE, volume, beyond ? l.last / 5 : spheres);
+        add_pairs(curve, &from, &r, &l, FREE, volume, beyond ? HUGE_VAL : spheres);
+        free_store(&r);
+    }
+    return status;
+}
+
+ms_status ms_expect_price_near(ms_expect_curve *curve, const ms_expect_points *points, double volume, double spheres,
+                               ms_error *err)
+{
+    int i = level_of(spheres);
+    ms_status status = add_near(curve, LEVELS[i], points, volume, spheres, err);
+    /* no pair of the level reaches the number, as where walls begin to be worth while: the next one's do */
+    while (status == MS_OK && i + 1 < N_LEVELS && curve->pair[curve->count - 1].spheres < spheres) {
+        status = add_near(curve, LEVELS[++i], points, volume, spheres, err);
     }
     return status;
 }

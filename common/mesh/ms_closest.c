@@ -16,8 +16,8 @@ enum { PATCH = 256 };
 
 /*
  * What is in box c of a node lies between two parallel planes, lo[c] <= normal . x <= hi[c]: of a smooth patch they are
- * closer together than the sides of the box, by the square of its extent. In single precision and in units of the mesh's
- * size, as the planes of triangles; all 0 where no patch is meant.
+ * closer together than the sides of the box, by the square of its extent. In single precision and in units of the
+ * mesh's size, as the planes of triangles; all 0 where no patch is meant.
  */
 typedef struct slab {
     float normal[3][2], lo[2], hi[2];

@@ -71,8 +71,8 @@ static inline size_t ms_cut_cells_block(const ms_cut_cells *cells, int i, int j,
 ms_status ms_cut_cells_build(ms_cut_cells **out, const ms_grid *grid, const ms_mesh *mesh, ms_error *err);
 
 /* Bytes that they take at their peak, with what is left of them, for each voxel and each square of the surface
- * (ms_target_need). A surface passes through some 1.5 voxels a square, which have 8.7 parts with something inside; whole
- * voxels behind it make them 14 (a spheroid at d_eq/100). */
+ * (ms_target_need). A surface passes through some 1.5 voxels a square, which have 8.7 parts with something inside;
+ * whole voxels behind it make them 14 (a spheroid at d_eq/100). */
 enum { MS_CUT_VOXEL_BYTES = 3, MS_CUT_SQUARE_BYTES = 420 };
 
 void ms_cut_cells_free(ms_cut_cells *cells);

@@ -156,12 +156,19 @@ static float compute_node(const ms_signed_distance *field, size_t node)
     return (float)(ms_closest_signed_distance(field->target->closest, place) / grid->h);
 }
 
-/* Two threads may compute a node at once: they find the same. */
-static inline double node_value(const ms_signed_distance *field, size_t node)
+/* NAN: not known yet. */
+static inline double read_node(const ms_signed_distance *field, size_t node)
 {
     float phi;
 #pragma omp atomic read
     phi = field->phi[node];
+    return (double)phi;
+}
+
+/* Two threads may compute a node at once: they find the same. */
+static double node_value(const ms_signed_distance *field, size_t node)
+{
+    float phi = (float)read_node(field, node);
     if (phi != phi) {
         phi = compute_node(field, node);
 #pragma omp atomic write
@@ -170,67 +177,82 @@ static inline double node_value(const ms_signed_distance *field, size_t node)
     return (double)phi;
 }
 
-/* Weights of the four nodes about a place between the second and the third: Catmull-Rom, exact for parabolas. */
-static void cubic_weights(double w[4], double t)
+/* The nodes about a place: the cell's corners are the second and the third of four along each axis. */
+typedef struct stencil {
+    size_t index[3][4]; /* those beyond the border are those on it */
+    double part[3];     /* of the way from the second to the third */
+} stencil;
+
+/* Of corner c, bit a of which is its side along axis a; and of the node beyond it along an axis. */
+static inline size_t find_corner(const stencil *s, int c)
 {
-    w[0] = t * (t * (2 - t) - 1) / 2;
-    w[1] = 1 + t * t * (3 * t - 5) / 2;
-    w[2] = t * (1 + t * (4 - 3 * t)) / 2;
-    w[3] = t * t * (t - 1) / 2;
+    return s->index[0][1 + (c & 1)] + s->index[1][1 + (c >> 1 & 1)] + s->index[2][1 + (c >> 2)];
 }
 
-/* Nodes beyond the border are those on it. */
-static double look_up_cubic(const ms_signed_distance *field, const int at[3], const double part[3])
+static inline size_t find_outer(const stencil *s, int c, int axis)
 {
-    size_t index[3][4];
-    double w[3][4], sum = 0;
-    size_t stride = 1;
-    for (int a = 0; a < 3; a++) {
-        cubic_weights(w[a], part[a]);
-        for (int i = 0; i < 4; i++) {
-            const int node = at[a] + i - 1;
-            index[a][i] = stride * (size_t)(node < 0 ? 0 : node < field->n[a] ? node : field->n[a] - 1);
-        }
-        stride *= (size_t)field->n[a];
-    }
-    for (int k = 0; k < 4; k++) {
-        for (int j = 0; j < 4; j++) {
-            const size_t row = index[2][k] + index[1][j];
-            double along = 0;
-            for (int i = 0; i < 4; i++) {
-                along += w[0][i] * node_value(field, row + index[0][i]);
-            }
-            sum += w[2][k] * w[1][j] * along;
-        }
-    }
-    return sum;
+    const int side = c >> axis & 1;
+    return find_corner(s, c) - s->index[axis][1 + side] + s->index[axis][3 * side];
 }
 
-static double look_up_linear(const ms_signed_distance *field, const int at[3], const double part[3])
+static double interpolate_cell(const double corner[8], const double part[3])
 {
-    const size_t nx = (size_t)field->n[0], stride[3] = {1, nx, nx * (size_t)field->n[1]};
-    const size_t node = (size_t)at[0] + (size_t)at[1] * stride[1] + (size_t)at[2] * stride[2];
     double along[4];
     for (int k = 0; k < 4; k++) { /* the edges along x */
-        const size_t from = node + (size_t)(k & 1) * stride[1] + (size_t)(k >> 1) * stride[2];
-        const double low = node_value(field, from), high = node_value(field, from + 1);
-        along[k] = low + part[0] * (high - low);
+        along[k] = corner[2 * k] + part[0] * (corner[2 * k + 1] - corner[2 * k]);
     }
     const double front = along[0] + part[1] * (along[1] - along[0]), back = along[2] + part[1] * (along[3] - along[2]);
     return front + part[2] * (back - front);
 }
 
+/* Along a line the cubic of Catmull and Rom is the linear look-up less t (1 - t) / 2 times that of the second
+ * differences; here such a term for each axis. Exact for parabolas. */
+static double look_up(const ms_signed_distance *field, const stencil *s)
+{
+    double corner[8], bent[8];
+    for (int c = 0; c < 8; c++) {
+        corner[c] = bent[c] = read_node(field, find_corner(s, c));
+    }
+    for (int a = 0; a < 3 && field->cubic; a++) {
+        const double bend = s->part[a] * (1 - s->part[a]) / 2;
+        for (int c = 0; c < 8; c++) {
+            bent[c] -= bend * (read_node(field, find_outer(s, c, a)) - 2 * corner[c] + corner[c ^ 1 << a]);
+        }
+    }
+    return interpolate_cell(bent, s->part);
+}
+
+static void need_nodes(const ms_signed_distance *field, const stencil *s)
+{
+    for (int c = 0; c < 8; c++) {
+        node_value(field, find_corner(s, c));
+        for (int a = 0; a < 3 && field->cubic; a++) {
+            node_value(field, find_outer(s, c, a));
+        }
+    }
+}
+
 double ms_signed_distance_at(const ms_signed_distance *field, const double place[3])
 {
-    int at[3];
-    double part[3], beyond = 0;
+    stencil s;
+    double beyond = 0;
+    size_t stride = 1;
     for (int a = 0; a < 3; a++) {
         const double x = place[a] / field->step, last = field->n[a] - 1;
         const double inside = x < 0 ? 0 : x > last ? last : x;
-        at[a] = (int)(inside < last - 1 ? inside : last - 1);
-        part[a] = inside - at[a];
+        const int at = (int)(inside < last - 1 ? inside : last - 1);
+        s.part[a] = inside - at;
+        for (int i = 0; i < 4; i++) {
+            const int node = at + i - 1;
+            s.index[a][i] = stride * (size_t)(node < 0 ? 0 : node < field->n[a] ? node : field->n[a] - 1);
+        }
+        stride *= (size_t)field->n[a];
         beyond += (x - inside) * (x - inside);
     }
-    const double phi = field->cubic ? look_up_cubic(field, at, part) : look_up_linear(field, at, part);
+    double phi = look_up(field, &s);
+    if (phi != phi) { /* some node is not known yet */
+        need_nodes(field, &s);
+        phi = look_up(field, &s);
+    }
     return beyond > 0 ? phi + sqrt(beyond) * field->step : phi;
 }

@@ -13,7 +13,7 @@ typedef struct ms_signed_distance_store ms_signed_distance_store;
 typedef struct ms_signed_distance {
     const ms_target *target; /* borrowed; owns the nodes */
     int step;                /* between nodes */
-    int cubic;               /* nonzero: looked up by cubic polynomials, else linearly */
+    int cubic;               /* nonzero: looked up by polynomials exact for parabolas, else linearly */
     int n[3];                /* nodes: node i lies on voxel i * step */
     float *phi;              /* at the nodes, the target's; NAN: not asked for yet */
 } ms_signed_distance;
@@ -38,7 +38,7 @@ ms_status ms_signed_distance_open(ms_signed_distance *field, const ms_target *ta
 /**
  * Between nodes by the field's polynomials; beyond the lattice, the value at its border and the way there.
  *
- * Threads may share a field. Cost: 8 loads (cubic: 64), and once per node ms_closest_signed_distance.
+ * Threads may share a field. Cost: 8 loads (cubic: 32), and once per node ms_closest_signed_distance.
  */
 double ms_signed_distance_at(const ms_signed_distance *field, const double place[3]);
 

@@ -12,10 +12,10 @@ MS_C_BEGIN
  * cavity counts as well.
  *
  * Digitised balls anywhere on the lattice are within 1 % from 20 voxels across, and within 0.3 % of the ball that has
- * the volume of the voxels (1 % from 8). About the middle of a voxel, of a face, or a corner whole shells of voxels come
- * and go at once: balls 1.3 % apart in area have the same voxels, which no method can tell, and it is within 1.5 %.
- * Ellipsoids, turned, are within 1 %. Edges are rounded off: one at right angles loses 0.2 to 0.6 voxels times its
- * length.
+ * the volume of the voxels (1 % from 8). About the middle of a voxel, of a face, or a corner whole shells of voxels
+ * come and go at once: balls 1.3 % apart in area have the same voxels, which no method can tell, and it is within
+ * 1.5 %. Ellipsoids, turned, are within 1 %. Edges are rounded off: one at right angles loses 0.2 to 0.6 voxels times
+ * its length.
  *
  * Crofton's formula in 13 directions (Ohser & Muecklich 2000, Lang et al. 2001) is nearly twice as far off on balls and
  * understates faces along the axes by 7 %: the tests compare both. An isosurface of the voxels smoothed by a Gaussian

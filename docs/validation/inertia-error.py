@@ -3,8 +3,8 @@
 
     MSKIT=build/eval/mskit docs/validation/inertia-error.py [MESH]...
 
-The shapes of the paper that have a formula are made by mskit: spheroid (5.2), tablet (5.1), ellipsoid (2.4; the edges of its box
-are not given); further meshes are files.
+The shapes of the paper that have a formula are made by mskit: spheroid (5.2), tablet (5.1), ellipsoid (2.4; the edges
+of its box are not given); further meshes are files.
 """
 import json
 import os

@@ -15,22 +15,39 @@ static const char *const KINDS[] = {[MS_EXPECT_FREE] = "free", [MS_EXPECT_INSCRI
 /* A clump of this mismatch holds too little of its shape to stand for it. */
 static const double HOPELESS = 0.2;
 
-ms_status ms_expectation_find(ms_expect *expect, const ms_input *input, ms_error *err)
+static ms_status refuse_open(const ms_input *input, ms_error *err)
 {
-    *expect = (ms_expect){0};
-    if (input->mesh.n_triangles == 0) {
-        return ms_expect_grid(expect, &input->target.grid, err);
-    }
-    if (!input->report.closed || input->solid.overlapping) {
+    if (input->mesh.n_triangles > 0 && (!input->report.closed || input->solid.overlapping)) {
         return ms_fail(err, MS_ERR_SHAPE, "%s: of a mesh that %s nothing can be expected", input->path,
                        input->report.closed ? "passes through itself" : "is open");
     }
-    return ms_expect_mesh(expect, &input->mesh, err);
+    return MS_OK;
+}
+
+ms_status ms_expectation_find(ms_expect *expect, const ms_input *input, ms_error *err)
+{
+    *expect = (ms_expect){0};
+    const ms_status status = refuse_open(input, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    return input->mesh.n_triangles > 0 ? ms_expect_mesh(expect, &input->mesh, err)
+                                       : ms_expect_grid(expect, &input->target.grid, err);
 }
 
 ms_status ms_expectation_try(ms_expect *expect, const ms_input *input, ms_error *err)
 {
     const ms_status status = ms_expectation_find(expect, input, err);
+    return status == MS_ERR_SHAPE ? MS_OK : status;
+}
+
+ms_status ms_expectation_near(ms_expect *expect, const ms_input *input, size_t spheres, ms_error *err)
+{
+    *expect = (ms_expect){0};
+    ms_status status = refuse_open(input, err);
+    if (status == MS_OK) {
+        status = ms_expect_near(expect, &input->target, (double)spheres, err);
+    }
     return status == MS_ERR_SHAPE ? MS_OK : status;
 }
 
@@ -78,9 +95,9 @@ static double find_number(const ms_expect *expect, int kind, double dice)
 void ms_expectation_print(FILE *stream, const ms_expect *expect)
 {
     fprintf(stream,
-            "  expected least D by number of spheres (an estimate, not a bound: from 10 spheres on the least\n"
-            "  D known of measured shapes was 1/%g to %g times it)\n  %-22s",
-            MS_EXPECT_RANGE, MS_EXPECT_RANGE, "    spheres");
+            "  expected least D by number of spheres (asymptotic, an estimate, not a proven bound: the least D known\n"
+            "  of measured shapes was 1/%g to %g times it from 10 spheres on, 1/%g to %g from 100 on)\n  %-22s",
+            MS_EXPECT_RANGE, MS_EXPECT_RANGE, MS_EXPECT_RANGE_MANY, MS_EXPECT_RANGE_MANY, "    spheres");
     for (int i = 0; i < N_NUMBERS; i++) {
         fprintf(stream, " %7g", NUMBERS[i]);
     }
@@ -133,17 +150,20 @@ json_t *ms_expectation_json(const ms_expect *expect)
                      "range", 1 / MS_EXPECT_RANGE, MS_EXPECT_RANGE);
 }
 
-void ms_expectation_warn(const ms_expect *expect, const char *name, size_t n)
+ms_status ms_expectation_warn(const ms_expect *expect, const ms_input *input, size_t n, ms_error *err)
 {
     const double dice = ms_expectation_dice(expect, n);
-    if (isnan(dice)) {
-        return;
+    ms_expect whole;
+    if (!(dice / MS_EXPECT_RANGE > HOPELESS)) { /* NAN, too */
+        return MS_OK;
     }
-    const double least = ms_expect_least_spheres(expect, MS_EXPECT_FREE);
-    if ((double)n < least && dice / MS_EXPECT_RANGE > HOPELESS) {
+    const ms_status status = ms_expectation_find(&whole, input, err);
+    const double least = status == MS_OK ? ms_expect_least_spheres(&whole, MS_EXPECT_FREE) : 0;
+    if ((double)n < least) {
         fprintf(stderr,
                 "%s: for %zu spheres the least D to be expected is about %.2g: most of the shape is too thin for so "
                 "few; %g would bring it to about %.2g\n",
-                name, n, dice, round_number(least), ms_expect_dice(expect, MS_EXPECT_FREE, least));
+                input->path, n, dice, round_number(least), ms_expect_dice(&whole, MS_EXPECT_FREE, least));
     }
+    return status;
 }

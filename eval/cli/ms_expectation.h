@@ -20,6 +20,13 @@ ms_status ms_expectation_find(ms_expect *expect, const ms_input *input, ms_error
 /** The same, but a shape of which nothing can be expected is none that fails: its curves are empty. */
 ms_status ms_expectation_try(ms_expect *expect, const ms_input *input, ms_error *err);
 
+/**
+ * The same for numbers of spheres about one alone, by ms_expect_near.
+ *
+ * @param input with its target
+ */
+ms_status ms_expectation_near(ms_expect *expect, const ms_input *input, size_t spheres, ms_error *err);
+
 /** By what factor D is above what is expected: a line for people, nothing for empty curves. */
 void ms_expectation_say(FILE *stream, const ms_expect *expect, const ms_metrics *metrics);
 
@@ -38,8 +45,13 @@ void ms_expectation_print(FILE *stream, const ms_expect *expect);
 /** The same as a JSON object; the caller owns it. */
 json_t *ms_expectation_json(const ms_expect *expect);
 
-/** Says on stderr, if value and range both have it so, that n spheres are hopeless, and how many would do; nothing
- * for empty curves. */
-void ms_expectation_warn(const ms_expect *expect, const char *name, size_t n);
+/**
+ * Says on stderr, if value and range both have it so, that n spheres are hopeless, and how many would do, for which
+ * all that is expected is computed; nothing for empty curves.
+ *
+ * @param expect of ms_expectation_near for n
+ * @return as ms_expectation_find
+ */
+ms_status ms_expectation_warn(const ms_expect *expect, const ms_input *input, size_t n, ms_error *err);
 
 #endif

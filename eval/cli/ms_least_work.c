@@ -41,7 +41,8 @@ ms_status ms_least_work_resolve(const ms_least_work *work, const ms_stop *stop, 
         return ms_fail(err, MS_ERR_ARG, "--work-power takes --least-work dice=VALUE beside it");
     }
     if (work->dice > 0 && ms_stop_has_measure(stop)) {
-        return ms_fail(err, MS_ERR_ARG, "--least-work ends its runs itself; of --until it takes radius=VALUE alone");
+        return ms_fail(err, MS_ERR_ARG,
+                       "--least-work ends its runs itself; beside it go -n and --min-radius, no --until MEASURE");
     }
     return MS_OK;
 }

@@ -167,17 +167,21 @@ static ms_run make_run(const generate_arguments *a, const ms_input *input)
 static const double FIRST_SPHERES = 50;
 
 /* Numbers of spheres and least radii are tried; from then on the stop rule is that of the run kept. */
-static ms_status try_clumps(ms_result *r, generate_arguments *a, const ms_input *input, const ms_expect *expect,
-                            ms_error *err)
+static ms_status try_clumps(ms_result *r, generate_arguments *a, const ms_input *input, ms_error *err)
 {
+    ms_expect expect;
+    ms_status status = ms_expectation_try(&expect, input, err);
+    if (status != MS_OK) {
+        return status;
+    }
     ms_progress_line line = {.name = a->recipe.generator->name};
     ms_run run = make_run(a, input);
-    const double expected = ms_expectation_spheres(expect, a->work.dice);
+    const double expected = ms_expectation_spheres(&expect, a->work.dice);
     const double first = isnan(expected) ? FIRST_SPHERES : fmin(expected, MS_CLUMP_MAX_SPHERES);
     ms_progress_say_remarks(&run, &line);
     const double start = omp_get_wtime();
-    const ms_status status = ms_least_work_generate(&r->clump, &a->tries, &a->work, a->recipe.generator, &run,
-                                                    (size_t)first, ms_input_max_voxels(&a->input), err);
+    status = ms_least_work_generate(&r->clump, &a->tries, &a->work, a->recipe.generator, &run, (size_t)first,
+                                    ms_input_max_voxels(&a->input), err);
     r->generate_seconds = omp_get_wtime() - start;
     if (status == MS_OK) {
         a->stop = ms_least_work_stop(&a->tries);
@@ -320,13 +324,32 @@ static ms_status report_generate(const generate_arguments *a, const ms_input *in
     return status;
 }
 
+/* What is expected of a number of spheres. */
+typedef struct outlook {
+    size_t spheres; /* 0: of none yet */
+    ms_expect expect;
+} outlook;
+
+/* Not computed again for the number that it is of. */
+static ms_status expect_number(outlook *o, const ms_input *input, size_t spheres, ms_error *err)
+{
+    if (spheres == o->spheres) {
+        return MS_OK;
+    }
+    o->spheres = spheres;
+    return ms_expectation_near(&o->expect, input, spheres, err);
+}
+
 /* The clump is written whatever failed; then it is said. */
-static ms_status write_and_say(const generate_arguments *a, const ms_input *input, ms_result *r,
-                               const ms_expect *expect, ms_error *err)
+static ms_status write_and_say(const generate_arguments *a, const ms_input *input, ms_result *r, outlook *o,
+                               ms_error *err)
 {
     ms_error cause = {""};
     const ms_status masses = add_masses(r, a, input, &cause);
-    ms_status status = report_generate(a, input, r, expect, err);
+    ms_status status = expect_number(o, input, r->metrics.spheres, err);
+    if (status == MS_OK) {
+        status = report_generate(a, input, r, &o->expect, err);
+    }
     if (status == MS_OK && masses != MS_OK) {
         status = ms_fail(err, masses, "the clump is written without masses, for which this failed: %s", cause.text);
     }
@@ -336,14 +359,12 @@ static ms_status write_and_say(const generate_arguments *a, const ms_input *inpu
     return status;
 }
 
-/* What is expected of the shape, and a word where the spheres asked for are hopeless. */
-static ms_status look_ahead(ms_expect *expect, const generate_arguments *a, const ms_input *input, ms_error *err)
+/* A word where the spheres asked for are hopeless. */
+static ms_status look_ahead(outlook *o, const generate_arguments *a, const ms_input *input, ms_error *err)
 {
-    const ms_status status = ms_expectation_try(expect, input, err);
-    if (status == MS_OK && a->stop.spheres > 0) {
-        ms_expectation_warn(expect, input->path, a->stop.spheres);
-    }
-    return status;
+    const ms_status status = expect_number(o, input, a->stop.spheres, err);
+    return status == MS_OK && a->stop.spheres > 0 ? ms_expectation_warn(&o->expect, input, a->stop.spheres, err)
+                                                  : status;
 }
 
 static int execute_generate(const ms_command *command, generate_arguments *a)
@@ -351,7 +372,7 @@ static int execute_generate(const ms_command *command, generate_arguments *a)
     ms_error err;
     ms_input input;
     ms_result r;
-    ms_expect expect;
+    outlook o = {0};
     memset(&r, 0, sizeof r);
     ms_status status = ms_input_read(&input, a->shape, &a->input, &err);
     if (status != MS_OK) {
@@ -362,16 +383,16 @@ static int execute_generate(const ms_command *command, generate_arguments *a)
         status = ms_input_target(&input, &a->input, &err);
     }
     if (status == MS_OK) {
-        status = look_ahead(&expect, a, &input, &err);
+        status = look_ahead(&o, a, &input, &err);
     }
     if (status == MS_OK) {
-        status = a->work.dice > 0 ? try_clumps(&r, a, &input, &expect, &err) : make_clump(&r, a, &input, &err);
+        status = a->work.dice > 0 ? try_clumps(&r, a, &input, &err) : make_clump(&r, a, &input, &err);
     }
     if (status == MS_OK) {
         status = score_clump(&r, a, &input, &err);
     }
     if (status == MS_OK) {
-        status = write_and_say(a, &input, &r, &expect, &err);
+        status = write_and_say(a, &input, &r, &o, &err);
     }
     ms_clump_free(&r.clump);
     ms_input_free(&input);

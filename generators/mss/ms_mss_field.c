@@ -59,31 +59,32 @@ static size_t count_rows(const ms_mss_field *field)
     return (size_t)field->target->grid.n[1] * (size_t)field->target->grid.n[2];
 }
 
+static float find_deepest_e(const float *distance, size_t voxels)
+{
+    float deepest = 0;
+#pragma omp parallel for reduction(max : deepest) if (voxels >= MS_GRID_THREADS_FROM)
+    for (size_t v = 0; v < voxels; v++) {
+        deepest = distance[v] > deepest ? distance[v] : deepest;
+    }
+    return deepest;
+}
+
 ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const ms_settings *settings, ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(&target->grid);
-    float deepest = 0;
     memset(field, 0, sizeof *field);
     field->target = target;
     field->weight = 1;
-    field->within = calloc(voxels, sizeof *field->within);
-    field->covered = calloc(voxels, 1);
-    field->stale = malloc(count_rows(field) * count_blocks(field));
     field->own_e = settings->n_planes ? malloc(voxels * sizeof *field->own_e) : NULL;
-    if (!field->within || !field->covered || !field->stale || (settings->n_planes && !field->own_e)) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for the field E~ of %zu voxels; use fewer cells", voxels);
+    if (settings->n_planes && !field->own_e) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the field E of %zu voxels; use fewer cells", voxels);
     }
     if (settings->n_planes) {
         ms_planes_cut(field->own_e, target, settings);
     }
     field->e = settings->n_planes ? field->own_e : target->distance;
-#pragma omp parallel for reduction(max : deepest) if (voxels >= MS_GRID_THREADS_FROM)
-    for (size_t v = 0; v < voxels; v++) {
-        deepest = field->e[v] > deepest ? field->e[v] : deepest;
-    }
-    field->deepest = deepest;
-    const ms_status status = ms_mss_field_touch_all(field, err);
-    return status == MS_OK ? ms_raster_alloc(&field->raster, &target->grid, target->rule, err) : status;
+    field->deepest = find_deepest_e(field->e, voxels);
+    return ms_raster_alloc(&field->raster, &target->grid, target->rule, err);
 }
 
 void ms_mss_field_free(ms_mss_field *field)
@@ -347,6 +348,26 @@ static void note_covered(ms_mss_field *field, const ms_mss_box *box)
             }
         }
     }
+}
+
+ms_status ms_mss_field_start(ms_mss_field *field, ms_error *err)
+{
+    const int *n = field->target->grid.n;
+    const size_t voxels = ms_grid_voxels(&field->target->grid);
+    field->within = calloc(voxels, sizeof *field->within);
+    field->covered = calloc(voxels, 1);
+    field->stale = malloc(count_rows(field) * count_blocks(field));
+    if (!field->within || !field->covered || !field->stale) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the field E~ of %zu voxels; use fewer cells", voxels);
+    }
+    ms_status status = MS_OK;
+    if (field->raster.n_balls > 0) {
+        const ms_mss_box all = {{0, 0, 0}, {n[0], n[1], n[2]}};
+        note_covered(field, &all);
+        status = ms_distance(field->within, field->covered, n, err);
+        field->deepest_within = find_deepest_e(field->within, voxels);
+    }
+    return status == MS_OK ? ms_mss_field_touch_all(field, err) : status;
 }
 
 ms_status ms_mss_field_add(ms_mss_field *field, const ms_ball *balls, size_t count, ms_error *err)

@@ -27,12 +27,20 @@ typedef struct ms_mss_field {
 } ms_mss_field;
 
 /**
- * No spheres yet: w = 1, E~ = 0; all of the grid counts as changed.
+ * E, and room for spheres; w = 1.
  *
  * @param settings its planes are walls: E has its maxima on either side
  * @return MS_OK; MS_ERR_NOMEM
  */
 ms_status ms_mss_field_init(ms_mss_field *field, const ms_target *target, const ms_settings *settings, ms_error *err);
+
+/**
+ * E~ of the spheres that are in the raster by now; all of the grid counts as changed. To be called once, before
+ * ms_mss_field_add.
+ *
+ * @return MS_OK; MS_ERR_NOMEM
+ */
+ms_status ms_mss_field_start(ms_mss_field *field, ms_error *err);
 
 /**
  * Adds spheres to S~ and brings E~ up to date where they can have changed it.

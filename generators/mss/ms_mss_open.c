@@ -106,7 +106,7 @@ static int round_place(double x)
 
 long ms_mss_open_gain(const ms_mss_open *open, const ms_ball *ball)
 {
-    const double *c = ball->centre, r = ball->radius, square = r * r + ON_SURFACE;
+    const double *c = ball->centre, square = ball->radius * ball->radius + ON_SURFACE, r = sqrt(square);
     const int lo_z = ms_mss_open_clamp(ceil(c[2] - r), 0, open->n[2]),
               hi_z = ms_mss_open_clamp(floor(c[2] + r) + 1, 0, open->n[2]);
     long sum = 0;

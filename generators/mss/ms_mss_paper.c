@@ -107,7 +107,10 @@ ms_status ms_mss_paper_generate(ms_clump *clump, ms_stop_reason *reason, ms_mss_
 {
     m->rank = rank_candidate;
     m->spacing = first_spacing(m);
-    ms_status status = ms_mss_run_update(m, 0, err);
+    ms_status status = ms_mss_field_start(&m->field, err);
+    if (status == MS_OK) {
+        status = ms_mss_run_update(m, 0, err);
+    }
     while (status == MS_OK && *reason == MS_STOP_NOT) {
         status = step(clump, reason, m, err);
         ms_mss_run_report(0, m);

@@ -8,6 +8,9 @@
 #include "ms_mss_maxima.h"
 #include "shared/ms_nested.h"
 
+/* E between voxels is rounded to that part of one, so that mirror images agree. */
+static const double EQUAL_E = 1 << 20;
+
 int ms_mss_run_confine(ms_ball *ball, ms_mss_run *m)
 {
     const ms_target *target = m->run->target;
@@ -45,6 +48,33 @@ double ms_mss_run_e_at(const ms_mss_run *m, const double place[3])
     return ms_peaks_value(&at, m->field.e, grid->n);
 }
 
+double ms_mss_run_e_between(const ms_mss_run *m, const double place[3])
+{
+    if (m->coarse) {
+        ms_ball ball = {.radius = 0};
+        memcpy(ball.centre, place, sizeof ball.centre);
+        ball = ms_mss_coarse_target_ball(m->coarse, &ball);
+        return ms_mss_run_e_between(m->own, ball.centre) / MS_MSS_COARSE;
+    }
+    const ms_grid *grid = &m->run->target->grid;
+    int voxel[3];
+    double share[3], e = 0;
+    for (int a = 0; a < 3; a++) {
+        if (!(place[a] >= 0 && place[a] < grid->n[a] - 1)) {
+            return 0;
+        }
+        voxel[a] = (int)place[a];
+        share[a] = place[a] - voxel[a];
+    }
+    for (int corner = 0; corner < 8; corner++) {
+        const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+        const double weight =
+            (x ? share[0] : 1 - share[0]) * (y ? share[1] : 1 - share[1]) * (z ? share[2] : 1 - share[2]);
+        e += weight * (double)m->field.e[ms_grid_index(grid, voxel[0] + x, voxel[1] + y, voxel[2] + z)];
+    }
+    return rint(e * EQUAL_E) / EQUAL_E;
+}
+
 /* The sphere at a maximum of E*: centre from E*, radius from E (3.4 iv). 0 if there is no room for one. */
 static int place_candidate(ms_mss_candidate *c, ms_mss_run *m, const ms_mss_maximum *maximum)
 {
@@ -52,7 +82,8 @@ static int place_candidate(ms_mss_candidate *c, ms_mss_run *m, const ms_mss_maxi
     for (int a = 0; a < 3; a++) {
         c->ball.centre[a] = peak->voxel[a] + peak->shift[a];
     }
-    c->e = ms_peaks_value(peak, m->field.e, m->run->target->grid.n);
+    c->e =
+        m->coarse ? ms_mss_run_e_between(m, c->ball.centre) : ms_peaks_value(peak, m->field.e, m->run->target->grid.n);
     c->ball.radius = c->e + ms_mss_run_option(m, MS_MSS_OFFSET);
     c->voxel = maximum->voxel;
     c->counted = 0;

@@ -3,6 +3,7 @@
 #define MS_MSS_RUN_H
 
 #include "ms_generator.h"
+#include "ms_mss_coarse.h"
 #include "ms_mss_field.h"
 #include "ms_mss_select.h"
 
@@ -28,6 +29,9 @@ typedef struct ms_mss_run {
     double spacing; /* delta_min, in voxels */
     int too_small;  /* a maximum was passed over because its sphere would be too small */
     ms_tally sum;   /* of the spheres so far */
+    /* Of a run that sees a target coarsely: how, and the one on the target's own lattice, whose E counts. Else NULL. */
+    const ms_mss_coarse *coarse;
+    const struct ms_mss_run *own;
     /** The rank of a new candidate; `before`: the one that was at its voxel before E* changed, NULL if none was. */
     double (*rank)(const struct ms_mss_run *m, const ms_mss_candidate *c, const ms_mss_candidate *before);
 } ms_mss_run;
@@ -40,8 +44,11 @@ static inline double ms_mss_run_option(const ms_mss_run *m, int which)
 /** Shrinks a ball to what faces and planes allow (section 3.5); 0 if it becomes too small. */
 int ms_mss_run_confine(ms_ball *ball, ms_mss_run *m);
 
-/** E at a place of the grid, by straight lines; 0 if its voxel is outside. */
+/** E near a maximum of it, by straight lines along the axes; 0 if its voxel is outside. */
 double ms_mss_run_e_at(const ms_mss_run *m, const double place[3]);
+
+/** E anywhere, trilinear between the voxels of the target's own lattice; 0 beyond. In voxels of the run. */
+double ms_mss_run_e_between(const ms_mss_run *m, const double place[3]);
 
 /**
  * Finds the maxima anew where E* has changed, and keeps all of them away from new spheres.

@@ -85,7 +85,7 @@ static cut_bound count_candidate(const ms_cut_cover *cover, uint32_t c, cut_boun
     return bound;
 }
 
-static int is_outdated(const ms_cut_cover *cover, uint32_t c)
+static int is_stale_bound(const ms_cut_cover *cover, uint32_t c)
 {
     return bound_of(cover, c) > 0 && cover->bound[c].counted != cover->taken->count;
 }
@@ -97,7 +97,7 @@ static void count_best_bounds(ms_cut_cover *cover, int at_once)
     uint32_t which[MOST_AT_ONCE];
     cut_bound bound[MOST_AT_ONCE];
     int n = 0;
-    for (uint32_t best; n < at_once && is_outdated(cover, best = cover->winner[1]); n++) {
+    for (uint32_t best; n < at_once && is_stale_bound(cover, best = cover->winner[1]); n++) {
         which[n] = best;
         bound[n] = cover->bound[best];
         cover->bound[best].weight = 0; /* out of the way */
@@ -116,7 +116,7 @@ static void count_best_bounds(ms_cut_cover *cover, int at_once)
 int64_t ms_cut_cover_next(size_t *which, ms_cut_cover *cover)
 {
     const int many = omp_get_max_threads() > 1;
-    for (int at_once = 1; is_outdated(cover, cover->winner[1]);) {
+    for (int at_once = 1; is_stale_bound(cover, cover->winner[1]);) {
         count_best_bounds(cover, at_once);
         at_once = many && at_once < MOST_AT_ONCE ? 2 * at_once : at_once;
     }

@@ -44,7 +44,8 @@ ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *can
  * best exact count are counted again (lazy evaluation; Minoux 1978). The choice is exactly
  * the greedy one (Yuan 2019, algorithm 2; but for MS_COVER_GROUPED). Cost: a count takes one pass over the rows of
  * the ball that have anything left, 64 voxels at a time; each candidate is counted at least once before the
- * choice comes down to its size. All cores: the best bounds are counted several at once; the same at any number of them.
+ * choice comes down to its size. All cores: the best bounds are counted several at once; the same at any number of
+ * them.
  *
  * @param[out] which index of the candidate
  * @return how many voxels it covers that were not covered; 0: no candidate covers any, and

@@ -163,12 +163,13 @@ static ms_status keep_better(spheres *best, const ms_ball *ball, size_t count, c
 }
 
 /* Has spheres keep to what they are bound to; one that cannot be joined to the others is dropped. */
-static ms_status settle_within_bounds(ms_ball *ball, size_t *count, double dice, ms_surface_fit *fit, ms_error *err)
+static ms_status settle_within_bounds(ms_ball *ball, size_t *count, ms_surface_fit *fit, ms_error *err)
 {
-    ms_status status = MS_OK;
+    double dice;
     ms_bounds_confine(&fit->bounds, fit->field, ball, *count);
+    ms_status status = ms_bulk_dice(&dice, ball, *count, fit, err);
     fit->slant = dice;
-    if (fit->connected) {
+    if (status == MS_OK && fit->connected) {
         status = ms_connect_fit(ball, *count, fit, err);
     }
     if (status == MS_OK && fit->gap) {
@@ -192,12 +193,16 @@ static ms_status fit_bulk(spheres *best, ms_ball *ball, size_t count, ms_surface
     }
     for (int turn = 0; turn <= TURNS && status == MS_OK; turn++) {
         if (turn > 0) {
-            fit->slant = best->dice;
+            double dice;
+            status = ms_bulk_dice(&dice, ball, count, fit, err);
+            fit->slant = fmin(dice, best->dice);
+        }
+        if (turn > 0 && status == MS_OK) {
             status = ms_surface_fit_steps(fit, ball, count, STEPS, DAMPING[turn - 1], err);
             fit->slant = 0;
         }
         if (status == MS_OK && turn == TURNS) {
-            status = settle_within_bounds(ball, &count, best->dice, fit, err);
+            status = settle_within_bounds(ball, &count, fit, err);
         }
         if (status == MS_OK && (is_free || turn == TURNS)) {
             status = keep_better(best, ball, count, fit, err);
@@ -242,7 +247,7 @@ static ms_status try_first(spheres *best, ms_ball *tried, const ms_ball *first, 
         memcpy(tried, first, n * sizeof *tried);
     }
     if (status == MS_OK) {
-        status = settle_within_bounds(tried, &n, best->dice, fit, err);
+        status = settle_within_bounds(tried, &n, fit, err);
     }
     if (status == MS_OK) {
         status = keep_better(best, tried, n, fit, err);

@@ -36,7 +36,8 @@ ms_status ms_bulk_cluster(ms_ball *ball, size_t *count, const ms_coarse_view *vo
  *
  * @param[in,out] ball  `count` spheres, in voxels
  * @param         room  for spheres in ball: as many as are wanted or given
- * @return MS_OK; MS_ERR_NOMEM. D, and the price of what of the surface is too far, are together never larger than before
+ * @return MS_OK; MS_ERR_NOMEM. D, and the price of what of the surface is too far, are together never larger than
+ * before
  *
  * Source: Dinkelbach, Management Science 13 (1967) 492. Cost: twice 100 steps of the fit and six times
  * ms_dice_compute.

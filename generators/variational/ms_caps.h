@@ -17,8 +17,9 @@ typedef struct ms_caps_end {
  * windows wide. */
 typedef struct ms_caps_window {
     size_t count;
-    ms_ball *ball;    /* those that are fitted, and behind them their images */
-    ms_caps_end *end; /* in order, and behind them the large ones; room for `count` */
+    ms_ball *ball;    /* those that are fitted, and behind them their images: the caller's to fill in */
+    ms_caps_end *end; /* in order, and behind them the large ones */
+    double *at[4];    /* their centres and radii */
     size_t n_small;   /* in order */
     double widest;    /* diameter of those */
 } ms_caps_window;
@@ -29,29 +30,44 @@ enum { MS_CAPS_BLOCK = 8 };
 typedef struct ms_caps {
     float axis[3][MS_CAPS_BLOCK]; /* to the other centres, in radii */
     float least[MS_CAPS_BLOCK];
-    float length[MS_CAPS_BLOCK]; /* of the axis */
+    float length[MS_CAPS_BLOCK]; /* of the axis; 0: there is no cap, or one of all or nothing */
     float root[MS_CAPS_BLOCK];   /* of length^2 - least^2: length times the sine of the cap's angle */
 } ms_caps;
 
-/** Sorts the ends of `count` balls. */
-void ms_caps_sort(ms_caps_window *s);
-
-/** A neighbour, and in which class of sizes its cap is. */
-typedef struct ms_caps_near {
-    uint32_t ball;
-    int class;
-} ms_caps_near;
+/** The caps of one sphere. */
+typedef struct ms_caps_list {
+    ms_caps *near;  /* of all that overlap it, in the spheres' frame */
+    size_t nears;   /* blocks */
+    ms_caps *block; /* those that lie in no other, about the largest first, in the lattice's frame */
+    size_t blocks;
+    uint32_t *which, *order; /* of `near`: places in the window; those of the largest caps first */
+    uint8_t *size;           /* its class */
+} ms_caps_list;
 
 /**
- * What other spheres cover of one's surface: the largest caps first, about, so that what is covered is soon known.
+ * Room for a window of `count` balls, which the caller fills in.
  *
- * @param[out] near  room for count
- * @param[out] block room for count / MS_CAPS_BLOCK + 1
- * @param      turn  its columns are the axes of the frame in which normals are given
- * @return how many blocks
+ * @param[out] out the caller frees it; empty on failure
+ * @return nonzero; 0 without memory
  */
-size_t ms_caps_find(ms_caps *block, ms_caps_near *near, const ms_caps_window *s, uint32_t self,
-                    const double turn[3][3]);
+int ms_caps_window_alloc(ms_caps_window *out, size_t count);
+void ms_caps_window_free(ms_caps_window *s);
+
+/** The same for the caps of one sphere among `count`. */
+int ms_caps_list_alloc(ms_caps_list *out, size_t count);
+void ms_caps_list_free(ms_caps_list *list);
+
+/** Puts the first `count` balls in order. */
+void ms_caps_sort(ms_caps_window *s);
+
+/**
+ * What other spheres cover of one's surface. Of many that overlap it few caps lie in no other.
+ *
+ * @param turn its columns are the axes of the lattice's frame
+ *
+ * Cost: spheres in its window, and those that overlap it times those whose caps are left.
+ */
+void ms_caps_find(ms_caps_list *out, const ms_caps_window *s, uint32_t self, const double turn[3][3]);
 
 /** Is the place with this normal covered? The block that covers it is tried first next time. */
 static inline int ms_caps_cover(size_t *first, const ms_caps *block, size_t blocks, const float normal[3])

@@ -15,8 +15,8 @@ typedef struct ms_tie {
 /**
  * Lists the ties: the links of the shortest tree that joins all spheres (Prim) whose two spheres do not overlap by half
  * a voxel, from either end; and for each plane of symmetry, unless a sphere reaches beyond it by half of that, the
- * nearest one. If there are none, spheres and images are one piece: a path through the images is one through the spheres
- * themselves once it is folded at the planes.
+ * nearest one. If there are none, spheres and images are one piece: a path through the images is one through the
+ * spheres themselves once it is folded at the planes.
  *
  * @param[out] tie   the caller frees it
  * @param[out] ties  how many

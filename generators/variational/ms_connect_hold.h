@@ -9,8 +9,8 @@
 ms_status ms_connect_fit(ms_ball *ball, size_t count, ms_surface_fit *fit, ms_error *err);
 
 /**
- * Grows the spheres at the ends of what is still apart by what is lacking, as far as the bounds let them; what cannot be
- * joined so is dropped, so that the largest piece is left.
+ * Grows the spheres at the ends of what is still apart by what is lacking, as far as the bounds let them; what cannot
+ * be joined so is dropped, so that the largest piece is left.
  *
  * @return MS_OK; MS_ERR_NOMEM
  */

@@ -5,8 +5,7 @@
 
 void ms_exposed_free(ms_exposed *e)
 {
-    free(e->block);
-    free(e->near);
+    ms_caps_list_free(&e->caps);
     free(e->coarse);
     free(e->fine);
     free(e->normal);
@@ -17,15 +16,13 @@ int ms_exposed_alloc(ms_exposed *out, const ms_lattice *lattice, size_t count)
 {
     const size_t most = (size_t)lattice->level[MS_LATTICE_LEVELS - 1].points;
     const size_t blocks = count / MS_CAPS_BLOCK + 1;
-    *out = (ms_exposed){.block = malloc(blocks * sizeof *out->block),
-                        .near = malloc((count + 1) * sizeof *out->near),
-                        .coarse = malloc(blocks * sizeof *out->coarse),
+    *out = (ms_exposed){.coarse = malloc(blocks * sizeof *out->coarse),
                         .fine = malloc(blocks * sizeof *out->fine),
                         .normal = malloc(most * sizeof *out->normal)};
-    if (!out->block || !out->near || !out->coarse || !out->fine || !out->normal) {
+    if (!ms_caps_list_alloc(&out->caps, count) || !out->coarse || !out->fine || !out->normal) {
         ms_exposed_free(out);
     }
-    return out->block != NULL;
+    return out->normal != NULL;
 }
 
 /* Adds those normals of a fine group that are not covered, turned. */
@@ -50,7 +47,8 @@ static void list_level(ms_exposed *e, const ms_lattice *lattice, int which)
     e->points = level->points;
     for (int c = 0; c < level->coarses; c++) {
         const ms_lattice_group *coarse = &level->coarse[c];
-        const int near = ms_caps_narrow(e->coarse, e->block, e->blocks, coarse->centre, coarse->cosine, coarse->sine);
+        const int near =
+            ms_caps_narrow(e->coarse, e->caps.block, e->caps.blocks, coarse->centre, coarse->cosine, coarse->sine);
         for (int f = coarse->first; near >= 0 && f < coarse->first + coarse->count; f++) {
             const ms_lattice_group *fine = &level->fine[f];
             const int nearer = ms_caps_narrow(e->fine, e->coarse, (size_t)near, fine->centre, fine->cosine, fine->sine);
@@ -64,7 +62,7 @@ static void list_level(ms_exposed *e, const ms_lattice *lattice, int which)
 int ms_exposed_find(ms_exposed *out, const ms_lattice *lattice, const ms_caps_window *s, uint32_t self, int level,
                     int enough)
 {
-    out->blocks = ms_caps_find(out->block, out->near, s, self, lattice->turn);
+    ms_caps_find(&out->caps, s, self, lattice->turn);
     for (;; level++) {
         list_level(out, lattice, level);
         if (out->count >= enough || level == MS_LATTICE_LEVELS - 1) {
@@ -73,20 +71,15 @@ int ms_exposed_find(ms_exposed *out, const ms_lattice *lattice, const ms_caps_wi
     }
 }
 
-double ms_exposed_depth(const ms_exposed *e, const ms_lattice *lattice, const double normal[3])
+double ms_exposed_depth(const ms_exposed *e, const double normal[3])
 {
-    double u[3] = {0}, last = 0;
-    for (int r = 0; r < 3; r++) {
-        for (int c = 0; c < 3; c++) {
-            u[c] += lattice->turn[r][c] * normal[r];
-        }
-    }
-    for (size_t b = 0; b < e->blocks; b++) {
-        const ms_caps *c = &e->block[b];
+    double last = 0;
+    for (size_t b = 0; b < e->caps.nears; b++) {
+        const ms_caps *c = &e->caps.near[b];
         for (int i = 0; i < MS_CAPS_BLOCK; i++) {
             /* Where the ray leaves the other sphere: t^2 - 2 t u.axis + |axis|^2 - r^2 = 0. */
-            const double along =
-                (double)c->axis[0][i] * u[0] + (double)c->axis[1][i] * u[1] + (double)c->axis[2][i] * u[2];
+            const double along = (double)c->axis[0][i] * normal[0] + (double)c->axis[1][i] * normal[1] +
+                                 (double)c->axis[2][i] * normal[2];
             const double rest = along * along - (2 * (double)c->least[i] - 1);
             if (c->length[i] > 0 && rest > 0) {
                 last = fmax(last, along + sqrt(rest));

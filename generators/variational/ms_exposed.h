@@ -7,9 +7,7 @@
 
 /** One sphere at a time; each thread has its own. */
 typedef struct ms_exposed {
-    ms_caps *block; /* what others cover of it, in the lattice's frame */
-    size_t blocks;
-    ms_caps_near *near;
+    ms_caps_list caps;      /* what others cover of it */
     ms_caps *coarse, *fine; /* those that reach to a group */
     double (*normal)[3];    /* at the places, in the spheres' frame */
     int count;
@@ -36,7 +34,7 @@ int ms_exposed_find(ms_exposed *out, const ms_lattice *lattice, const ms_caps_wi
                     int enough);
 
 /** How far below the surface at a normal the other spheres begin, in radii: 1 where there is none before the centre. */
-double ms_exposed_depth(const ms_exposed *e, const ms_lattice *lattice, const double normal[3]);
+double ms_exposed_depth(const ms_exposed *e, const double normal[3]);
 
 void ms_exposed_free(ms_exposed *e);
 

@@ -4,11 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_vector.h"
 #include "ms_surface_tally.h"
-#include "shared/ms_overlap.h"
 
 /* Voxels of the view up to which a count says less than the exposed surface. */
 static const double FEW = 100;
+
+/* Spheres whose centres are nearer than this part of the sum of their radii are not dropped at once. In a sheet of many
+ * nearly all overlap, but each bears the surface of the few about it alone. */
+static const double CLOSE = 0.3;
 
 /* A sphere is idle whose loss is less than this part of the mismatch that is a sphere's share. */
 static const double IDLE = 0.05;
@@ -137,7 +141,13 @@ static void move_nearest_onto_plane(ms_ball *ball, size_t count, const ms_mirror
     }
 }
 
-/* The cheapest sphere that overlaps none of those dropped already and has no more than that many images. */
+static int are_close(const ms_ball *a, const ms_ball *b)
+{
+    const double reach = CLOSE * (a->radius + b->radius);
+    return ms_squared_distance(a->centre, b->centre) < reach * reach;
+}
+
+/* The cheapest sphere that is close to none of those dropped already and has no more than that many images. */
 static size_t find_cheapest(const ms_ball *ball, size_t count, const double *loss, size_t images, const ms_mirror *m,
                             const ms_ball *dropped, size_t n_dropped)
 {
@@ -145,7 +155,7 @@ static size_t find_cheapest(const ms_ball *ball, size_t count, const double *los
     for (size_t b = 0; b < count; b++) {
         int passed = (best != SIZE_MAX && loss[b] >= loss[best]) || ms_mirror_images(m, &ball[b]) > images;
         for (size_t d = 0; d < n_dropped && !passed; d++) {
-            passed = ms_overlap(&ball[b], &dropped[d]);
+            passed = are_close(&ball[b], &dropped[d]);
         }
         if (!passed) {
             best = b;

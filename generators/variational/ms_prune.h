@@ -7,7 +7,7 @@
 #include "ms_surface_fit.h"
 
 /**
- * Drops the spheres whose loss raises |S xor U| least. Of those dropped at once no two overlap, as the loss of one
+ * Drops the spheres whose loss raises |S xor U| least. Of those dropped at once no two are close, as the loss of one
  * changes that of the other.
  *
  * @param[in,out] ball  `count` spheres, in voxels of the target's grid

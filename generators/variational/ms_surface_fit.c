@@ -239,8 +239,7 @@ static double make_move(ms_ball *ball, double velocity[4], const move *step, dou
 
 static void free_workspace(workspace *work)
 {
-    free(work->window.ball);
-    free(work->window.end);
+    ms_caps_window_free(&work->window);
     free(work->move);
     free(work->velocity);
     free(work->level);
@@ -251,13 +250,11 @@ static ms_status alloc_workspace(workspace *work, const ms_surface_fit *fit, siz
 {
     const int *across = fit->mirror.across;
     const size_t images = count << (across[0] + across[1] + across[2]);
-    *work = (workspace){.window = {.ball = malloc((images + 1) * sizeof *work->window.ball),
-                                   .end = malloc((images + 1) * sizeof *work->window.end)},
-                        .move = malloc((count + 1) * sizeof *work->move),
+    *work = (workspace){.move = malloc((count + 1) * sizeof *work->move),
                         .velocity = calloc(count + 1, sizeof *work->velocity)};
     work->level = calloc(count + 1, sizeof *work->level);
     ms_status status = MS_OK;
-    if (!work->window.ball || !work->window.end || !work->move || !work->velocity || !work->level) {
+    if (!ms_caps_window_alloc(&work->window, images) || !work->move || !work->velocity || !work->level) {
         status = ms_fail(err, MS_ERR_NOMEM, "no memory to fit %zu spheres", count);
     }
     if (status != MS_OK) {
@@ -278,7 +275,7 @@ static int find_moves(const ms_surface_fit *fit, workspace *work, const ms_ball 
         enough = ms_exposed_alloc(&exposed, fit->lattice, work->window.count);
 #pragma omp for schedule(dynamic, 4)
         for (size_t s = 0; s < count; s++) {
-            if (exposed.block && (!fit->moving || fit->moving[s])) {
+            if (exposed.normal && (!fit->moving || fit->moving[s])) {
                 work->move[s] = find_move(fit, work, &exposed, (uint32_t)s);
             }
         }

@@ -27,7 +27,7 @@ static ms_surface_worth tally_sphere(const ms_surface_fit *fit, const ms_caps_wi
         const double *u = exposed->normal[p];
         const double place[3] = {ball->centre[0] + r * u[0], ball->centre[1] + r * u[1], ball->centre[2] + r * u[2]};
         const double phi = ms_signed_distance_at(fit->field, place);
-        const double begin = 1 - ms_exposed_depth(exposed, fit->lattice, u), border = fmax(begin, fmin(1, 1 - phi / r));
+        const double begin = 1 - ms_exposed_depth(exposed, u), border = fmax(begin, fmin(1, 1 - phi / r));
         sum.mismatch += fabs(phi);
         sum.loss += (1 + fit->slant) * cone_volume(begin, border) - (1 - fit->slant) * cone_volume(border, 1);
     }
@@ -40,9 +40,9 @@ ms_status ms_surface_tally(ms_surface_worth *each, double *mismatch, const ms_su
 {
     const int *across = fit->mirror.across;
     const size_t images = (count << (across[0] + across[1] + across[2])) + 1;
-    ms_caps_window window = {.ball = malloc(images * sizeof *window.ball), .end = malloc(images * sizeof *window.end)};
+    ms_caps_window window;
     ms_surface_worth *own = each ? NULL : malloc((count + 1) * sizeof *own), *worth = each ? each : own;
-    int enough = window.ball && window.end && worth;
+    int enough = ms_caps_window_alloc(&window, images) && worth;
     if (enough) {
         window.count = ms_mirror_expand(window.ball, ball, count, &fit->mirror);
         ms_caps_sort(&window);
@@ -52,7 +52,7 @@ ms_status ms_surface_tally(ms_surface_worth *each, double *mismatch, const ms_su
             enough = ms_exposed_alloc(&exposed, fit->lattice, window.count);
 #pragma omp for schedule(dynamic, 4)
             for (size_t s = 0; s < count; s++) {
-                if (exposed.block) {
+                if (exposed.normal) {
                     worth[s] = tally_sphere(fit, &window, &exposed, (uint32_t)s);
                 }
             }
@@ -66,8 +66,7 @@ ms_status ms_surface_tally(ms_surface_worth *each, double *mismatch, const ms_su
     if (mismatch) {
         *mismatch = sum;
     }
-    free(window.ball);
-    free(window.end);
+    ms_caps_window_free(&window);
     free(own);
     return enough ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory to compare %zu spheres", count);
 }

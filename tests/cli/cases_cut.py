@@ -54,9 +54,10 @@ class Cut(Case):
         self.assertNotIn("coverage_cut", self.mskit(*target, "--curve").out)
 
     def test_until(self):
-        """The run ends with the very sphere that covers enough, with each way to count and with a method without prefixes."""
+        """The run ends with the very sphere that covers enough, however setcover counts, and with another method."""
         for options in (SETCOVER, (*SETCOVER, "--set", "count=cut"), ("-g", "mss")):
-            json = self.mskit("generate", "box.obj", *GRID, *options, "--until", "coverage_cut=0.8", "-o", "c.csv", "--json").json
+            json = self.mskit("generate", "box.obj", *GRID, *options, "--until", "coverage_cut=0.8", "-o", "c.csv",
+                              "--json").json
             spheres = parse_spheres(self.read("c.csv").decode())
             self.assertEqual(json["stopped_by"], "coverage_cut")
             self.assertAlmostEqual(json["scores"]["coverage_cut"], coverage_cut(spheres), delta=1e-12)
@@ -65,7 +66,7 @@ class Cut(Case):
         self.assert_refused("generate", "box.obj", *GRID, "--until", "coverage_cut=1.5", code=2, says=("coverage_cut",))
 
     def test_count(self):
-        """With count=cut no sphere covers more cells than one before it, as the best one each time cannot; the curve says so."""
+        """With count=cut no sphere covers more cells than one before it, as the best one each time cannot."""
         for count in ("voxels", "cut"):
             self.mskit("generate", "box.obj", *GRID, *SETCOVER, "--set", f"count={count}", "-n", 12, "--cut",
                        "-o", f"{count}.csv", "--curve", "k.csv")
@@ -78,7 +79,8 @@ class Cut(Case):
         for before, after in zip(gains, gains[1:]):
             self.assertLessEqual(after, before + 1e-7)
         self.assertNotEqual(self.read("voxels.csv"), self.read("cut.csv"))
-        self.assert_refused("generate", "box.obj", *GRID, *SETCOVER, "--set", "count=cells", code=2, says=("voxels, cut",))
+        self.assert_refused("generate", "box.obj", *GRID, *SETCOVER, "--set", "count=cells", code=2,
+                            says=("voxels, cut",))
 
     def test_compare(self):
         self.write("c.csv", "x,y,z,r\n1.5137,1.1,0.7,0.7\n")

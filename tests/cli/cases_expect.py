@@ -24,7 +24,7 @@ class Expected(Case):
         self.assertLess(expected["least_spheres"]["free"], 12)
         self.assert_close(expected["range"][0] * expected["range"][1], 1, 1e-12)
         table = self.mskit("info", "torus.stl", "--expect").out
-        self.assertRegex(table, r"expected least D by number of spheres \(an estimate, not a bound")
+        self.assertRegex(table, r"expected least D by number of spheres \(asymptotic, an estimate, not a proven bound")
         self.assertRegex(table, r"(?m)^ +free( +[\d.e-]+){8}$")
         self.assertNotIn("expected", self.mskit("info", "torus.stl").out)
         self.assertNotIn("expected", self.mskit("info", "torus.stl", "--json").json)

@@ -184,7 +184,7 @@ class Faults(Grains):
 
     def test_two_runs_into_one_folder(self):
         """The second is refused with and without --resume while the first is at work, which does not notice."""
-        args = ("grains", "scan.npy", "stones", "-g", "mss", "-n", "4", "--cells", "20")
+        args = ("grains", "scan.npy", "stones", "-g", "mss", "-n", "4", "--cells", "30", "-j", "1")
         self.mskit(*args, "-o", "whole")
         first = subprocess.Popen([MSKIT, *args, "-o", "out"], cwd=self.dir, stdout=subprocess.DEVNULL)
         self.addCleanup(first.wait)

@@ -60,7 +60,7 @@ class LeastWork(Case):
         self.assertEqual(self.read("again.csv"), first)
 
     def test_bounds_are_kept_to(self):
-        run, words = self.search(0.2, "-n", "9", "--until", "radius=0.3")
+        run, words = self.search(0.2, "-n", "9", "--min-radius", "0.3")
         kept = self.check(run, words, 0.2, 1)
         self.assertGreaterEqual(kept["smallest_radius"], 0.3)
         for row in run["least_work"]["tried"]:
@@ -80,6 +80,6 @@ class LeastWork(Case):
         for args, says in ((("--least-work", "eta=0.1"), "dice=VALUE alone"), (("--least-work", "dice"), "least-work"),
                            (("--least-work", "dice=2"), "least-work"), (("--work-power", "1"), "--least-work"),
                            (("--least-work", "dice=0.1", "--work-power", "4"), "work-power"),
-                           (("--least-work", "dice=0.1", "--until", "eta=0.1"), "radius=VALUE alone")):
+                           (("--least-work", "dice=0.1", "--until", "eta=0.1"), "--min-radius")):
             with self.subTest(args=args):
                 self.assert_refused("generate", self.grain, *args, code=2, says=(says,))

@@ -40,9 +40,9 @@ static void tubes_follow_the_law_of_a_curve(void **state)
     for (double n = 10; n <= 60; n += 10) {
         assert_ratio(&expect, n, 11.72 / (n * n), 0.05);
     }
-    expect_shape(&expect, "ellipsoid", "a=2 b=1 c=1");
-    for (double n = 10; n <= 30; n += 10) {
-        assert_ratio(&expect, n, 0.5625 / (n * n), 0.06);
+    expect_shape(&expect, "ellipsoid", "a=2 b=1 c=1 fineness=150");
+    for (double n = 10; n <= 60; n += 10) {
+        assert_ratio(&expect, n, 0.5625 / (n * n), 0.05);
     }
     /* balls along an axis of length L in a tube of radius r, L/n apart: D = (L / (n r))^2 / 32; the ends, which take
      * half a gap each, are a part of it */
@@ -75,9 +75,10 @@ static void sheets_follow_the_law_of_a_sheet(void **state)
     ms_expect expect;
     const double volume = 4 * PI / 3 * 2 * 2 * 1, integral = oblate_integral(2, 1);
     const double law = hexagon() * integral * integral / (4 * volume);
-    expect_shape(&expect, "ellipsoid", "a=2 b=2 c=1");
-    assert_ratio(&expect, 60, law / 60, 0.15);
-    assert_ratio(&expect, 150, law / 150, 0.10);
+    expect_shape(&expect, "ellipsoid", "a=2 b=2 c=1 fineness=100");
+    /* clumps of 30 to 100 spheres reach 1.10 to 1.13 times the law, of 200 and 400 1.07 times (docs/expected.md) */
+    assert_ratio(&expect, 60, 1.11 * law / 60, 0.10);
+    assert_ratio(&expect, 150, 1.07 * law / 150, 0.10);
     assert_ratio(&expect, 1000, law / 1000, 0.10);
 }
 
@@ -98,7 +99,7 @@ static void a_ball_takes_one(void **state)
 {
     (void)state;
     ms_expect expect;
-    expect_shape(&expect, "ball", "r=2.385 fineness=40");
+    expect_shape(&expect, "ball", "r=2.385 fineness=100"); /* facets make centres of balls err */
     assert_true(ms_expect_dice(&expect, MS_EXPECT_FREE, 1) < 5e-3);
     assert_close(ms_expect_spheres(&expect, MS_EXPECT_FREE, 0.01), 1, 0.05);
     assert_close(ms_expect_least_spheres(&expect, MS_EXPECT_FREE), 1, 0.1);
@@ -131,6 +132,40 @@ static void numbers_and_mismatches_are_inverse(void **state)
     }
     assert_true(isinf(ms_expect_spheres(&expect, MS_EXPECT_FREE, 1e-300)));
     assert_close(ms_expect_spheres(&expect, MS_EXPECT_FREE, 1), 1, 0);
+}
+
+/* The one number that a run asks for, at a part of the cost, against all of them. */
+static void one_number_is_that_of_the_whole(void **state)
+{
+    static const struct {
+        const char *kind, *parameters;
+        double tolerance; /* a wall begins to be worth while at one price: D by n is a chord there */
+    } SHAPE[] = {{"grain", "seed=3 fineness=24", 0.02},
+                 {"torus", "", 0.02},
+                 {"ellipsoid", "a=3 b=2 c=1.5", 0.02},
+                 {"plate", "a=5 b=5 c=0.2", 0.05}};
+    static const double NUMBERS[] = {1, 7, 12, 20, 50, 100, 150, 400};
+    (void)state;
+    for (size_t s = 0; s < sizeof SHAPE / sizeof *SHAPE; s++) {
+        ms_expect whole, near;
+        ms_mesh mesh;
+        ms_target target;
+        ms_error err;
+        make_shape(&mesh, SHAPE[s].kind, SHAPE[s].parameters);
+        make_target(&target, &mesh, 10, MS_VOXEL_HALF);
+        assert_int_equal(ms_expect_mesh(&whole, &mesh, &err), MS_OK);
+        for (size_t i = 0; i < sizeof NUMBERS / sizeof *NUMBERS; i++) {
+            const double n = NUMBERS[i], tolerance = n > 170 ? 2 * SHAPE[s].tolerance : SHAPE[s].tolerance;
+            assert_int_equal(ms_expect_near(&near, &target, n, &err), MS_OK);
+            const double ratio = ms_expect_dice(&near, MS_EXPECT_FREE, n) / ms_expect_dice(&whole, MS_EXPECT_FREE, n);
+            if (!(fabs(ratio - 1) <= tolerance)) {
+                fail_msg("%s, %g spheres: %.3f of the whole", SHAPE[s].kind, n, ratio);
+            }
+            assert_int_equal(near.curve[MS_EXPECT_INSCRIBED].count, 0);
+        }
+        ms_target_free(&target);
+        ms_mesh_free(&mesh);
+    }
 }
 
 static void turn_and_scale(ms_mesh *mesh, double angle, double scale, double shift)
@@ -187,7 +222,7 @@ static void threads_do_not_matter(void **state)
 static void voxels_are_taken_by_their_surface(void **state)
 {
     (void)state;
-    ms_expect of_mesh, of_grid;
+    ms_expect of_mesh, of_grid, near;
     ms_mesh mesh;
     ms_target target;
     ms_error err;
@@ -195,6 +230,9 @@ static void voxels_are_taken_by_their_surface(void **state)
     make_target(&target, &mesh, 60, MS_VOXEL_HALF);
     assert_int_equal(ms_expect_mesh(&of_mesh, &mesh, &err), MS_OK);
     assert_int_equal(ms_expect_grid(&of_grid, &target.grid, &err), MS_OK);
+    target.mesh = NULL; /* as of a volume */
+    assert_int_equal(ms_expect_near(&near, &target, 20, &err), MS_OK);
+    assert_close(ms_expect_dice(&near, MS_EXPECT_FREE, 20) / ms_expect_dice(&of_grid, MS_EXPECT_FREE, 20), 1, 0.02);
     for (double n = 5; n <= 20; n *= 2) { /* from there on the steps of the voxels are felt */
         assert_close(ms_expect_dice(&of_grid, MS_EXPECT_FREE, n) / ms_expect_dice(&of_mesh, MS_EXPECT_FREE, n), 1, 0.2);
     }
@@ -252,6 +290,7 @@ int main(void)
         cmocka_unit_test(a_ball_takes_one),
         cmocka_unit_test(inscribed_clumps_err_more),
         cmocka_unit_test(numbers_and_mismatches_are_inverse),
+        cmocka_unit_test(one_number_is_that_of_the_whole),
         cmocka_unit_test(size_place_and_direction_do_not_matter),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(voxels_are_taken_by_their_surface),

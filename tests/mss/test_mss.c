@@ -21,6 +21,7 @@ static void field_equals_recomputation(void **state)
     make_shape(&mesh, "grain", "");
     make_target(&target, &mesh, 45, MS_VOXEL_HALF);
     assert_int_equal(ms_mss_field_init(&field, &target, &(ms_settings){0}, &err), MS_OK);
+    assert_int_equal(ms_mss_field_start(&field, &err), MS_OK);
     const size_t voxels = ms_grid_voxels(&target.grid);
     uint8_t *covered = malloc(voxels);
     float *distance = malloc(voxels * sizeof *distance);

@@ -361,10 +361,11 @@ static void exposed_places_are_those_of_brute_force(void **state)
     ms_lattice lattice;
     ms_exposed exposed;
     ms_error err;
-    ms_caps_end end[BALLS];
-    ms_ball ball[BALLS];
-    ms_caps_window window = {.count = BALLS, .ball = ball, .end = end};
+    ms_caps_window window;
     assert_int_equal(ms_lattice_alloc(&lattice, 192, &err), MS_OK);
+    assert_true(ms_caps_window_alloc(&window, BALLS));
+    ms_ball *ball = window.ball;
+    window.count = BALLS;
     assert_true(ms_exposed_alloc(&exposed, &lattice, BALLS));
     for (int t = 0; t < 60; t++) {
         const int level = t % MS_LATTICE_LEVELS;
@@ -393,6 +394,7 @@ static void exposed_places_are_those_of_brute_force(void **state)
         }
     }
     ms_exposed_free(&exposed);
+    ms_caps_window_free(&window);
     ms_lattice_free(&lattice);
 }
 
