@@ -25,8 +25,9 @@ typedef struct ms_population_weights {
 ms_status ms_population_weights_init(ms_population_weights *w, const ms_population *p, size_t k, ms_error *err);
 
 /**
- * Finds the weights of least mismatch. Its dual is what GLPK solves: k + 1 rows instead of some 2 k for each descriptor.
- * Called within ms_linear_program_apart, with GLPK's error hook set, as it calls that where it has no memory.
+ * Finds the weights of least mismatch. Its dual is what GLPK solves: k + 1 rows instead of some 2 k for each
+ * descriptor. Called within ms_linear_program_apart, with GLPK's error hook set, as it calls that where it has no
+ * memory.
  *
  * @param chosen w->k grains
  * @return nonzero if the simplex method came to its end; mismatch is 1 if not
