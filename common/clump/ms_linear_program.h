@@ -1,4 +1,5 @@
-/** A linear programme for shares of a whole, with goals met one after the other, by GLPK. Private to ms_density. */
+/** A linear programme for shares of a whole, with goals met one after the other, by GLPK; and a thread
+ * for it, in which other programmes run, too. Private. */
 #ifndef MS_LINEAR_PROGRAM_H
 #define MS_LINEAR_PROGRAM_H
 

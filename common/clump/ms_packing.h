@@ -1,5 +1,5 @@
 /** Clumps in their places, as a scan has them: where they overlap, and how far they have to shrink until they do not.
- * Private. */
+ * A mixture is the same without places: kinds of particles, each with a share. Private. */
 #ifndef MS_PACKING_H
 #define MS_PACKING_H
 
@@ -15,6 +15,7 @@ typedef struct ms_placed {
     double turn[4];       /* w, x, y, z: from the frame of the template into that of the packing */
     double size;          /* radius of the ball of equal volume, metres */
     double scale;         /* of its spheres and their distances from the centre; mass and inertia are as they were */
+    double share;         /* in a mixture: of all particles, by number */
 } ms_placed;
 
 /** A zeroed struct is empty. */

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/ms_choice.h"
 #include "base/ms_text.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_report.h"
@@ -11,6 +12,7 @@
 #include "grains/ms_grain_merge.h"
 #include "grains/ms_grains.h"
 #include "ms_commands.h"
+#include "population/ms_library_report.h"
 
 static const ms_flag FLAGS[] = {
     MS_RECIPE_FLAGS,
@@ -26,6 +28,11 @@ static const ms_flag FLAGS[] = {
     {"resume", 0, NULL, "go on with the table that is in DIR"},
     {"part", 0, "K/N", "make the K-th of N parts alone, of about the same work, with a table of its own"},
     {"merge", 0, NULL, "join the tables of all parts in the folders DIR..., which stand in the place of sources"},
+    {"choose", 0, "K",
+     "choose K grains with weights that stand for all of the run in the folder DIR, in place of sources"},
+    {"by", 0, "WHAT", "distributions that the choice keeps: by number or by mass (number)"},
+    {"with-size", 0, NULL, "the choice keeps sizes, too, each grain with its own; otherwise sizes go by classes"},
+    {"classes", 0, "C", "classes of size, of equal mass (10)"},
     {"dry-run", 0, NULL, "say what would be done, and how long it would take by three of the grains"},
     {"json", 0, NULL, "the sums as JSON on standard output"},
     MS_INPUT_FLAGS,
@@ -38,7 +45,10 @@ typedef struct grains_arguments {
     ms_grains grains;
     const char *folder;
     int resume, merge, dry_run, json, assembly;
-    double most_overlap; /* 0: not given */
+    double most_overlap;    /* 0: not given */
+    double choose, classes; /* 0: not given */
+    const char *by;
+    int with_size;
 } grains_arguments;
 
 static ms_status take_part(ms_grains *g, const char *text, ms_error *err)
@@ -80,6 +90,7 @@ static ms_status take_grains_flag(void *context, const char *name, const char *v
                  {"largest-piece", &a->grains.largest_piece},
                  {"resume", &a->resume},
                  {"merge", &a->merge},
+                 {"with-size", &a->with_size},
                  {"assembly", &a->assembly},
                  {"dry-run", &a->dry_run},
                  {"json", &a->json}};
@@ -98,6 +109,16 @@ static ms_status take_grains_flag(void *context, const char *name, const char *v
     if (strcmp(name, "output") == 0) {
         a->folder = value;
         return MS_OK;
+    }
+    if (strcmp(name, "by") == 0) {
+        a->by = value;
+        return MS_OK;
+    }
+    if (strcmp(name, "choose") == 0) {
+        return ms_flags_whole(&a->choose, name, value, 1, MS_POPULATION_MAX_CHOSEN, err);
+    }
+    if (strcmp(name, "classes") == 0) {
+        return ms_flags_whole(&a->classes, name, value, 1, MS_LIBRARY_MAX_CLASSES, err);
     }
     if (strcmp(name, "format") == 0) {
         return take_format(&a->grains, value, err);
@@ -146,6 +167,34 @@ static ms_status resolve_assembly(const grains_arguments *a, ms_error *err)
     return MS_OK;
 }
 
+/* Which of the flags of a choice stand there without one, or against another. */
+static ms_status resolve_choice(const grains_arguments *a, ms_error *err)
+{
+    static const char *const WORDS[] = {"number", "mass"};
+    if (a->choose == 0 && (a->by || a->with_size || a->classes > 0)) {
+        return ms_fail(err, MS_ERR_ARG, "--by, --with-size and --classes are of a choice: give --choose K beside them");
+    }
+    if (a->choose > 0 && (a->merge || a->assembly || a->resume || a->dry_run || a->grains.parts > 1)) {
+        return ms_fail(err, MS_ERR_ARG,
+                       "--choose takes the folder of a run that is complete: not with --merge, --assembly, --resume, "
+                       "--dry-run or --part");
+    }
+    if (a->with_size && a->classes > 0) {
+        return ms_fail(err, MS_ERR_ARG,
+                       "--with-size keeps the size of each grain, and --classes gives sizes of their "
+                       "own: choose one");
+    }
+    ms_choice choice = {.typed = a->by};
+    int known = !a->by;
+    for (int w = 0; w < 2 && !known; w++) {
+        known = ms_choice_offer(&choice, WORDS[w]);
+    }
+    if (!known) {
+        return ms_choice_fail(&choice, err, "--by '%.40s' is not number or mass", a->by);
+    }
+    return MS_OK;
+}
+
 /* What follows from all flags together. */
 static ms_status resolve_grains(grains_arguments *a, ms_error *err)
 {
@@ -164,6 +213,9 @@ static ms_status resolve_grains(grains_arguments *a, ms_error *err)
     }
     if (status == MS_OK) {
         status = resolve_assembly(a, err);
+    }
+    if (status == MS_OK) {
+        status = resolve_choice(a, err);
     }
     return status == MS_OK ? ms_grain_how_resolve(&a->how, err) : status;
 }
@@ -257,6 +309,48 @@ static ms_status try_three(const grains_arguments *a, ms_error *err)
     return status;
 }
 
+static ms_status report_library(const ms_library *library, const ms_library_written *written, const grains_arguments *a,
+                                ms_error *err)
+{
+    if (!written->charts) {
+        fprintf(stderr, "charts are not drawn, their scripts are written: %s\n", written->why_not.text);
+    }
+    if (a->json) {
+        return ms_report_print(stdout, ms_library_report_json(library, written), err);
+    }
+    ms_library_report_print(stdout, library, written, a->folder);
+    return MS_OK;
+}
+
+static ms_status choose_grains(const grains_arguments *a, const char *from, ms_error *err)
+{
+    ms_library_table table;
+    ms_library library;
+    ms_library_written written;
+    const ms_library_goal goal = {.k = (size_t)a->choose,
+                                  .by_mass = a->by && strcmp(a->by, "mass") == 0,
+                                  .with_size = a->with_size,
+                                  .classes = a->classes > 0 ? (size_t)a->classes : 10,
+                                  .seed = (uint64_t)a->how.recipe.seed};
+    ms_status status = ms_library_table_read(&table, from, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    status = ms_library_make(&library, &table, &goal, err);
+    if (status == MS_OK) {
+        status = ms_outputs_make_folder(a->folder, err);
+        if (status == MS_OK) {
+            status = ms_library_write(&written, &library, from, a->folder, err);
+        }
+        if (status == MS_OK) {
+            status = report_library(&library, &written, a, err);
+        }
+        ms_library_free(&library);
+    }
+    ms_library_table_free(&table);
+    return status;
+}
+
 static ms_status execute_grains(grains_arguments *a, char *const *words, size_t count, ms_error *err)
 {
     ms_grain_list list;
@@ -286,11 +380,15 @@ static int run_grains(const ms_command *command, int argc, char **argv)
     if (code == MS_FLAGS_GO_ON) {
         const size_t count = (size_t)(argc - first);
         ms_status status = resolve_grains(&a, &err);
+        if (status == MS_OK && a.choose > 0 && count > 1) {
+            status = ms_fail(&err, MS_ERR_ARG, "--choose takes one folder, with a grains.csv in it");
+        }
         if (status != MS_OK) {
             code = ms_flags_refuse(command, status, &err);
         } else {
-            status = a.merge ? ms_grain_merge(a.folder, argv + first, count, &err)
-                             : execute_grains(&a, argv + first, count, &err);
+            status = a.choose > 0 ? choose_grains(&a, argv[first], &err)
+                     : a.merge    ? ms_grain_merge(a.folder, argv + first, count, &err)
+                                  : execute_grains(&a, argv + first, count, &err);
             code = status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
         }
     }

@@ -233,16 +233,29 @@ ms_status ms_grain_row_find(ms_grain_found *found, const char *line, ms_error *e
     row_fields fields;
     cut_row(&fields, line);
     const char *file = find_field(&fields, "file");
-    const int is_row =
-        file && strlen(file) < sizeof found->file && read_status(&found->status, find_field(&fields, "status"));
+    const char *source = find_field(&fields, "source");
+    const int is_row = file && strlen(file) < sizeof found->file && source && strlen(source) < sizeof found->source &&
+                       read_status(&found->status, find_field(&fields, "status"));
     if (is_row) {
         snprintf(found->file, sizeof found->file, "%s", file);
+        snprintf(found->source, sizeof found->source, "%s", source);
+        found->label = read_number(&fields, "label");
         found->number = read_number(&fields, "grain");
         found->volume = read_number(&fields, "volume");
         for (int c = 0; c < PLACE_COLUMNS; c++) {
             *place_number(&found->place, c) = read_number(&fields, PLACE[c]);
         }
     }
+    free_fields(&fields);
+    return is_row ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "'%.60s' is no row of a grain", line);
+}
+
+ms_status ms_grain_row_number(double *value, const char *column, const char *line, ms_error *err)
+{
+    row_fields fields;
+    cut_row(&fields, line);
+    const int is_row = fields.count > 0;
+    *value = read_number(&fields, column);
     free_fields(&fields);
     return is_row ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "'%.60s' is no row of a grain", line);
 }

@@ -53,13 +53,19 @@ ms_status ms_grain_row_read(ms_grain_status *status, double *spheres, const char
 typedef struct ms_grain_found {
     ms_grain_status status;
     double number;
-    char file[512]; /* from the folder of the table */
-    double volume;  /* NAN: not known */
+    char source[512]; /* as it was given */
+    double label;     /* NAN: a mesh */
+    char file[512];   /* from the folder of the table */
+    double volume;    /* NAN: not known */
     ms_grain_place place;
 } ms_grain_found;
 
 /** @return MS_OK; MS_ERR_FORMAT for a line that is no row */
 ms_status ms_grain_row_find(ms_grain_found *found, const char *line, ms_error *err);
+
+/** What a line that was there has in a column; NAN if that is empty. @return MS_OK; MS_ERR_FORMAT for a line that is no
+ * row */
+ms_status ms_grain_row_number(double *value, const char *column, const char *line, ms_error *err);
 
 /** How its line begins: all that was asked for, with the comma behind it. Likewise. */
 char *ms_grain_row_key(const ms_grain_row *row);

@@ -43,4 +43,10 @@ ms_status ms_lammps_settle(FILE *stream, const ms_packing *packing, const char *
 ms_status ms_yade_packing(FILE *stream, const ms_packing *packing, const char *name, ms_error *err);
 ms_status ms_yade_settle(FILE *stream, const ms_packing *packing, const char *name, ms_error *err);
 
+/* Likewise of mixtures. */
+ms_status ms_liggghts_mixture(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err);
+ms_status ms_lammps_mixture(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err);
+ms_status ms_yade_kinds(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err);
+ms_status ms_yade_mixture(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err);
+
 #endif

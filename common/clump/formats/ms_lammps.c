@@ -244,35 +244,50 @@ static void write_lammps_places(FILE *stream, const ms_script_drop *drop)
     fprintf(stream, " %s ${top}\n", ms_script_number(1.5 * drop->reach, &low));
 }
 
-ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *err)
+/* Up to the templates. */
+static void start_lammps_drop(FILE *stream, const ms_script_drop *d)
 {
-    const ms_script_drop d = ms_script_drop_of(content);
     ms_number a, b;
-    (void)err;
-    ms_script_title(stream, content->name, "lmp -in", ".in", "-var n 50");
-    fputs("variable n index 1\n\n", stream);
     fputs("units si\natom_style sphere\natom_modify map array\nboundary f f f\nnewton off\n", stream);
-    write_lammps_places(stream, &d);
-    fprintf(stream, "comm_modify vel yes cutoff %s\n", ms_script_number(2 * d.reach, &a));
-    fprintf(stream, "neighbor %s bin\n\n", ms_script_number(0.2 * d.reach, &a));
+    write_lammps_places(stream, d);
+    fprintf(stream, "comm_modify vel yes cutoff %s\n", ms_script_number(2 * d->reach, &a));
+    fprintf(stream, "neighbor %s bin\n\n", ms_script_number(0.2 * d->reach, &a));
     fputs("fix molecules all property/atom mol ghost yes\n"
           "neigh_modify delay 0 exclude molecule/intra all\n",
           stream);
-    write_lammps_law(stream, d.young);
-    write_lammps_walls(stream, 0, (const double[]){-d.side, -d.side}, (const double[]){d.side, d.side});
-    fprintf(stream, "timestep %s\n", ms_script_number(d.step, &b));
+    write_lammps_law(stream, d->young);
+    write_lammps_walls(stream, 0, (const double[]){-d->side, -d->side}, (const double[]){d->side, d->side});
+    fprintf(stream, "timestep %s\n", ms_script_number(d->step, &b));
     fputs("fix gravity all gravity 9.81 vector 0 0 -1 disable\n\n", stream);
+}
+
+/* Of the molecule `clump`, or of a choice of them by shares. */
+static void end_lammps_drop(FILE *stream, const ms_script_drop *d, const ms_packing *mixture)
+{
+    ms_number a;
+    fputs("\nfix move all rigid/small molecule mol clump reinit no gravity gravity\n", stream);
+    fputs("# Without near they may be inserted into each other, and LAMMPS loses atoms.\n", stream);
+    fputs("fix insert all deposit ${n} 0 1 32452843 region above mol clump", stream);
+    for (size_t k = 0; mixture && k < mixture->count; k++) {
+        fprintf(stream, "%s%s", k ? " " : " molfrac ", ms_script_number(mixture->placed[k].share, &a));
+    }
+    fprintf(stream, " rigid move near %s attempt 500\n\n", ms_script_number(2 * d->reach, &a));
+    fputs("thermo_style custom step atoms\nthermo_modify lost error\n", stream);
+    fprintf(stream, "variable steps equal ceil(%.0f*sqrt(1+v_n/4))\n", ceil(d->end / d->step));
+    fprintf(stream, "thermo %.0f\nrun ${steps}\n", ceil(d->end / d->step / 10));
+}
+
+ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *err)
+{
+    const ms_script_drop d = ms_script_drop_of(content);
+    (void)err;
+    ms_script_title(stream, content->name, "lmp -in", ".in", "-var n 50");
+    fputs("variable n index 1\n\n", stream);
+    start_lammps_drop(stream, &d);
     fputs("# The template: its mass and inertia are kept (reinit no) and gravity acts on the body.\n", stream);
     fputs("molecule clump ", stream);
     ms_escape_lammps(stream, content->name);
-    fputs("\nfix move all rigid/small molecule mol clump reinit no gravity gravity\n", stream);
-    fputs("# Without near they may be inserted into each other, and LAMMPS loses atoms.\n", stream);
-    fprintf(stream,
-            "fix insert all deposit ${n} 0 1 32452843 region above mol clump rigid move near %s attempt 500\n\n",
-            ms_script_number(2 * d.reach, &a));
-    fputs("thermo_style custom step atoms\nthermo_modify lost error\n", stream);
-    fprintf(stream, "variable steps equal ceil(%.0f*sqrt(1+v_n/4))\n", ceil(d.end / d.step));
-    fprintf(stream, "thermo %.0f\nrun ${steps}\n", ceil(d.end / d.step / 10));
+    end_lammps_drop(stream, &d, NULL);
     return MS_OK;
 }
 
@@ -401,5 +416,28 @@ ms_status ms_lammps_settle(FILE *stream, const ms_packing *packing, const char *
           stream);
     write_lammps_walls(stream, s.lo[2], s.lo, s.hi);
     fputs("fix gravity all gravity 9.81 vector 0 0 -1 disable\nthermo 10000\nrun ${steps}\n", stream);
+    return MS_OK;
+}
+
+/* The scale of a molecule goes for mass and inertia, too. */
+ms_status ms_lammps_mixture(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err)
+{
+    const ms_script_drop d = ms_script_drop_of_mixture(mixture);
+    ms_number a;
+    (void)err;
+    ms_script_title_mixture(stream, name, "lmp -in", ".in", "-var n 500");
+    fputs("variable n index 100\n\n", stream);
+    start_lammps_drop(stream, &d);
+    fputs("# A template of each kind and size: mass and inertia are kept (reinit no) and gravity acts on the body.\n"
+          "molecule clump",
+          stream);
+    for (size_t k = 0; k < mixture->count; k++) {
+        char file[4096];
+        snprintf(file, sizeof file, "%s.lammps", mixture->placed[k].name);
+        fputs(" &\n    ", stream);
+        ms_escape_lammps(stream, file);
+        fprintf(stream, " scale %s", ms_script_number(mixture->placed[k].scale, &a));
+    }
+    end_lammps_drop(stream, &d, mixture);
     return MS_OK;
 }

@@ -81,43 +81,61 @@ static void write_liggghts_particle(FILE *stream, const ms_content *content)
     fputs("fix kinds all particledistribution/discrete 15485867 1 clump 1.0\n", stream);
 }
 
-ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *err)
+/* @param bin beyond which spheres are no neighbours */
+static void start_liggghts_drop(FILE *stream, const ms_script_drop *d, double bin)
 {
-    const ms_script_drop d = ms_script_drop_of(content);
     ms_number a;
-    (void)err;
-    ms_script_title(stream, content->name, "liggghts -in", ".in", "-var n 50");
-    fputs("variable n index 1\n\n", stream);
     fputs(STYLE, stream);
-    write_liggghts_places(stream, &d);
-    fprintf(stream, "neighbor %s bin\nneigh_modify delay 0\n\n", ms_script_number(0.2 * d.reach, &a));
-    write_liggghts_law(stream, d.young);
-    write_liggghts_walls(stream, (const double[]){0, -d.side, d.side, -d.side, d.side});
-    fprintf(stream, "timestep %s\n", ms_script_number(d.step, &a));
+    write_liggghts_places(stream, d);
+    fprintf(stream, "neighbor %s bin\nneigh_modify delay 0\n\n", ms_script_number(bin, &a));
+    write_liggghts_law(stream, d->young);
+    write_liggghts_walls(stream, (const double[]){0, -d->side, d->side, -d->side, d->side});
+    fprintf(stream, "timestep %s\n", ms_script_number(d->step, &a));
     fputs("fix gravity all gravity 9.81 vector 0 0 -1\n\n", stream);
-    write_liggghts_particle(stream, content);
+}
+
+/* Of the distribution `kinds`. */
+static void end_liggghts_drop(FILE *stream, const ms_script_drop *d)
+{
     fputs("fix insert all insert/pack seed 32452843 distributiontemplate kinds insert_every once overlapcheck yes "
           "orientation random all_in yes particles_in_region ${n} region above\nfix move all multisphere\n\n",
           stream);
-    fprintf(stream, "variable steps equal ceil(%.0f*sqrt(1+v_n/4))\n", ceil(d.end / d.step));
-    fprintf(stream, "thermo %.0f\nrun ${steps}\n", ceil(d.end / d.step / 10));
+    fprintf(stream, "variable steps equal ceil(%.0f*sqrt(1+v_n/4))\n", ceil(d->end / d->step));
+    fprintf(stream, "thermo %.0f\nrun ${steps}\n", ceil(d->end / d->step / 10));
+}
+
+ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *err)
+{
+    const ms_script_drop d = ms_script_drop_of(content);
+    (void)err;
+    ms_script_title(stream, content->name, "liggghts -in", ".in", "-var n 50");
+    fputs("variable n index 1\n\n", stream);
+    start_liggghts_drop(stream, &d, 0.2 * d.reach);
+    write_liggghts_particle(stream, content);
+    end_liggghts_drop(stream, &d);
     return MS_OK;
 }
 
-/* No command puts a multisphere at a point: each is inserted into a region that is as good as one. Mass and inertia
- * that are given do not go with the scale. */
-static void write_liggghts_placed(FILE *stream, const ms_placed *placed, size_t k, double speck)
+/* Mass and inertia that are given do not go with the scale. */
+static void write_liggghts_template(FILE *stream, const ms_placed *placed, size_t k, unsigned seed)
 {
     ms_number a, b;
     char file[4096];
     snprintf(file, sizeof file, "%s.liggghts", placed->name);
     fprintf(stream,
-            "fix t%zu all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 density constant %s "
+            "fix t%zu all particletemplate/multisphere %u atom_type 1 volume_limit 1e-300 density constant %s "
             "nspheres %zu ntry 1000 spheres file ",
-            k, ms_script_number(placed->particle.density, &a), placed->clump.n_spheres);
+            k, seed, ms_script_number(placed->particle.density, &a), placed->clump.n_spheres);
     ms_escape_lammps(stream, file);
     fprintf(stream, " scale %s type %zu", ms_script_number(placed->scale, &b), k);
     write_liggghts_mass(stream, &placed->particle);
+}
+
+/* No command puts a multisphere at a point: each is inserted into a region that is as good as one. */
+static void write_liggghts_placed(FILE *stream, const ms_placed *placed, size_t k, double speck)
+{
+    ms_number a, b;
+    write_liggghts_template(stream, placed, k, 15485863);
     fprintf(stream, "fix d%zu all particledistribution/discrete 15485867 1 t%zu 1.0\nregion r%zu block", k, k, k);
     for (int axis = 0; axis < 3; axis++) {
         const double x = placed->centre[axis];
@@ -184,5 +202,42 @@ ms_status ms_liggghts_settle(FILE *stream, const ms_packing *packing, const char
     fprintf(stream, "fix drag all viscous %s\nthermo 1000\nrun ${loosen}\nunfix drag\n\n",
             ms_script_number(s.drag, &a));
     fputs("# They settle.\nfix gravity all gravity 9.81 vector 0 0 -1\nthermo 10000\nrun ${steps}\n", stream);
+    return MS_OK;
+}
+
+static unsigned next_prime(unsigned after)
+{
+    for (unsigned n = after + 1;; n++) {
+        unsigned divisor = 2;
+        while (divisor * divisor <= n && n % divisor != 0) {
+            divisor++;
+        }
+        if (divisor * divisor > n) {
+            return n;
+        }
+    }
+}
+
+/* The shares are by number. Seeds must be primes above 10000, each another. */
+ms_status ms_liggghts_mixture(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err)
+{
+    const ms_script_drop d = ms_script_drop_of_mixture(mixture);
+    unsigned seed = 1000000;
+    ms_number a;
+    (void)err;
+    ms_script_title_mixture(stream, name, "liggghts -in", ".in", "-var n 500");
+    fputs("variable n index 100\n\n", stream);
+    start_liggghts_drop(stream, &d, 0.2 * d.reach);
+    fputs("# A template of each kind and size, and the share of each.\n", stream);
+    for (size_t k = 0; k < mixture->count; k++) {
+        seed = next_prime(seed);
+        write_liggghts_template(stream, &mixture->placed[k], k + 1, seed);
+    }
+    fprintf(stream, "fix kinds all particledistribution/discrete/numberbased 15485867 %zu", mixture->count);
+    for (size_t k = 0; k < mixture->count; k++) {
+        fprintf(stream, " t%zu %s", k + 1, ms_script_number(mixture->placed[k].share, &a));
+    }
+    fputc('\n', stream);
+    end_liggghts_drop(stream, &d);
     return MS_OK;
 }

@@ -22,16 +22,39 @@ static double step_of(double radius, double density, double young)
     return rayleigh / 10;
 }
 
-ms_script_drop ms_script_drop_of(const ms_content *content)
+/* Of the ball of that mass. */
+static double radius_of(double mass, double density)
 {
-    const ms_particle *p = content->particle;
-    const double reach = ms_template_reach(content->clump), least = ms_clump_smallest_radius(content->clump);
-    const double young = fmax(young_below(reach, p->density), LEAST_YOUNG);
+    return cbrt(0.75 * mass / (acos(-1.0) * density));
+}
+
+/* @param reach of the largest particle @param radius whose Rayleigh time bounds the step */
+static ms_script_drop make_drop(double reach, double radius, double density)
+{
+    const double young = fmax(young_below(reach, density), LEAST_YOUNG);
     return (ms_script_drop){.reach = reach,
                             .young = young,
-                            .step = step_of(least, p->density, young),
+                            .step = step_of(radius, density, young),
                             .end = 4 * sqrt(4 * reach / GRAVITY),
                             .side = 4 * reach};
+}
+
+ms_script_drop ms_script_drop_of(const ms_content *content)
+{
+    return make_drop(ms_template_reach(content->clump), ms_clump_smallest_radius(content->clump),
+                     content->particle->density);
+}
+
+ms_script_drop ms_script_drop_of_mixture(const ms_packing *mixture)
+{
+    const double density = mixture->placed[0].particle.density;
+    double reach = 0, lightest = HUGE_VAL;
+    for (size_t k = 0; k < mixture->count; k++) {
+        const ms_placed *kind = &mixture->placed[k];
+        reach = fmax(reach, kind->scale * ms_template_reach(&kind->clump));
+        lightest = fmin(lightest, kind->particle.mass);
+    }
+    return make_drop(reach, radius_of(lightest, density), density);
 }
 
 ms_script_settle ms_script_settle_of(const ms_packing *packing)
@@ -48,7 +71,7 @@ ms_script_settle ms_script_settle_of(const ms_packing *packing)
         lightest = fmin(lightest, placed->particle.mass);
     }
     s.young = young_below(s.hi[2] - s.lo[2], density);
-    s.step = step_of(cbrt(0.75 * lightest / (acos(-1.0) * density)), density, s.young);
+    s.step = step_of(radius_of(lightest, density), density, s.young);
     s.drag /= SLOWING_STEPS * s.step;
     s.end = ceil(4 * sqrt(2 * (s.hi[2] - s.lo[2]) / GRAVITY) / s.step);
     return s;
@@ -77,6 +100,15 @@ void ms_script_title(FILE *stream, const char *name, const char *command, const 
     fprintf(stream, " into a box: %s ", command);
     ms_escape_comment(stream, name);
     fprintf(stream, "%s; fifty of them: %s behind it\n", suffix, fifty);
+}
+
+void ms_script_title_mixture(FILE *stream, const char *name, const char *command, const char *suffix, const char *more)
+{
+    fputs("# Drops a hundred particles of the mixture ", stream);
+    ms_escape_comment(stream, name);
+    fprintf(stream, " into a box: %s ", command);
+    ms_escape_comment(stream, name);
+    fprintf(stream, "%s; five hundred: %s behind it\n", suffix, more);
 }
 
 const char *ms_script_number(double value, ms_number *room)

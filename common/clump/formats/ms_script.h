@@ -18,8 +18,14 @@ typedef struct ms_script_drop {
 
 ms_script_drop ms_script_drop_of(const ms_content *content);
 
+/** That of the largest particle, with a step that the lightest bears. @param mixture not empty, with masses */
+ms_script_drop ms_script_drop_of_mixture(const ms_packing *mixture);
+
 /** The first line, a comment: "Drops NAME into a box: COMMAND NAME", the suffix of the script, and what drops fifty. */
 void ms_script_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *fifty);
+
+/** Likewise of a mixture: "Drops particles of the mixture NAME into a box: ...; five hundred of them: ...". */
+void ms_script_title_mixture(FILE *stream, const char *name, const char *command, const char *suffix, const char *more);
 
 /** How a packing comes to rest in the box around it: first the clumps that overlap come apart, without weight and
  * slowed down, then they settle under gravity. What swings in a contact is the mass of the bodies, not that of spheres,

@@ -30,11 +30,22 @@ static ms_status write_packing_part(const ms_packing *packing, const char *path,
     return status;
 }
 
-ms_status ms_write_packing(const ms_packing *packing, const char *path, const ms_format *format, ms_error *err)
+static ms_status write_packing_parts(const ms_packing *packing, const char *path, const ms_packing_part *part,
+                                     ms_error *err)
 {
     ms_status status = MS_OK;
-    for (const ms_packing_part *part = format->packing; part->suffix && status == MS_OK; part++) {
+    for (; part->suffix && status == MS_OK; part++) {
         status = write_packing_part(packing, path, part, err);
     }
     return status;
+}
+
+ms_status ms_write_packing(const ms_packing *packing, const char *path, const ms_format *format, ms_error *err)
+{
+    return write_packing_parts(packing, path, format->packing, err);
+}
+
+ms_status ms_write_mixture(const ms_packing *mixture, const char *path, const ms_format *format, ms_error *err)
+{
+    return write_packing_parts(mixture, path, format->mixture, err);
 }

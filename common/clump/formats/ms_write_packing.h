@@ -1,4 +1,5 @@
-/** Files of a whole packing: every clump in its place, by its own template, and a script that lets it come to rest. */
+/** Files of a whole packing: every clump in its place, by its own template, and a script that lets it come to rest; and
+ * of a mixture. */
 #ifndef MS_WRITE_PACKING_H
 #define MS_WRITE_PACKING_H
 
@@ -17,5 +18,13 @@ int ms_write_packing_is(const ms_format *format);
  * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM
  */
 ms_status ms_write_packing(const ms_packing *packing, const char *path, const ms_format *format, ms_error *err);
+
+/**
+ * Writes a script that drops particles of a mixture into a box, each of a kind by its share, and what it needs beside
+ * it: as above. Nothing if the format has none (ms_format.mixture).
+ *
+ * @param mixture not empty, of clumps with masses; places and turns are not heeded
+ */
+ms_status ms_write_mixture(const ms_packing *mixture, const char *path, const ms_format *format, ms_error *err);
 
 #endif

@@ -48,7 +48,7 @@ static void write_yade_particle(FILE *stream, const ms_content *content)
     fputs("    return clump\n\n\n", stream);
 }
 
-/* Nine to a layer, the first in the middle, turned at random; then the walls. */
+/* Nine to a layer, the first in the middle. */
 static void write_yade_places(FILE *stream, const ms_script_drop *drop)
 {
     ms_number reach, side;
@@ -56,12 +56,16 @@ static void write_yade_places(FILE *stream, const ms_script_drop *drop)
             ms_script_number(drop->reach, &reach), ms_script_number(drop->side, &side));
     fputs("places = [Vector3(x, y, 1.5 + 2.2 * (k // 9)) * reach for k in range(0, n, 9)\n"
           "          for x in (0, -2.4, 2.4) for y in (0, -2.4, 2.4)]\n"
-          "clumps = [particle(place) for place in places[:n]]\n"
           "random.seed(1)\n"
-          "for clump in clumps:\n"
+          "def turn():\n"
           "    axis = Vector3(*[random.gauss(0, 1) for k in range(3)]).normalized()\n"
-          "    O.bodies[clump].state.ori = Quaternion(axis, random.uniform(0, 2 * math.pi))\n"
-          "O.bodies.append(wall(0, axis=2, material='matter'))\n"
+          "    return Quaternion(axis, random.uniform(0, 2 * math.pi))\n\n\n",
+          stream);
+}
+
+static void write_yade_box(FILE *stream)
+{
+    fputs("O.bodies.append(wall(0, axis=2, material='matter'))\n"
           "O.bodies.append([wall(at, axis=k, material='matter') for k in (0, 1) for at in (-side, side)])\n",
           stream);
 }
@@ -92,6 +96,15 @@ static void write_yade_engines(FILE *stream, const char *gravity, double step)
             gravity, ms_script_number(step, &a));
 }
 
+/* The box, and ten parts of the fall. */
+static void write_yade_fall(FILE *stream, const ms_script_drop *drop)
+{
+    write_yade_box(stream);
+    write_yade_engines(stream, "-9.81", drop->step);
+    fprintf(stream, "for part in range(10):\n    O.run(math.ceil(%.0f * math.sqrt(1 + n / 4)), True)\n",
+            ceil(drop->end / drop->step / 10));
+}
+
 ms_status ms_yade_script(FILE *stream, const ms_content *content, ms_error *err)
 {
     const ms_script_drop d = ms_script_drop_of(content);
@@ -103,9 +116,11 @@ ms_status ms_yade_script(FILE *stream, const ms_content *content, ms_error *err)
     write_yade_materials(stream, content->particle->density, d.young);
     write_yade_particle(stream, content);
     write_yade_places(stream, &d);
-    write_yade_engines(stream, "-9.81", d.step);
-    fprintf(stream, "for part in range(10):\n    O.run(math.ceil(%.0f * math.sqrt(1 + n / 4)), True)\n",
-            ceil(d.end / d.step / 10));
+    fputs("clumps = [particle(place) for place in places[:n]]\n"
+          "for clump in clumps:\n"
+          "    O.bodies[clump].state.ori = turn()\n",
+          stream);
+    write_yade_fall(stream, &d);
     fputs("    print(O.time, O.bodies[clumps[0]].state.pos, O.bodies[clumps[0]].state.vel)\n", stream);
     return MS_OK;
 }
@@ -131,7 +146,7 @@ ms_status ms_yade_packing(FILE *stream, const ms_packing *packing, const char *n
 }
 
 /* As write_yade_particle, of any template. */
-static void write_yade_placed(FILE *stream, const char *name)
+static void write_yade_any(FILE *stream)
 {
     fputs(
         "def particle(file, scale, mass, inertia, position, turn):\n"
@@ -146,10 +161,14 @@ static void write_yade_placed(FILE *stream, const char *name)
           "    O.bodies[clump].state.ori = turn * O.bodies[clump].state.ori  # which may be a half turn\n"
           "    for i in members:  # which would follow in the step after the first contacts\n"
           "        O.bodies[i].state.pos = position + turn * (O.bodies[i].state.pos - position)\n"
-          "    return clump\n\n\n"
-          "clumps = []\n"
-          "for line in open(",
+          "    return clump\n\n\n",
           stream);
+}
+
+static void write_yade_placed(FILE *stream, const char *name)
+{
+    write_yade_any(stream);
+    fputs("clumps = []\nfor line in open(", stream);
     ms_escape_python(stream, name);
     fputs("):\n"
           "    if line.startswith('#'):\n"
@@ -190,5 +209,51 @@ ms_status ms_yade_settle(FILE *stream, const ms_packing *packing, const char *na
           "    O.run(max(1, steps // 10), True)\n"
           "    print(O.time, max(O.bodies[clump].state.vel.norm() for clump in clumps))\n",
           stream);
+    return MS_OK;
+}
+
+/* A line for each kind: its share, template, scale, mass and moments. */
+ms_status ms_yade_kinds(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err)
+{
+    (void)err;
+    (void)name;
+    fputs("# share scale mass I1 I2 I3 template\n", stream);
+    for (size_t k = 0; k < mixture->count; k++) {
+        const ms_placed *kind = &mixture->placed[k];
+        const double row[] = {kind->share,
+                              kind->scale,
+                              kind->particle.mass,
+                              kind->particle.inertia[0][0],
+                              kind->particle.inertia[1][1],
+                              kind->particle.inertia[2][2]};
+        ms_fields_numbers(stream, row, 6, " ");
+        fprintf(stream, " %s.yade\n", kind->name);
+    }
+    return MS_OK;
+}
+
+ms_status ms_yade_mixture(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err)
+{
+    const ms_script_drop d = ms_script_drop_of_mixture(mixture);
+    (void)err;
+    ms_script_title_mixture(stream, name, "yade -x -n", ".py", "500");
+    fputs("import math\nimport random\nimport sys\nfrom yade import ymport\n\n"
+          "n = int(sys.argv[1]) if len(sys.argv) > 1 else 100\n",
+          stream);
+    write_yade_materials(stream, mixture->placed[0].particle.density, d.young);
+    write_yade_any(stream);
+    write_yade_places(stream, &d);
+    fputs("kinds = [line.rstrip('\\n').split(' ', 6) for line in open(", stream);
+    ms_escape_python(stream, name);
+    fputs(") if not line.startswith('#')]\n"
+          "shares = [float(kind[0]) for kind in kinds]\n"
+          "clumps = []\n"
+          "for place in places[:n]:\n"
+          "    _, *row, file = random.choices(kinds, shares)[0]\n"
+          "    scale, mass, *inertia = map(float, row)\n"
+          "    clumps.append(particle(file, scale, mass, Vector3(*inertia), place, turn()))\n",
+          stream);
+    write_yade_fall(stream, &d);
+    fputs("    print(O.time, max(O.bodies[clump].state.vel.norm() for clump in clumps))\n", stream);
     return MS_OK;
 }

@@ -1,0 +1,94 @@
+"""mskit grains --choose: few grains with weights that stand for all of a run."""
+import csv
+import io
+import os
+import random
+
+from support import Case, box_obj
+
+GRAINS = 24
+
+
+def parse(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+class Library(Case):
+    def setUp(self):
+        super().setUp()
+        numbers = random.Random(1)
+        os.mkdir(self.path("stones"))
+        for grain in range(GRAINS):
+            edges = [numbers.uniform(1, 3) for _ in range(3)]
+            self.write(f"stones/s{grain:02}.obj", box_obj((0, 0, 0), edges))
+        self.mskit("grains", "stones", "-g", "mss", "-n", "3", "--cells", "12", "-o", "all")
+
+    def table(self, name):
+        return parse(self.read(name).decode())
+
+    def choose(self, *args, k=4, out="few"):
+        return self.mskit("grains", "--choose", str(k), "all", "-o", out, "--json", *args).json
+
+    def distance(self, column, weight, chosen, share):
+        """Kolmogorov-Smirnov, at every value."""
+        def below(rows, of, at):
+            return sum(of(r) for r in rows if float(r[column]) <= at) / sum(of(r) for r in rows)
+        grains = self.table("all/grains.csv")
+        return max(abs(below(grains, share, float(r[column])) - below(chosen, weight, float(r[column])))
+                   for r in grains)
+
+    def test_distances_are_true(self):
+        for how, weight, share in ((["--by", "number"], "number", lambda r: 1),
+                                   (["--by", "mass", "--with-size"], "mass", lambda r: float(r["volume"]))):
+            said = self.choose(*how)
+            chosen = self.table("few/library.csv")
+            self.assertEqual(len(chosen), 4)
+            for name in ("sphericity", "elongation", "flatness", "convexity"):
+                truth = self.distance("shape_" + name, lambda r, w=weight: float(r[w]), chosen, share)
+                self.assertAlmostEqual(said["distance"][name], truth, delta=1e-9)
+            self.assertAlmostEqual(sum(float(r["number"]) for r in chosen), 1, delta=1e-9)
+            self.assertAlmostEqual(sum(float(r["mass"]) for r in chosen), 1, delta=1e-9)
+
+    def test_sizes_keep_number_and_mass(self):
+        self.choose("--classes", "5")
+        diameters = [float(r["shape_equivalent_diameter"]) for r in self.table("all/grains.csv")]
+        sizes = [(float(r["diameter"]), float(r["number"])) for r in self.table("few/sizes.csv")]
+        self.assertEqual(sizes, sorted(sizes))
+        self.assertAlmostEqual(sum(n for _, n in sizes), 1, delta=1e-9)
+        mean = sum(d ** 3 for d in diameters) / len(diameters)
+        for d, n in sizes:
+            self.assertAlmostEqual(n * d ** 3, mean / 5, delta=1e-9 * mean)
+
+    def test_all_of_them_are_a_library(self):
+        said = self.choose("--with-size", k=GRAINS)
+        self.assertLess(said["distance"]["largest"], 1e-9)
+        self.assertLess(said["distance"]["correlation"], 1e-9)
+        self.assertIsNone(said["split_distance"])
+        for row in self.table("few/library.csv"):
+            self.assertAlmostEqual(float(row["number"]), 1 / GRAINS, delta=1e-9)
+
+    def test_the_same_seed_gives_the_same(self):
+        self.choose("--seed", "5", out="one")
+        self.choose("--seed", "5", out="two")
+        self.assertEqual(self.read("one/library.csv"), self.read("two/library.csv"))
+
+    def test_scene_takes_it(self):
+        self.choose()
+        self.assertEqual(self.read("few/scene.csv").decode().count("\n"), 5)
+        self.mskit("scene", "few/scene.csv", "-g", "mss", "--budget", "20000000", "--max-spheres", "6", "--cells", "10")
+
+    def test_grains_without_clump_are_not_chosen(self):
+        self.write("stones/broken.obj", b"v 0 0 0\nf 1 2 3\n")
+        self.mskit("grains", "stones", "-g", "mss", "-n", "3", "--cells", "12", "-o", "all2")
+        said = self.mskit("grains", "--choose", "3", "all2", "-o", "few", "--json").json
+        self.assertEqual((said["grains"], said["without_clump"]), (GRAINS, 1))
+
+    def test_what_cannot_be_is_refused(self):
+        for args, word in ((["--choose", "30", "all"], "30"), (["--choose", "3", "stones"], "grains.csv"),
+                           (["--choose", "3", "--classes", "50", "all"], "50")):
+            self.assert_refused("grains", *args, "-o", "few", code=1, says=[word])
+        for args, word in ((["--choose", "3", "--by", "numbre", "all"], "number"),
+                           (["--by", "mass", "all"], "--choose"), (["--choose", "3", "--merge", "all"], "--merge"),
+                           (["--choose", "3", "--with-size", "--classes", "4", "all"], "--with-size"),
+                           (["--choose", "3", "all", "all"], "one folder")):
+            self.assert_refused("grains", *args, "-o", "few", code=2, says=[word])
