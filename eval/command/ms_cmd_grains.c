@@ -80,9 +80,9 @@ static ms_status take_format(ms_grains *g, const char *name, ms_error *err)
     return format ? MS_OK : MS_ERR_ARG;
 }
 
-static ms_status take_grains_flag(void *context, const char *name, const char *value, ms_error *err)
+/* Takes a flag without a value if it is one of those of grains. @return 0 if it is not */
+static int take_grains_word(grains_arguments *a, const char *name)
 {
-    grains_arguments *a = context;
     const struct {
         const char *name;
         int *is_set;
@@ -94,24 +94,21 @@ static ms_status take_grains_flag(void *context, const char *name, const char *v
                  {"assembly", &a->assembly},
                  {"dry-run", &a->dry_run},
                  {"json", &a->json}};
-    int taken;
-    ms_grain_how_note(&a->how, name, value);
-    ms_status status = ms_mass_flag(&taken, &a->mass, name, value, err);
-    if (taken) {
-        return status;
-    }
     for (size_t w = 0; w < sizeof words / sizeof *words; w++) {
         if (strcmp(name, words[w].name) == 0) {
             *words[w].is_set = 1;
-            return MS_OK;
+            return 1;
         }
     }
-    if (strcmp(name, "output") == 0) {
-        a->folder = value;
-        return MS_OK;
-    }
-    if (strcmp(name, "by") == 0) {
-        a->by = value;
+    return 0;
+}
+
+/* Takes a flag with a value of its own command. @param[out] taken 0 if it is none */
+static ms_status take_grains_value(int *taken, grains_arguments *a, const char *name, const char *value, ms_error *err)
+{
+    *taken = 1;
+    if (strcmp(name, "output") == 0 || strcmp(name, "by") == 0) {
+        *(name[0] == 'b' ? &a->by : &a->folder) = value;
         return MS_OK;
     }
     if (strcmp(name, "choose") == 0) {
@@ -129,8 +126,23 @@ static ms_status take_grains_flag(void *context, const char *name, const char *v
     if (strcmp(name, "most-overlap") == 0) {
         return ms_flags_number(&a->most_overlap, name, value, 1e-6, 1, err);
     }
-    return strcmp(name, "part") == 0 ? take_part(&a->grains, value, err)
-                                     : ms_grain_how_flag(&taken, &a->how, name, value, err);
+    *taken = strcmp(name, "part") == 0;
+    return *taken ? take_part(&a->grains, value, err) : MS_OK;
+}
+
+static ms_status take_grains_flag(void *context, const char *name, const char *value, ms_error *err)
+{
+    grains_arguments *a = context;
+    int taken;
+    ms_grain_how_note(&a->how, name, value);
+    ms_status status = ms_mass_flag(&taken, &a->mass, name, value, err);
+    if (!taken && take_grains_word(a, name)) {
+        return MS_OK;
+    }
+    if (!taken) {
+        status = take_grains_value(&taken, a, name, value, err);
+    }
+    return taken ? status : ms_grain_how_flag(&taken, &a->how, name, value, err);
 }
 
 static ms_status resolve_formats(grains_arguments *a, ms_error *err)

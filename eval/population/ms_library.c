@@ -146,7 +146,7 @@ static double *sizes_of_library(size_t *count, const ms_library *l, int by_mass)
 /* The diameter that the given share of the mass stays below. */
 static double quantile_of(const ms_population *p, double share)
 {
-    double at = INFINITY;
+    double at = (double)INFINITY;
     for (size_t i = 0; i < p->n; i++) {
         at = p->up_to[i] >= share - 1e-12 ? fmin(at, p->value[i]) : at;
     }

@@ -169,7 +169,7 @@ static ms_status search_on(choosing *s, ms_error *err)
     ms_status status = MS_OK;
     draw_first(s);
     int found = solve(s, &s->now);
-    s->best_mismatch = INFINITY;
+    s->best_mismatch = (double)INFINITY;
     for (;;) {
         while (exchange(s)) {
         }
