@@ -1,8 +1,8 @@
 /*
- * The memory that is announced before a run (ms_target_bytes, by the generator's bytes_per_voxel) is not exceeded, and
- * of a large grid it is not twice what the run takes. Each run is a process of its own, this program with arguments, of
- * which the kernel tells the peak. That of the same run on a coarse grid is taken off: the program, the mesh, and what
- * a method makes for each corner or sphere.
+ * The memory that is announced before a run (ms_target_bytes, by the generator's bytes_per_voxel) is not exceeded, with
+ * whatever option, and of a large grid by default it is not four times what the run takes. Each run is a process of its
+ * own, this program with arguments, of which the kernel tells the peak. That of the same run on a coarse grid is taken
+ * off: the program, the mesh, and what a method makes for each corner or sphere.
  */
 #define _DEFAULT_SOURCE /* wait4 */
 #include "support/test_support.h"
@@ -110,7 +110,7 @@ static void announced_memory_is_enough(void **state)
     for (const ms_generator *const *g = ms_generators; *g; g++) {
         find_share(*g, NULL, NULL, &FAT);
         find_share(*g, NULL, NULL, &THIN);
-        assert_true(find_share(*g, NULL, NULL, &LARGE) > 0.5);
+        assert_true(find_share(*g, NULL, NULL, &LARGE) > 0.25);
     }
 }
 
