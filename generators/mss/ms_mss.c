@@ -79,7 +79,7 @@ const ms_generator ms_generator_mss = {
     .nested = 1,
     .unnested_by = "polish",
     .bytes_per_voxel = 9,    /* E~ 4, first-cover index 2, covered 1, open voxels 1/4, blocks, columns, planes */
-    .bytes_per_square = 140, /* the maxima of a sheet, on both lattices */
+    .bytes_per_square = 120, /* the maxima of a sheet, on both lattices */
     .options = OPTIONS,
     .generate = generate_by_mss,
 };

@@ -132,7 +132,7 @@ const ms_generator ms_generator_setcover = {
     .source = "F.-L. Yuan, Granular Matter 21 (2019) 19",
     .nested = 1,
     .cut_by = "count",
-    .bytes_per_voxel = 15, /* with candidates=all; with those by default less than half */
+    .bytes_per_voxel = 17, /* with candidates=all; with those by default less than half */
     .options = OPTIONS,
     .generate = generate_by_setcover,
 };

@@ -240,10 +240,10 @@ class Memory(Output):
         self.assertLess(peak, 200, "MB taken")
 
     def test_limit(self):
-        """304 x 204 x 104 voxels of 12 bytes, and 220,000 squares of the surface of 60, are 91 MB; mss takes 14 and 140."""
+        """304 x 204 x 104 voxels of 12 bytes, and 220,000 squares of the surface of 60, are 91 MB; mss takes 14 and 120."""
         self.assert_refused("generate", "box.obj", "--max-memory", "90M", "-n", "1", code=1,
                             says=("304x204x104", "0.0906 GB", "0.09 GB", "--max-memory"))
-        for size in ("122M", "122000k", "122000000", "0.122G", "1T"):
+        for size in ("117M", "117000k", "117000000", "0.117G", "1T"):
             self.mskit("generate", "box.obj", "-g", "mss", "--max-memory", size, "-n", "1", "-o", "a.csv")
 
     def test_the_estimate_holds(self):
