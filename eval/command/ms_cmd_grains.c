@@ -6,6 +6,7 @@
 #include "base/ms_choice.h"
 #include "base/ms_text.h"
 #include "cli/ms_outputs.h"
+#include "cli/ms_progress.h"
 #include "cli/ms_report.h"
 #include "cli/ms_until.h"
 #include "grains/ms_grain_assembly.h"
@@ -348,7 +349,9 @@ static ms_status choose_grains(const grains_arguments *a, const char *from, ms_e
     if (status != MS_OK) {
         return status;
     }
+    ms_progress_open(&(ms_progress_line){.name = "choosing grains"});
     status = ms_library_make(&library, &table, &goal, err);
+    ms_progress_close();
     if (status == MS_OK) {
         status = ms_outputs_make_folder(a->folder, err);
         if (status == MS_OK) {

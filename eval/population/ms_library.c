@@ -208,7 +208,9 @@ static ms_status measure_split(ms_library *l, const ms_population *p, ms_error *
 
 static ms_status measure_library(ms_library *l, const ms_population *p, ms_error *err)
 {
-    ms_status status = measure_chosen(&l->far.grains, &l->far.energy, l, p, 0, err);
+    const int has_energy = p->n <= MS_LIBRARY_MOST_FOR_ENERGY;
+    l->far.energy = (double)NAN;
+    ms_status status = measure_chosen(&l->far.grains, has_energy ? &l->far.energy : NULL, l, p, 0, err);
     if (status == MS_OK) {
         status = measure_chosen(&l->far.clumps, NULL, l, p, 1, err);
     }

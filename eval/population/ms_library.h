@@ -7,7 +7,8 @@
 #include "ms_population_distance.h"
 #include "ms_population_split.h"
 
-enum { MS_LIBRARY_MAX_CLASSES = 100 };
+/** The energy distance takes the time of the square of the number of grains. */
+enum { MS_LIBRARY_MAX_CLASSES = 100, MS_LIBRARY_MOST_FOR_ENERGY = 20000 };
 
 /** What is asked for. */
 typedef struct ms_library_goal {
@@ -29,7 +30,7 @@ typedef struct ms_library_distances {
     ms_population_distance grains; /* of the chosen grains to all */
     ms_population_distance clumps; /* of their clumps to all grains */
     ms_population_distance noise;  /* of samples of as many grains as there are: what chance does */
-    double energy;                 /* energy distance of the chosen grains */
+    double energy; /* energy distance of the chosen grains; NAN above MS_LIBRARY_MOST_FOR_ENERGY grains */
     ms_population_split split;
     double size, sieve; /* Kolmogorov-Smirnov distances of the equivalent diameter, by number and by mass */
     double of_all[3], of_library[3]; /* D5, D50, D95 by mass: diameters */

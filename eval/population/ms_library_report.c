@@ -42,13 +42,23 @@ void ms_library_report_print(FILE *stream, const ms_library *l, const ms_library
     }
     fputs("\n\n", stream);
     print_distances(stream, l);
-    fprintf(stream, "energy distance       %9.4f\n", far->energy);
+    if (isnan(far->energy)) {
+        fprintf(stream, "energy distance       not told of more than %d grains\n", MS_LIBRARY_MOST_FOR_ENERGY);
+    } else {
+        fprintf(stream, "energy distance       %9.4f\n", far->energy);
+    }
     fprintf(stream, "size, by number       %9.3f\nsieve curve, by mass  %9.3f\n", far->size, far->sieve);
     fprintf(stream, "D5, D50, D95 by mass  %.4g, %.4g, %.4g; of the library %.4g, %.4g, %.4g\n", far->of_all[0],
             far->of_all[1], far->of_all[2], far->of_library[0], far->of_library[1], far->of_library[2]);
     print_split(stream, l);
     fprintf(stream, "\nwrote %s/library.csv%s%s%s%s\n", folder, l->size ? ", sizes.csv" : "",
             written->scene ? ", scene.csv" : "", written->scripts[0] ? ", " : "", written->scripts);
+    if (!written->scene) {
+        fputs("no scene.csv: it takes grains that are meshes, found from here by the paths in grains.csv\n", stream);
+    }
+    if (!written->scripts[0]) {
+        fputs("no script of an engine: it takes a run with --density and the engine's --format\n", stream);
+    }
 }
 
 static json_t *distance_json(const ms_library *l, const ms_population_distance *distance)

@@ -23,6 +23,8 @@ static ms_status read_descriptors(ms_library_grain *grain, int *known, const cha
         }
         *known = *known && isfinite(grain->shape[d]) && isfinite(grain->clump[d]);
     }
+    *known =
+        *known && grain->shape[MS_LIBRARY_SIZE] > 0 && grain->clump[MS_LIBRARY_SIZE] > 0 && grain->found.volume > 0;
     return status;
 }
 

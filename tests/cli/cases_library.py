@@ -83,6 +83,20 @@ class Library(Case):
         said = self.mskit("grains", "--choose", "3", "all2", "-o", "few", "--json").json
         self.assertEqual((said["grains"], said["without_clump"]), (GRAINS, 1))
 
+    def test_a_table_with_faults_is_refused(self):
+        lines = self.read("all/grains.csv").decode().splitlines(True)
+        columns = lines[0].split(",")
+        fields = lines[1].split(",")
+        fields[columns.index("shape_equivalent_diameter")] = "0"
+        os.mkdir(self.path("mended"))
+        self.write("mended/grains.csv", lines[0] + ",".join(fields) + "".join(lines[2:]))
+        said = self.mskit("grains", "--choose", "3", "mended", "-o", "few", "--json").json
+        self.assertEqual((said["grains"], said["without_descriptors"]), (GRAINS - 1, 1))
+        self.write("mended/grains.csv", lines[0] + "1,2,3\n")
+        self.assert_refused("grains", "--choose", "1", "mended", "-o", "none", code=1, says=("line 2", "fields"))
+        self.write("mended/grains.csv", lines[0])
+        self.assert_refused("grains", "--choose", "1", "mended", "-o", "none", code=1, says=("no grain has a clump",))
+
     def test_what_cannot_be_is_refused(self):
         for args, word in ((["--choose", "30", "all"], "30"), (["--choose", "3", "stones"], "grains.csv"),
                            (["--choose", "3", "--classes", "50", "all"], "50")):

@@ -8,7 +8,6 @@ import csv
 import math
 import os
 import re
-import shutil
 import struct
 import unittest
 
@@ -71,10 +70,7 @@ class Engine(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        if cls is Engine:
-            raise unittest.SkipTest("the engines below do the work")
-        if not shutil.which(cls.program):
-            raise unittest.SkipTest(f"{cls.program} is not installed")
+        engines.need_program(cls.program)
         cls.assembly = Assembly(engines.make_folder())
 
     def check_places(self, spheres):

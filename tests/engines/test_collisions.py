@@ -10,7 +10,6 @@ central. Mass and inertia are those of an ellipsoid and not of the spheres. Ever
 import math
 import os
 import re
-import shutil
 import unittest
 
 import test_engines as engines
@@ -67,10 +66,7 @@ class Engine(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        if cls is Engine:
-            raise unittest.SkipTest("the engines below do the work")
-        if not shutil.which(cls.program):
-            raise unittest.SkipTest(f"{cls.program} is not installed")
+        engines.need_program(cls.program)
         folder = engines.make_folder()
         cls.clumps = {name: Clump(name, folder) for name in CLUMPS}
 

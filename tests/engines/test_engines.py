@@ -164,6 +164,14 @@ def make_folder():
     return holder.name
 
 
+def need_program(program):
+    """Skips a class of tests: the common one, which names no program, or one whose engine is not installed."""
+    if program is None:
+        raise unittest.SkipTest("the engines below do the work")
+    if not shutil.which(program):
+        raise unittest.SkipTest(f"{program} is not installed")
+
+
 def skip_without_engines():
     if not any(shutil.which(program) for program in ("liggghts", "lmp", "yade")):
         print("skipped: neither liggghts nor lmp nor yade is installed")
@@ -188,10 +196,7 @@ class Engine(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        if cls is Engine:
-            raise unittest.SkipTest("the engines below do the work")
-        if not shutil.which(cls.program):
-            raise unittest.SkipTest(f"{cls.program} is not installed")
+        need_program(cls.program)
         if not Engine.clumps:
             Engine.clumps = {name: Clump(name, make_folder()) for name in CLUMPS}
 

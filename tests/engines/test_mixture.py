@@ -7,7 +7,6 @@ import csv
 import itertools
 import os
 import re
-import shutil
 import unittest
 
 import test_assembly as assembly
@@ -50,10 +49,7 @@ class Engine(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        if cls is Engine:
-            raise unittest.SkipTest("the engines below do the work")
-        if not shutil.which(cls.program):
-            raise unittest.SkipTest(f"{cls.program} is not installed")
+        engines.need_program(cls.program)
         cls.mixture = Mixture(engines.make_folder())
 
     def check_bodies(self, bodies, digits=9):

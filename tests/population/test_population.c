@@ -36,6 +36,16 @@ static void fill_shares(double *share, size_t n)
     }
 }
 
+/* A population of such values, each grain alike. */
+static void make_grains(ms_population *p, unsigned seed)
+{
+    double value[GRAINS * DESCRIPTORS];
+    ms_error err;
+    srand(seed);
+    fill_values(value, GRAINS);
+    assert_int_equal(ms_population_make(p, value, NULL, GRAINS, DESCRIPTORS, &err), MS_OK);
+}
+
 static double distribution(const double *value, const double *share, size_t n, size_t d, double at)
 {
     double of_less = 0, all = 0;
@@ -230,14 +240,11 @@ static double judged_mismatch(const ms_population *p, const ms_population_choice
 /* Its weights are those of its grains; the same seed gives the same ones, and each is chosen once. */
 static void choices_repeat(void **state)
 {
-    double value[GRAINS * DESCRIPTORS];
     ms_error err;
     ms_population p;
     ms_population_choice first, second;
     (void)state;
-    srand(2);
-    fill_values(value, GRAINS);
-    assert_int_equal(ms_population_make(&p, value, NULL, GRAINS, DESCRIPTORS, &err), MS_OK);
+    make_grains(&p, 2);
     assert_int_equal(ms_population_choose(&first, &p, 8, 0.05, 4, &err), MS_OK);
     assert_int_equal(ms_population_choose(&second, &p, 8, 0.05, 4, &err), MS_OK);
     assert_close(first.mismatch, judged_mismatch(&p, &first), 1e-12);
@@ -259,9 +266,7 @@ static void extremes_are_chosen(void **state)
     ms_population p;
     ms_population_choice choice;
     (void)state;
-    srand(6);
-    fill_values(value, GRAINS);
-    assert_int_equal(ms_population_make(&p, value, NULL, GRAINS, DESCRIPTORS, &err), MS_OK);
+    make_grains(&p, 6);
     assert_int_equal(ms_population_choose(&choice, &p, 1, 0.1, 1, &err), MS_OK);
     assert_close(choice.weight[0], 1, 0);
     assert_close(choice.mismatch, judged_mismatch(&p, &choice), 1e-12);
@@ -304,14 +309,11 @@ static void noise_is_kolmogorovs(void **state)
 /* Nearly all of a half stand for the other as well as the half itself; a half has no more than its grains. */
 static void splits_judge_on_the_other_half(void **state)
 {
-    double value[GRAINS * DESCRIPTORS];
     ms_error err;
     ms_population p;
     ms_population_split split;
     (void)state;
-    srand(9);
-    fill_values(value, GRAINS);
-    assert_int_equal(ms_population_make(&p, value, NULL, GRAINS, DESCRIPTORS, &err), MS_OK);
+    make_grains(&p, 9);
     assert_int_equal(ms_population_split_of(&split, &p, GRAINS / 2, 4, 0.01, 1, &err), MS_OK);
     assert_close(split.choice, split.halves, 1e-9);
     assert_int_equal(ms_population_split_of(&split, &p, 3, 4, 0.02, 1, &err), MS_OK);

@@ -273,8 +273,7 @@ static void end_lammps_drop(FILE *stream, const ms_script_drop *d, const ms_pack
     }
     fprintf(stream, " rigid move near %s attempt 500\n\n", ms_script_number(2 * d->reach, &a));
     fputs("thermo_style custom step atoms\nthermo_modify lost error\n", stream);
-    fprintf(stream, "variable steps equal ceil(%.0f*sqrt(1+v_n/4))\n", ceil(d->end / d->step));
-    fprintf(stream, "thermo %.0f\nrun ${steps}\n", ceil(d->end / d->step / 10));
+    ms_script_drop_run(stream, d);
 }
 
 ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *err)
@@ -425,7 +424,7 @@ ms_status ms_lammps_mixture(FILE *stream, const ms_packing *mixture, const char 
     const ms_script_drop d = ms_script_drop_of_mixture(mixture);
     ms_number a;
     (void)err;
-    ms_script_title_mixture(stream, name, "lmp -in", ".in", "-var n 500");
+    ms_script_mixture_title(stream, name, "lmp -in", ".in", "-var n 500");
     fputs("variable n index 100\n\n", stream);
     start_lammps_drop(stream, &d);
     fputs("# A template of each kind and size: mass and inertia are kept (reinit no) and gravity acts on the body.\n"

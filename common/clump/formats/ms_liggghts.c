@@ -100,8 +100,7 @@ static void end_liggghts_drop(FILE *stream, const ms_script_drop *d)
     fputs("fix insert all insert/pack seed 32452843 distributiontemplate kinds insert_every once overlapcheck yes "
           "orientation random all_in yes particles_in_region ${n} region above\nfix move all multisphere\n\n",
           stream);
-    fprintf(stream, "variable steps equal ceil(%.0f*sqrt(1+v_n/4))\n", ceil(d->end / d->step));
-    fprintf(stream, "thermo %.0f\nrun ${steps}\n", ceil(d->end / d->step / 10));
+    ms_script_drop_run(stream, d);
 }
 
 ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *err)
@@ -225,7 +224,7 @@ ms_status ms_liggghts_mixture(FILE *stream, const ms_packing *mixture, const cha
     unsigned seed = 1000000;
     ms_number a;
     (void)err;
-    ms_script_title_mixture(stream, name, "liggghts -in", ".in", "-var n 500");
+    ms_script_mixture_title(stream, name, "liggghts -in", ".in", "-var n 500");
     fputs("variable n index 100\n\n", stream);
     start_liggghts_drop(stream, &d, 0.2 * d.reach);
     fputs("# A template of each kind and size, and the share of each.\n", stream);

@@ -77,15 +77,6 @@ ms_script_settle ms_script_settle_of(const ms_packing *packing)
     return s;
 }
 
-void ms_script_settle_title(FILE *stream, const char *name, const char *command, const char *suffix)
-{
-    fputs("# Lets ", stream);
-    ms_escape_comment(stream, name);
-    fprintf(stream, " come to rest in the box around it: %s ", command);
-    ms_escape_comment(stream, name);
-    fprintf(stream, "%s\n", suffix);
-}
-
 void ms_script_settle_domain(double *lo, double *hi, const ms_script_settle *s, int axis)
 {
     const int is_up = axis == 2;
@@ -93,22 +84,39 @@ void ms_script_settle_domain(double *lo, double *hi, const ms_script_settle *s, 
     *hi = s->hi[axis] + s->reach + (is_up ? s->hi[2] - s->lo[2] : 0);
 }
 
-void ms_script_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *fifty)
+/* A comment: "BEFORE NAME BEHIND: COMMAND NAMESUFFIX", and what follows. */
+static void write_title(FILE *stream, const char *before, const char *name, const char *behind, const char *command,
+                        const char *suffix)
 {
-    fputs("# Drops ", stream);
+    fprintf(stream, "# %s ", before);
     ms_escape_comment(stream, name);
-    fprintf(stream, " into a box: %s ", command);
+    fprintf(stream, " %s: %s ", behind, command);
     ms_escape_comment(stream, name);
-    fprintf(stream, "%s; fifty of them: %s behind it\n", suffix, fifty);
+    fputs(suffix, stream);
 }
 
-void ms_script_title_mixture(FILE *stream, const char *name, const char *command, const char *suffix, const char *more)
+void ms_script_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *fifty)
 {
-    fputs("# Drops a hundred particles of the mixture ", stream);
-    ms_escape_comment(stream, name);
-    fprintf(stream, " into a box: %s ", command);
-    ms_escape_comment(stream, name);
-    fprintf(stream, "%s; five hundred: %s behind it\n", suffix, more);
+    write_title(stream, "Drops", name, "into a box", command, suffix);
+    fprintf(stream, "; fifty of them: %s behind it\n", fifty);
+}
+
+void ms_script_mixture_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *more)
+{
+    write_title(stream, "Drops a hundred particles of the mixture", name, "into a box", command, suffix);
+    fprintf(stream, "; five hundred: %s behind it\n", more);
+}
+
+void ms_script_settle_title(FILE *stream, const char *name, const char *command, const char *suffix)
+{
+    write_title(stream, "Lets", name, "come to rest in the box around it", command, suffix);
+    fputc('\n', stream);
+}
+
+void ms_script_drop_run(FILE *stream, const ms_script_drop *drop)
+{
+    fprintf(stream, "variable steps equal ceil(%.0f*sqrt(1+v_n/4))\n", ceil(drop->end / drop->step));
+    fprintf(stream, "thermo %.0f\nrun ${steps}\n", ceil(drop->end / drop->step / 10));
 }
 
 const char *ms_script_number(double value, ms_number *room)

@@ -25,7 +25,10 @@ ms_script_drop ms_script_drop_of_mixture(const ms_packing *mixture);
 void ms_script_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *fifty);
 
 /** Likewise of a mixture: "Drops particles of the mixture NAME into a box: ...; five hundred of them: ...". */
-void ms_script_title_mixture(FILE *stream, const char *name, const char *command, const char *suffix, const char *more);
+void ms_script_mixture_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *more);
+
+/** The end of a drop in LIGGGHTS and LAMMPS: its steps, by the number n of particles, and their run. */
+void ms_script_drop_run(FILE *stream, const ms_script_drop *drop);
 
 /** How a packing comes to rest in the box around it: first the clumps that overlap come apart, without weight and
  * slowed down, then they settle under gravity. What swings in a contact is the mass of the bodies, not that of spheres,

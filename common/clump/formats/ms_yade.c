@@ -125,6 +125,14 @@ ms_status ms_yade_script(FILE *stream, const ms_content *content, ms_error *err)
     return MS_OK;
 }
 
+/* Scale, mass and moments of a body. */
+static void write_yade_body(FILE *stream, const ms_placed *d)
+{
+    const double row[] = {d->scale, d->particle.mass, d->particle.inertia[0][0], d->particle.inertia[1][1],
+                          d->particle.inertia[2][2]};
+    ms_fields_numbers(stream, row, 5, " ");
+}
+
 /* A line for each: its template, scale, mass, moments, centre and turn. */
 ms_status ms_yade_packing(FILE *stream, const ms_packing *packing, const char *name, ms_error *err)
 {
@@ -133,9 +141,7 @@ ms_status ms_yade_packing(FILE *stream, const ms_packing *packing, const char *n
     fputs("# scale mass I1 I2 I3 x y z w qx qy qz template\n", stream);
     for (size_t p = 0; p < packing->count; p++) {
         const ms_placed *d = &packing->placed[p];
-        const double row[] = {d->scale, d->particle.mass, d->particle.inertia[0][0], d->particle.inertia[1][1],
-                              d->particle.inertia[2][2]};
-        ms_fields_numbers(stream, row, 5, " ");
+        write_yade_body(stream, d);
         fputc(' ', stream);
         ms_fields_numbers(stream, d->centre, 3, " ");
         fputc(' ', stream);
@@ -220,13 +226,8 @@ ms_status ms_yade_kinds(FILE *stream, const ms_packing *mixture, const char *nam
     fputs("# share scale mass I1 I2 I3 template\n", stream);
     for (size_t k = 0; k < mixture->count; k++) {
         const ms_placed *kind = &mixture->placed[k];
-        const double row[] = {kind->share,
-                              kind->scale,
-                              kind->particle.mass,
-                              kind->particle.inertia[0][0],
-                              kind->particle.inertia[1][1],
-                              kind->particle.inertia[2][2]};
-        ms_fields_numbers(stream, row, 6, " ");
+        fprintf(stream, "%s ", ms_text_of_number(kind->share).text);
+        write_yade_body(stream, kind);
         fprintf(stream, " %s.yade\n", kind->name);
     }
     return MS_OK;
@@ -236,7 +237,7 @@ ms_status ms_yade_mixture(FILE *stream, const ms_packing *mixture, const char *n
 {
     const ms_script_drop d = ms_script_drop_of_mixture(mixture);
     (void)err;
-    ms_script_title_mixture(stream, name, "yade -x -n", ".py", "500");
+    ms_script_mixture_title(stream, name, "yade -x -n", ".py", "500");
     fputs("import math\nimport random\nimport sys\nfrom yade import ymport\n\n"
           "n = int(sys.argv[1]) if len(sys.argv) > 1 else 100\n",
           stream);
