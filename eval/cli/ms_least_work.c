@@ -53,16 +53,18 @@ typedef struct work_runs {
     ms_run run;
     size_t max_voxels;
     ms_clump clump[MS_LEAST_WORK_MOST_RUNS];
+    ms_error cause; /* of the last run that gave no clump */
 } work_runs;
 
-static void say_try(const ms_least_work_try *row, const char *name)
+/* @param cause of a run that gave no clump */
+static void say_try(const ms_least_work_try *row, const char *name, const ms_error *cause)
 {
     fprintf(stderr, "%s: n %zu", name, row->asked);
     if (row->radius > 0) {
         fprintf(stderr, ", no radius below %.4g", row->radius);
     }
     if (row->spheres == 0) {
-        fprintf(stderr, ": no clump\n");
+        fprintf(stderr, ": no clump: %s\n", cause->text);
     } else {
         fprintf(stderr, ": D %.5f, %zu spheres from %.4g on\n", row->dice, row->spheres, row->least);
     }
@@ -73,14 +75,12 @@ static ms_status run_once(void *context, ms_least_work_try *row, int at, ms_erro
     work_runs *w = context;
     const ms_progress_line line = {.name = w->generator->name, .part = (size_t)at, .parts = MS_LEAST_WORK_MOST_RUNS};
     ms_metrics metrics;
-    ms_error cause;
     w->run.stop = (ms_stop){.spheres = row->asked, .radius = row->radius};
     ms_progress_open(&line);
-    ms_status status = ms_generator_run(&w->clump[at], &row->reason, w->generator, &w->run, &cause);
+    ms_status status = ms_generator_run(&w->clump[at], &row->reason, w->generator, &w->run, &w->cause);
     ms_progress_close();
-    w->run.remark = NULL; /* once */
     if (status == MS_OK) {
-        status = ms_metrics_compute_kinds(&metrics, NULL, 0, w->run.target, &w->clump[at], w->max_voxels, &cause);
+        status = ms_metrics_compute_kinds(&metrics, NULL, 0, w->run.target, &w->clump[at], w->max_voxels, &w->cause);
     }
     if (status == MS_OK) {
         row->spheres = metrics.spheres;
@@ -88,15 +88,16 @@ static ms_status run_once(void *context, ms_least_work_try *row, int at, ms_erro
         row->least = ms_clump_smallest_radius(&w->clump[at]);
     }
     if (status != MS_OK && status != MS_ERR_SHAPE) {
-        *err = cause;
+        *err = w->cause;
         return status;
     }
-    say_try(row, w->generator->name);
+    say_try(row, w->generator->name, &w->cause);
     return MS_OK;
 }
 
 /* The least D of all. */
-static ms_status say_unreached(const ms_least_work_tries *tries, const ms_least_work *work, ms_error *err)
+static ms_status say_unreached(const ms_least_work_tries *tries, const ms_least_work *work, const ms_error *cause,
+                               ms_error *err)
 {
     const ms_least_work_try *best = NULL;
     for (int k = 0; k < tries->count; k++) {
@@ -107,8 +108,7 @@ static ms_status say_unreached(const ms_least_work_tries *tries, const ms_least_
                           "none of %d runs has D %g, the best has %.4g with %zu spheres; use more cells, allow more "
                           "spheres or smaller ones, or ease it",
                           tries->count, work->dice, best->dice, best->spheres)
-                : ms_fail(err, MS_ERR_LIMIT,
-                          "none of %d runs placed a sphere; use more cells or a smaller least radius", tries->count);
+                : ms_fail(err, MS_ERR_LIMIT, "none of %d runs gave a clump; the last: %s", tries->count, cause->text);
 }
 
 ms_status ms_least_work_generate(ms_clump *clump, ms_least_work_tries *tries, const ms_least_work *work,
@@ -128,7 +128,7 @@ ms_status ms_least_work_generate(ms_clump *clump, ms_least_work_tries *tries, co
     *clump = (ms_clump){0};
     ms_status status = ms_least_work_search(tries, &bounds, run_once, &w, err);
     if (status == MS_OK && tries->kept < 0) {
-        status = say_unreached(tries, work, err);
+        status = say_unreached(tries, work, &w.cause, err);
     }
     for (int k = 0; k < MS_LEAST_WORK_MOST_RUNS; k++) {
         if (status == MS_OK && k == tries->kept) {

@@ -69,12 +69,20 @@ class LeastWork(Case):
 
     def test_what_is_not_reached(self):
         for args, says in ((("-n", "3"), ("none of ", "D 0.05", "3 spheres")),
-                           (("--until", "radius=50"), ("none of 1 runs placed a sphere",))):
+                           (("--until", "radius=50"), ("radius below 50: no clump: variational placed no sphere",
+                                                        "none of 1 runs gave a clump; the last: variational placed no sphere"))):
             with self.subTest(args=args):
                 result = self.mskit("generate", self.grain, *GRID, "--least-work", "dice=0.05", *args, "-o", "n.csv", code=1)
                 for word in says:
                     self.assertIn(word, result.err)
                 self.assertNotIn("n.csv", self.files())
+
+    def test_each_run_has_its_remarks(self):
+        """A bound that the clump kept cannot hold is said of that clump, too, and not of the first run alone."""
+        run, words = self.search(0.5, "--gap", "0.5", "--protrusion", "0", "-n", "3")
+        rows = run["least_work"]["tried"]
+        self.assertGreater(len(rows), 1)
+        self.assertEqual(re.findall(r"gap=0.5 cannot be held by (\d+) spheres", words), [str(r["n"]) for r in rows if r["n"]])
 
     def test_wrong_usage(self):
         for args, says in ((("--least-work", "eta=0.1"), "dice=VALUE alone"), (("--least-work", "dice"), "least-work"),
