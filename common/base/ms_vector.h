@@ -2,6 +2,9 @@
 #ifndef MS_VECTOR_H
 #define MS_VECTOR_H
 
+/** Degrees of a radian. */
+#define MS_VECTOR_DEGREES 57.295779513082321
+
 static inline double ms_dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

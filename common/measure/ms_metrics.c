@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_vector.h"
 #include "ms_surface.h"
 #include "voxel/ms_cut_cells.h"
 #include "voxel/ms_raster.h"
@@ -22,8 +23,6 @@ ms_score ms_metrics_score(const ms_tally *sum, size_t target_voxels)
     };
 }
 
-static const double DEGREES = 57.295779513082321;
-
 /* Is the principal moment of this rank far enough from the others for its axis to mean something? */
 static int axis_is_determined(const double moment[3], int rank)
 {
@@ -37,8 +36,8 @@ static int axis_is_determined(const double moment[3], int rank)
 
 static double axis_angle(const double a[3], const double b[3])
 {
-    const double cosine = fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
-    return DEGREES * acos(fmin(1, cosine));
+    const double cosine = fabs(ms_dot(a, b));
+    return MS_VECTOR_DEGREES * acos(fmin(1, cosine));
 }
 
 ms_status ms_metrics_compare_inertia(ms_inertia_error *error, const ms_body *body, const ms_body *target, ms_error *err)

@@ -7,7 +7,7 @@
 #include "mesh/ms_mesh_sharp.h"
 #include "voxel/ms_voxel_normal.h"
 
-static const double DEGREES = 57.295779513082321, BIN = 180.0 / MS_NORMALS_BINS;
+static const double BIN = 180.0 / MS_NORMALS_BINS;
 
 ms_status ms_normals_open(ms_normals_shape *shape, const ms_target *target, double near, ms_error *err)
 {
@@ -138,7 +138,7 @@ double ms_normals_add(ms_normals_tally *tally, const ms_normals_shape *shape, co
     }
     const double length = sqrt(ms_dot(own, own));
     if (known && length > 0) {
-        const double angle = DEGREES * acos(fmax(-1, fmin(1, ms_dot(own, normal) / length)));
+        const double angle = MS_VECTOR_DEGREES * acos(fmax(-1, fmin(1, ms_dot(own, normal) / length)));
         const int bin = (int)(angle / BIN);
         tally->area[near][bin < MS_NORMALS_BINS ? bin : MS_NORMALS_BINS - 1] += area;
     }

@@ -10,8 +10,6 @@
 /* Twice the area over the longest side squared, below which rounding makes the normal. */
 static const double SLIVER = 1e-6;
 
-static const double DEGREES = 57.295779513082321;
-
 /* Of length 1. @return 0 for a face that has none */
 static int find_face_normal(double normal[3], const ms_mesh *mesh, size_t triangle)
 {
@@ -43,7 +41,7 @@ ms_status ms_mesh_sharp_edges(ms_mesh *edges, const ms_mesh *mesh, double degree
 {
     ms_edges all;
     size_t count = 0, at = 0;
-    const double cosine = cos(degrees / DEGREES);
+    const double cosine = cos(degrees / MS_VECTOR_DEGREES);
     memset(edges, 0, sizeof *edges);
     ms_status status = ms_edges_build(&all, mesh, err);
     uint8_t *sharp = status == MS_OK ? calloc(all.n + 1, 1) : NULL;
