@@ -74,17 +74,19 @@ static ms_status run_once(void *context, ms_least_work_try *row, int at, ms_erro
 {
     work_runs *w = context;
     const ms_progress_line line = {.name = w->generator->name, .part = (size_t)at, .parts = MS_LEAST_WORK_MOST_RUNS};
-    ms_metrics metrics;
+    ms_target plain = *w->run.target;
+    ms_score score;
+    plain.count_cut = 0; /* of the runs D alone is asked for */
     w->run.stop = (ms_stop){.spheres = row->asked, .radius = row->radius};
     ms_progress_open(&line);
     ms_status status = ms_generator_run(&w->clump[at], &row->reason, w->generator, &w->run, &w->cause);
     ms_progress_close();
     if (status == MS_OK) {
-        status = ms_metrics_compute_kinds(&metrics, NULL, 0, w->run.target, &w->clump[at], w->max_voxels, &w->cause);
+        status = ms_metrics_score_clump(&score, NULL, &plain, &w->clump[at], w->max_voxels, &w->cause);
     }
     if (status == MS_OK) {
-        row->spheres = metrics.spheres;
-        row->dice = metrics.score.dice;
+        row->spheres = w->clump[at].n_spheres;
+        row->dice = score.dice;
         row->least = ms_clump_smallest_radius(&w->clump[at]);
     }
     if (status != MS_OK && status != MS_ERR_SHAPE) {
