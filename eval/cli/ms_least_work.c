@@ -14,7 +14,7 @@ static ms_status take_dice(double *dice, const char *text, ms_error *err)
 {
     char name[64];
     const char *value = NULL;
-    ms_status status = ms_recipe_assignment(name, &value, text, err);
+    ms_status status = ms_recipe_assignment(name, &value, "least-work", text, err);
     if (status == MS_OK && strcmp(name, ms_measures[MS_MEASURE_DICE].name) != 0) {
         return ms_fail(err, MS_ERR_ARG, "--least-work takes dice=VALUE alone, not %s", name);
     }

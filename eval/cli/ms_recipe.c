@@ -3,12 +3,12 @@
 #include <stdio.h>
 #include <string.h>
 
-ms_status ms_recipe_assignment(char name[64], const char **value, const char *text, ms_error *err)
+ms_status ms_recipe_assignment(char name[64], const char **value, const char *flag, const char *text, ms_error *err)
 {
     const char *equals = strchr(text, '=');
     const size_t length = equals ? (size_t)(equals - text) : strlen(text);
     if (length == 0 || length >= 64) {
-        return ms_fail(err, MS_ERR_ARG, "'%s' is not of the form name=value", text);
+        return ms_fail(err, MS_ERR_ARG, "--%s '%.200s' is not of the form name=value", flag, text);
     }
     memcpy(name, text, length);
     name[length] = 0;
@@ -80,7 +80,7 @@ ms_status ms_recipe_resolve(ms_recipe *recipe, ms_error *err)
         char name[64];
         const char *value = wish->text;
         if (!wish->name) {
-            status = ms_recipe_assignment(name, &value, wish->text, err);
+            status = ms_recipe_assignment(name, &value, "set", wish->text, err);
         }
         if (status == MS_OK) {
             status = set_wish(recipe, wish->name ? wish->name : name, value, err);

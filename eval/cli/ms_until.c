@@ -12,7 +12,7 @@ static ms_status take_until(ms_stop *stop, const char *text, ms_error *err)
     char name[64];
     const char *value = NULL;
     double number;
-    ms_status status = ms_recipe_assignment(name, &value, text, err);
+    ms_status status = ms_recipe_assignment(name, &value, "until", text, err);
     if (status != MS_OK) {
         return status;
     }

@@ -62,7 +62,7 @@ static ms_status take_tolerance(ms_goal *goal, const char *flag, const char *tex
     const char *value = NULL;
     double number;
     const int mean = strcmp(flag, "mean-tolerance") == 0;
-    ms_status status = ms_recipe_assignment(name, &value, text, err);
+    ms_status status = ms_recipe_assignment(name, &value, flag, text, err);
     const ms_measure *measure = status == MS_OK ? ms_measure_find_goal(name, err) : NULL;
     if (!measure) {
         return MS_ERR_ARG;

@@ -157,7 +157,6 @@ static ms_status try_number(int *reached, scene_search *s, size_t n, ms_error *e
     if (status == MS_OK) {
         status = ms_metrics_compute_kinds(&metrics, NULL, 0, s->run.target, &shape->clump[n - 1], s->max_voxels, err);
     }
-    s->run.remark = NULL; /* once for a shape */
     if (status == MS_OK) {
         const double have = s->goal->measure->of_score(&metrics.score);
         shape->score[n - 1] = metrics.score;

@@ -86,6 +86,7 @@ class LeastWork(Case):
 
     def test_wrong_usage(self):
         for args, says in ((("--least-work", "eta=0.1"), "dice=VALUE alone"), (("--least-work", "dice"), "least-work"),
+                           (("--least-work", ""), "--least-work '' is not of the form"),
                            (("--least-work", "dice=2"), "least-work"), (("--work-power", "1"), "--least-work"),
                            (("--least-work", "dice=0.1", "--work-power", "4"), "work-power"),
                            (("--least-work", "dice=0.1", "--until", "eta=0.1"), "--min-radius")):
