@@ -2,6 +2,7 @@
 import itertools
 import json
 import os
+import re
 
 from support import Case, box_obj
 
@@ -126,6 +127,14 @@ class Choice(Scene):
         self.write("fewer.csv", "".join("%r,%r,%r,%r\n" % s for s in spheres[:-1]))
         scores = self.mskit("score", "fewer.csv", "--target", path, "--json", *GRID).json["scores"]
         return scores["inertia_error"]["weighted_mean"] if measure == "inertia" else scores[measure]
+
+    def test_a_template_has_its_remarks(self):
+        """A bound that the template cannot hold is said of its number, too, and not of the first one tried alone."""
+        result = self.mskit("scene", "box.obj", *GRID, "-g", "variational", "--gap", "0.1", "--protrusion", "0",
+                            "--max-spheres", "9", "--tolerance", "dice=0.4", "-o", "out", "--json")
+        spheres = result.json["shapes"][0]["scores"]["spheres"]
+        said = [int(n) for n in re.findall(r"gap=0.1 cannot be held by (\d+) spheres", result.err)]
+        self.assertTrue(spheres in said and len(said) > 1, (spheres, said))
 
     def test_column_of_tolerances(self):
         self.manifest(["box.obj,2,0.3", "grain.stl,1,", " tablet.stl , 5 , 0.2 "], header="shape,count,tolerance")
