@@ -59,10 +59,10 @@ static void normals_are_those_of_planes_and_balls(void **state)
 {
     uint64_t seed = 4;
     (void)state;
-    expect_errors(0, 0, 1.4, 8, &seed);
-    expect_errors(0, 1, 1.5, 8, &seed);
-    expect_errors(10, 0, 1.4, 8, &seed);
-    expect_errors(10, 1, 1.5, 8, &seed);
+    expect_errors(0, 0, 1.25, 5, &seed);
+    expect_errors(0, 1, 1.25, 5, &seed);
+    expect_errors(10, 0, 1.2, 4, &seed);
+    expect_errors(10, 1, 1.2, 4, &seed);
 }
 
 static void faces_along_the_axes_are_exact(void **state)
