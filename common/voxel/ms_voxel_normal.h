@@ -7,8 +7,8 @@
 /**
  * Outward normal at a place on the surface or near it: towards fewer voxels inside, weighted by a Gaussian of 2 voxels
  * around the place. What is beyond the grid is outside. Of digitised planes and balls from 20 voxels across it is 1.2
- * degrees off (root of the mean square) and 8 at the worst, where a plane is nearly along the lattice; at edges it is
- * that of an edge rounded off.
+ * degrees off (root of the mean square), of planes nearly along the lattice up to 4, and 11 at the worst; at edges it
+ * is that of an edge rounded off.
  *
  * @param[out] normal of length 1; undefined if there is none
  * @param      place  in voxels, from the centre of voxel (0, 0, 0)

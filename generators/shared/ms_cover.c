@@ -45,8 +45,8 @@ typedef struct heap_entry {
 /* All that was left of a ball when it was last counted. */
 typedef struct remains {
     ms_cover_run *run; /* NULL: not known */
-    uint32_t n, room;
-    int is_member; /* of a group, and not its first */
+    uint32_t n, room;  /* runs, and for how many room is taken; 0: they were too many so far */
+    int is_member;     /* of a group, and not its first */
 } remains;
 
 struct ms_cover {
@@ -66,19 +66,21 @@ struct ms_cover {
     size_t n_heap, n_entries;
 };
 
-/* Keeps the runs of a candidate if they are few enough for the room that is left to each that is counted at once. */
+/* Keeps the runs of a candidate if they are few enough for the room that is left to each that is counted at once.
+ * Without memory for them the room is taken all the same and the ball walked again: the choice must not hang on it. */
 static void keep_remains(const ms_cover *cover, remains *part, const ms_cover_room *room, size_t n)
 {
     const size_t left = cover->free_runs;
-    if (n + 1 > room->room || (double)(n + 1) > SHARE * (double)left + 16 || n + 1 > left / AT_ONCE) {
+    if (part->room == 0 &&
+        (n + 1 > room->room || (double)(n + 1) > SHARE * (double)left + 16 || n + 1 > left / AT_ONCE)) {
         return;
     }
     part->run = malloc((n + 1) * sizeof *part->run);
     if (part->run) {
         memcpy(part->run, room->found, n * sizeof *part->run);
-        part->n = (uint32_t)n;
-        part->room = (uint32_t)n + 1;
     }
+    part->n = (uint32_t)n;
+    part->room = part->room > 0 ? part->room : (uint32_t)n + 1;
 }
 
 /* Gives back what is no longer needed of the room of a candidate's runs. */
@@ -87,11 +89,9 @@ static void shrink_remains(remains *part)
     if (part->n + 1 > part->room / 2) {
         return;
     }
-    ms_cover_run *smaller = realloc(part->run, (part->n + 1) * sizeof *smaller);
-    if (smaller) {
-        part->run = smaller;
-        part->room = part->n + 1;
-    }
+    ms_cover_run *smaller = part->run ? realloc(part->run, (part->n + 1) * sizeof *smaller) : NULL;
+    part->run = smaller ? smaller : part->run;
+    part->room = part->n + 1;
 }
 
 /* How many rows there are to one that is counted of a candidate. */
@@ -110,12 +110,11 @@ static void count_left(const ms_cover *cover, heap_entry *entry)
 {
     remains *part = &cover->remains[entry->index];
     const ms_ball *ball = &cover->candidate[entry->index];
-    const int step = part->run ? 1 : choose_step(cover, entry);
+    const int step = part->room > 0 ? 1 : choose_step(cover, entry);
     ms_cover_room *room = &cover->scratch[omp_get_thread_num()];
     size_t n = 0;
     if (part->run) {
         entry->gain = ms_cover_bits_recount(&cover->left, part->run, &part->n);
-        shrink_remains(part);
     } else if (step == 1) {
         entry->gain = ms_cover_bits_walk(&cover->left, room, &n, ball);
         keep_remains(cover, part, room, n);
@@ -124,6 +123,7 @@ static void count_left(const ms_cover *cover, heap_entry *entry)
         const uint64_t most = (uint64_t)((ESTIMATE * sum + ESTIMATE_ROOTS * sqrt(sum)) * step * step);
         entry->gain = most < entry->gain ? most : entry->gain;
     }
+    shrink_remains(part);
     entry->estimated = step > 1;
     entry->counted = cover->n_taken;
 }
@@ -132,10 +132,11 @@ static void count_left(const ms_cover *cover, heap_entry *entry)
 static void cover_ball(ms_cover *cover, uint32_t index)
 {
     remains *part = &cover->remains[index];
-    if (!part->run) {
+    if (part->run) {
+        ms_cover_bits_take(&cover->left, part->run, part->n);
+    } else {
         ms_cover_bits_remove(&cover->left, &cover->candidate[index]);
     }
-    ms_cover_bits_take(&cover->left, part->run, part->n);
 }
 
 /* Is a the better one? No two candidates are equal. */

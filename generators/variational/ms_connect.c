@@ -54,7 +54,7 @@ static ms_tie make_tie(const ms_ball *ball, size_t from, size_t to, double lack)
     ms_tie tie = {.ball = from, .away = 0.5 * lack};
     const double way = sqrt(ms_squared_distance(ball[from].centre, ball[to].centre));
     for (int c = 0; c < 3; c++) {
-        tie.normal[c] = (ball[to].centre[c] - ball[from].centre[c]) / way;
+        tie.normal[c] = way > 0 ? (ball[to].centre[c] - ball[from].centre[c]) / way : 0; /* of one centre: grow */
     }
     return tie;
 }

@@ -176,7 +176,6 @@ void ms_gap_find(ms_gap *gap, const ms_ball *ball, size_t count, double travel)
         }
     }
     memset(gap->first, 0, (count + 1) * sizeof *gap->first);
-    gap->spheres = count;
     for (size_t p = 0; p < gap->count; p++) {
         gap->first[gap->nearest[p]] += is_far(gap, p) != 0;
     }

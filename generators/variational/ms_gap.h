@@ -22,8 +22,8 @@ typedef struct ms_gap {
     double *known;     /* what spheres have to travel before the place may come to be too far */
     uint32_t *nearest; /* that sphere */
     double travelled;
-    uint32_t *far;          /* places that are too far, sphere by sphere; */
-    size_t *first, spheres; /* those of sphere s are far[first[s]] to far[first[s + 1] - 1] */
+    uint32_t *far; /* places that are too far, sphere by sphere; */
+    size_t *first; /* those of sphere s are far[first[s]] to far[first[s + 1] - 1] */
 } ms_gap;
 
 /**
@@ -71,10 +71,11 @@ typedef struct ms_gap_far {
  * The largest distance of the surface from the spheres, sought everywhere: a part of a triangle that one sphere made
  * larger by the bound holds with its corners it holds as a whole, as balls are convex; else the part is cut in four.
  *
+ * @param[out] largest within a hundredth of a voxel; the bound, if no part is farther
  * @param[out] far   of each sphere the place of the surface that is the farthest from it of those that it is the
  *                   nearest sphere of and that are farther than the bound; away is 0 where there is none. May be NULL
  * @param      all   `count` spheres, mirror images among them
- * @return the distance, within a hundredth of a voxel; the bound or less: no part is farther than the bound
+ * @return MS_OK; MS_ERR_NOMEM
  *
  * Cost: triangles x spheres; all cores, the same bits at any number of threads.
  */

@@ -344,12 +344,6 @@ static void the_least_number_is_found(void **state)
     }
 }
 
-static void keep_remark(void *context, const char *sentence)
-{
-    char *kept = context;
-    snprintf(kept, 512, "%s", sentence);
-}
-
 /* What a run of n spheres says of a mesh, "" for nothing. */
 static void remark_on(char remark[512], const ms_target *target, size_t n)
 {

@@ -38,12 +38,6 @@ static void groups_are_cubes(void **state)
     ms_mesh_free(&mesh);
 }
 
-static void keep_remark(void *context, const char *sentence)
-{
-    char *kept = context;
-    snprintf(kept, 512, "%s", sentence);
-}
-
 /* More nodes than spheres: as many clusters from the same spheres, found sooner, and it is said. */
 static void fine_meshes_are_thinned(void **state)
 {

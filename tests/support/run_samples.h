@@ -27,6 +27,12 @@ static inline ms_status try_run(ms_clump *clump, ms_stop_reason *reason, const m
     return status;
 }
 
+/** An ms_remark that keeps the last sentence. @param context char[512] */
+static inline void keep_remark(void *context, const char *sentence)
+{
+    snprintf(context, 512, "%s", sentence);
+}
+
 /** @param remark, context as in ms_run; may be NULL */
 static inline ms_status try_generator(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
                                       const ms_target *target, ms_stop stop, const char *options, ms_remark remark,

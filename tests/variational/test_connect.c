@@ -99,11 +99,6 @@ static void images_are_joined(void **state)
     assert_true(with > 20 && without > 20);
 }
 
-static void keep_remark(void *context, const char *sentence)
-{
-    snprintf(context, 512, "%s", sentence);
-}
-
 static ms_clump run_remarked(char remark[512], const ms_target *target, size_t n, const char *options)
 {
     ms_clump clump;

@@ -173,11 +173,6 @@ static void gap_is_kept(void **state)
     }
 }
 
-static void keep_remark(void *context, const char *sentence)
-{
-    snprintf(context, 512, "%s", sentence);
-}
-
 /* One inscribed sphere reaches no tip of a needle: the nearest possible is said, and it is true. */
 static void gap_that_cannot_be_kept_is_said(void **state)
 {

@@ -68,12 +68,6 @@ static void objective_never_rises(void **state)
     remove(PATH);
 }
 
-static void keep_remark(void *context, const char *sentence)
-{
-    char *kept = context;
-    snprintf(kept, 512, "%s", sentence);
-}
-
 /* Five spheres from a file. */
 static ms_status refine_text(ms_clump *clump, char remark[512], const ms_target *target, const char *path,
                              const char *text, ms_error *err)
