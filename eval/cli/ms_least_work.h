@@ -29,8 +29,8 @@ ms_status ms_least_work_flag(int *taken, ms_least_work *work, const char *name, 
 ms_status ms_least_work_resolve(const ms_least_work *work, const ms_stop *stop, ms_error *err);
 
 /**
- * Searches (ms_least_work_search) with a generator; says each run on stderr, and what it remarks. A run of which the shape
- * lets no clump be made (MS_ERR_SHAPE) is one that gave none; others that fail end the search.
+ * Searches (ms_least_work_search) with a generator; says each run on stderr, and what it remarks. A run of which the
+ * shape lets no clump be made (MS_ERR_SHAPE) is one that gave none; others that fail end the search.
  *
  * @param[out] clump    that of the run kept; the caller frees it; empty on failure
  * @param      run      its stop rule bounds the number of spheres and the least radius

@@ -41,8 +41,8 @@ ms_status ms_recipe_resolve(ms_recipe *recipe, ms_error *err);
 
 void ms_recipe_free(ms_recipe *recipe);
 
-/** Cuts "name=value", which a flag was given, in two. @param[out] value NULL without '=' @return MS_OK; MS_ERR_ARG without
- * a name */
+/** Cuts "name=value", which a flag was given, in two. @param[out] value NULL without '=' @return MS_OK; MS_ERR_ARG
+ * without a name */
 ms_status ms_recipe_assignment(char name[64], const char **value, const char *flag, const char *text, ms_error *err);
 
 #endif
