@@ -19,7 +19,7 @@ MS_C_BEGIN
  *
  * Crofton's formula in 13 directions (Ohser & Muecklich 2000, Lang et al. 2001) is nearly twice as far off on balls and
  * understates faces along the axes by 7 %: the tests compare both. An isosurface of the voxels smoothed by a Gaussian
- * was tried, too: with a width of one voxel balls are 0.5 % too large and edges lose twice as much.
+ * rounds edges off more.
  *
  * @param[out] area in the unit of the grid, squared; 0 on failure
  * @return MS_OK; MS_ERR_NOMEM
