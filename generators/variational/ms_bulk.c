@@ -44,8 +44,8 @@ static ms_status list_places(places *out, const ms_coarse_view *view, ms_error *
     size_t passed = 0;
     for (size_t v = 0; v < ms_grid_voxels(grid); v++) {
         if (grid->inside[v] && passed++ % each == 0) {
-            const size_t nx = (size_t)grid->n[0], ny = (size_t)grid->n[1];
-            const double at[3] = {(double)(v % nx), (double)(v / nx % ny), (double)(v / nx / ny)};
+            int at[3];
+            ms_grid_voxel(at, grid->n, v);
             for (int c = 0; c < 3; c++) {
                 out->at[out->count][c] = view->step * at[c];
             }
