@@ -52,7 +52,11 @@ static ms_status complete_particle(ms_particle *particle, const convert_argument
             return status;
         }
     }
-    if (particle->mass > 0 && a->mass.density > 0) {
+    if (a->mass.density > 0 && !(particle->mass > 0)) {
+        return ms_fail(err, MS_ERR_ARG, "%s has no masses that --density could go with; mskit correct finds them",
+                       ms_file_name(a->clump));
+    }
+    if (a->mass.density > 0) {
         particle->density = a->mass.density;
     }
     return MS_OK;

@@ -271,7 +271,8 @@ static void take_field(ms_stability_run *run, const char *column, const char *te
                                                 ms_measures[MS_MEASURE_INERTIA].in_stability)) == 0) {
         run->metrics.inertia.weighted = ms_csv_number(text);
     } else if (strcmp(column, "n_until") == 0) {
-        run->spheres_until = text[0] ? (size_t)ms_csv_number(text) : 0;
+        const double n = ms_csv_number(text); /* NAN where there is none */
+        run->spheres_until = n >= 1 && n <= MS_CLUMP_MAX_SPHERES ? (size_t)n : 0;
     } else if (strcmp(column, "spheres_fnv1a") == 0) {
         run->checksum = strtoull(text, NULL, 16);
     } else if (strcmp(column, "cause") == 0) {
