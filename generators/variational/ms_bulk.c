@@ -204,7 +204,7 @@ static ms_status fit_turns(spheres *best, spheres *s, int from, int to, ms_surfa
     const ms_signed_distance *fine = fit->field;
     ms_signed_distance rough = *fine;
     ms_status status = MS_OK;
-    if (s->dice >= ROUGH && ms_signed_distance_is_exact(fine)) {
+    if (is_free(fit) && s->dice >= ROUGH && ms_signed_distance_is_exact(fine)) {
         status = ms_signed_distance_open(&rough, fine->target, from == 0 ? RACE_STEP : 2 * fine->step, err);
     }
     fit->field = &rough;
@@ -306,6 +306,10 @@ static ms_status race_starts(spheres *best, spheres *one, spheres *another, cons
     }
     if (status == MS_OK) {
         status = begin_start(best, one, fit, err);
+    }
+    if (status == MS_OK && !is_free(fit)) { /* what the bounds cost is known in the end alone */
+        status = finish_start(best, one, fit, err);
+        one->cost = HUGE_VAL;
     }
     if (status == MS_OK) {
         status = other->given ? take_given(another->ball, &another->count, other, fit, err)
