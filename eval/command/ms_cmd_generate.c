@@ -231,8 +231,7 @@ static ms_status add_masses(ms_result *r, const generate_arguments *a, const ms_
     const ms_status status =
         ms_mass_correct(&r->mass, &r->clump, &a->mass, &input->target.body, ms_input_max_voxels(&a->input), err);
     if (status != MS_OK) {
-        free(r->clump.mass);
-        r->clump.mass = NULL;
+        ms_clump_drop_masses(&r->clump);
     }
     return status;
 }
