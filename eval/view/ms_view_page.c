@@ -41,7 +41,9 @@ void ms_view_page_measures(FILE *stream, const ms_metrics *metrics)
         fputs("<tr title=\"", stream);
         ms_escape_html(stream, m->help);
         fputs("\"><th>", stream);
-        ms_escape_html(stream, m->label);
+        /* elsewhere it follows the error of each moment */
+        ms_escape_html(stream,
+                       m == &ms_measures[MS_MEASURE_INERTIA] ? "error of the moments, weighted mean" : m->label);
         if (m->unit) {
             fprintf(stream, "<td class=\"number\">%.5g<td>%s\n", value, m->unit);
         } else {
