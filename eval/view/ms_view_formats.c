@@ -11,6 +11,7 @@
 #include "mesh/formats/ms_mesh_write.h"
 #include "ms_view_page.h"
 #include "ms_view_scene.h"
+#include "ms_view_vtp.h"
 
 /* Triangles of a shape on a page at most, and pixels of a picture of the clump or the shape. */
 enum { PAGE_TRIANGLES = 100000, PIXELS = 600 };
@@ -151,6 +152,7 @@ const ms_format ms_view_formats[] = {
     {"stl", "stl", "the closed surface of the union", MS_NEED_SPHERES, NULL, .part = {{"", write_stl}}},
     {"ply", "ply", "likewise", MS_NEED_SPHERES, NULL, .part = {{"", write_ply}}},
     {"obj", "obj", "likewise", MS_NEED_SPHERES, NULL, .part = {{"", write_obj}}},
+    {"vtp", "vtp", "the spheres as surfaces, for ParaView", MS_NEED_SPHERES, NULL, .part = {{"", ms_view_vtp_write}}},
     {"png", "png", "a picture of shape and spheres", MS_NEED_SPHERES, NULL, .part = {{"", write_png}}},
     {0},
 };

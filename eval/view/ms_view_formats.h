@@ -17,7 +17,7 @@ typedef struct ms_view_about {
     char *const *argv;
 } ms_view_about;
 
-/** html, stl, ply, obj, png; a row with a NULL name ends them. */
+/** html, stl, ply, obj, vtp, png; a row with a NULL name ends them. */
 extern const ms_format ms_view_formats[];
 
 /** The format of that name, of these or of ms_formats; NULL with a message that lists both. */

@@ -272,7 +272,8 @@ function show(which) {
   scene = read(scenes[which]);
   const n = first = scene.spheres.length / 4;
   byId('name').textContent = scene.raw.name;
-  byId('first').max = byId('first').value = n;
+  byId('first').max = n; /* before its value, which it bounds */
+  byId('first').value = n;
   byId('slider').hidden = !scene.raw.ordered || n < 2;
   byId('layout').disabled = !scene.mesh;
   offer('mass', scene.mass);

@@ -118,12 +118,12 @@ class Browser(unittest.TestCase):
 
     def test_clump_alone(self):
         with open(os.path.join(self.dir, "two.csv"), "w", encoding="utf-8") as stream:
-            stream.write("0,0,0,1\n1,0,0,1\n")
+            stream.writelines(f"{0.02 * k},0,0,1\n" for k in range(150))
         self.mskit("convert", "two.csv", "-o", "two.html")
         self.open("two.html")
         seen = self.look()
         self.assertGreater(min(seen["left"], seen["right"]), 0.2, "the clump fills the picture")
-        self.assertEqual(self.text("count"), "2 spheres")
+        self.assertEqual(self.text("count"), "150 spheres", "more than a slider has by itself")
         self.expect_no_error()
 
     def test_volume(self):
