@@ -9,13 +9,13 @@
 #include "ms_coarse_view.h"
 #include "ms_coverage_count.h"
 
-/* It is counted on every k-th voxel so that the mean radius is about as many of them, until the last moves. A finer count
- * takes longer and gains little. */
+/* It is counted on every k-th voxel so that the mean radius is about as many of them, until the last moves. A finer
+ * count takes longer and gains little. */
 static const double RESOLUTION = 12;
 enum { MOST_STEP = 6 };
 
-/* Steps of the moves, in those: the first, of spheres about one that was added or dropped, while others may yet come, and
- * the last of all. */
+/* Steps of the moves, in those: the first, of spheres about one that was added or dropped, while others may yet come,
+ * and the last of all. */
 static const double FIRST = 4, AGAIN = 2, ROUGH = 0.5, LAST = 0.1;
 
 /* Part of a step within which a climb has led back. */
