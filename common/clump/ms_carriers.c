@@ -177,7 +177,7 @@ static ms_status explain(ms_clump *clump, const ms_density_report *alone, const 
 }
 
 /* Radius of the ball of the particle's volume, in the clump's unit. */
-static double radius_of(const ms_particle *p)
+static double equal_ball_radius(const ms_particle *p)
 {
     return cbrt(0.75 * p->mass / (acos(-1.0) * p->density)) / p->scale;
 }
@@ -186,7 +186,7 @@ static ms_status add_carriers(ms_clump *clump, ms_density_report *report, const 
                               const ms_carriers_options *options, ms_error *err)
 {
     const ms_density_report alone = *report;
-    const double overlap = MS_CARRIERS_OVERLAP * radius_of(particle);
+    const double overlap = MS_CARRIERS_OVERLAP * equal_ball_radius(particle);
     int found;
     ms_clump_drop_masses(clump);
     ms_status status = find_at_depth(clump, &found, particle, &options->masses, options->depth, overlap, err);

@@ -20,6 +20,7 @@ static const ms_flag FLAGS[] = {
     MS_UNTIL_FLAGS,
     {"output", 'o', "DIR", "the clumps, a folder for each thousand, and the table grains.csv"},
     {"format", 0, "F", "format of the clumps; may be repeated (csv)"},
+    {"equal-volume", 0, NULL, "scale the clump about the centroid of the shape until its union has the shape's volume"},
     MS_MASS_FLAGS,
     {"skip-border", 0, NULL, "leave out grains that the border of their volume cuts"},
     {"least-voxels", 0, "N", "leave out labels of fewer voxels"},
@@ -89,6 +90,7 @@ static int take_grains_word(grains_arguments *a, const char *name)
         const char *name;
         int *is_set;
     } words[] = {{"skip-border", &a->grains.skip_border},
+                 {"equal-volume", &a->grains.equal_volume},
                  {"largest-piece", &a->grains.largest_piece},
                  {"resume", &a->resume},
                  {"merge", &a->merge},
@@ -413,7 +415,7 @@ static ms_status execute_grains(grains_arguments *a, char *const *words, size_t 
         return status;
     }
     a->grains.list = &list;
-    a->grains.run = ms_grain_list_checksum(&list);
+    a->grains.run = ms_grain_list_checksum(&list) ^ (uint64_t)a->grains.equal_volume;
     status = a->assembly ? ms_grain_assembly_check(&a->grains, words, count, err) : MS_OK;
     if (status == MS_OK) {
         status = a->dry_run ? try_three(a, err) : make_all(a, err);

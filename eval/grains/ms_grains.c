@@ -196,7 +196,7 @@ static ms_status write_grain(const ms_grain_row *row, const ms_input *input, con
     return status;
 }
 
-static ms_status make_clump(ms_result *r, const ms_input *input, const ms_grain_how *how, const ms_mass_flags *mass,
+static ms_status make_clump(ms_result *r, const ms_input *input, const ms_grain_how *how, const ms_grains *g,
                             ms_error *err)
 {
     const ms_run run = {.target = &input->target,
@@ -207,13 +207,17 @@ static ms_status make_clump(ms_result *r, const ms_input *input, const ms_grain_
     ms_status status = ms_generator_run(&r->clump, &r->reason, how->recipe.generator, &run, err);
     const double generated = omp_get_wtime();
     const size_t max_voxels = ms_input_max_voxels(&how->input);
+    if (status == MS_OK && g->equal_volume) {
+        status = ms_equal_volume_scale(&r->clump, &r->volume, &input->target.body, err);
+    }
     if (status == MS_OK) {
         status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump, max_voxels, err);
     }
     r->generate_seconds = generated - start;
     r->score_seconds = omp_get_wtime() - generated;
-    return status == MS_OK && mass ? ms_mass_correct(&r->mass, &r->clump, mass, &input->target.body, max_voxels, err)
-                                   : status;
+    return status == MS_OK && g->mass
+               ? ms_mass_correct(&r->mass, &r->clump, g->mass, &input->target.body, max_voxels, err)
+               : status;
 }
 
 /* Leaves the largest piece of a label alone, if that is wanted. */
@@ -262,7 +266,7 @@ static ms_status make_grain(ms_grain_row *row, ms_result *r, const grains_work *
                                                  : (double)NAN;
         row->voxel_size = input.target.grid.h;
         row->volume = input.target.body.volume;
-        status = make_clump(r, &input, grain->how, w->g->mass, &row->cause);
+        status = make_clump(r, &input, grain->how, w->g, &row->cause);
     }
     if (status == MS_OK) {
         status = find_place(&row->place, &r->mass, &input.target.body, &row->cause);
