@@ -10,6 +10,7 @@
 #include "cli/ms_report.h"
 #include "cli/ms_until.h"
 #include "compare/ms_compare.h"
+#include "compare/ms_compare_report.h"
 #include "compare/ms_compare_walk.h"
 #include "ms_commands.h"
 
@@ -28,6 +29,7 @@ static const ms_flag FLAGS[] = {
     {"resume", 0, NULL, "go on with the results that are in FILE"},
     {"json", 0, NULL, "all rows of FILE as JSON on standard output, too"},
     {"charts", 0, "DIR", "draw charts of all results into this folder, by gnuplot"},
+    {"report", 0, "FILE", "a page of all results with their charts and clumps in 3-D (.html); takes --charts"},
     {"allow-open", 0, NULL, "take a mesh with holes: majority of the parities along three axes"},
     MS_INPUT_CUT_FLAG,
     MS_INPUT_MENDING_FLAGS,
@@ -39,8 +41,10 @@ static const ms_flag FLAGS[] = {
 
 typedef struct compare_arguments {
     ms_comparison comparison;
-    const char *output;
+    const char *output, *report;
     int resume, json;
+    int argc; /* as the command was typed */
+    char **argv;
 } compare_arguments;
 
 static void insert_number(ms_numbers *list, double value)
@@ -113,12 +117,12 @@ static ms_status take_compare_flag(void *context, const char *name, const char *
         *(name[0] == 'r' ? &a->resume : &a->json) = 1;
         return MS_OK;
     }
-    *(strcmp(name, "output") == 0 ? &a->output : &c->charts) = value;
+    *(strcmp(name, "output") == 0 ? &a->output : strcmp(name, "report") == 0 ? &a->report : &c->charts) = value;
     return MS_OK;
 }
 
 /* What can be known before the work. */
-static ms_status check_files(const ms_comparison *c, const char *output, ms_error *err)
+static ms_status check_files(const ms_comparison *c, const char *output, const char *report, ms_error *err)
 {
     ms_files files = {0};
     for (size_t s = 0; s < c->n_shapes; s++) {
@@ -132,6 +136,9 @@ static ms_status check_files(const ms_comparison *c, const char *output, ms_erro
     }
     if (status == MS_OK) {
         status = ms_files_add(&files, output, MS_FILE_WRITTEN, err);
+    }
+    if (status == MS_OK && report) {
+        status = ms_files_add(&files, report, MS_FILE_WRITTEN, err);
     }
     if (status == MS_OK) {
         status = ms_files_check(&files, err);
@@ -148,6 +155,9 @@ static ms_status walk_and_report(ms_csv *csv, const compare_arguments *a, ms_err
     const ms_status told =
         a->json ? ms_report_print(stdout, ms_compare_json(csv->row, csv->n_rows), walked == MS_OK ? err : &cause)
                 : MS_OK;
+    if (a->report && walked == MS_OK && told == MS_OK) {
+        return ms_compare_report_write(a->report, csv, &a->comparison, a->argc, a->argv, err);
+    }
     return walked == MS_OK ? told : walked;
 }
 
@@ -172,8 +182,8 @@ static int execute_compare(const ms_command *command, const compare_arguments *a
     ms_error err;
     ms_csv csv;
     char *header = ms_compare_header();
-    ms_status status =
-        header ? check_files(&a->comparison, a->output, &err) : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
+    ms_status status = header ? check_files(&a->comparison, a->output, a->report, &err)
+                              : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
     if (status == MS_OK) {
         say_small_clumps(&a->comparison);
         status = ms_csv_open(&csv, a->output, header, a->resume, &err);
@@ -223,7 +233,8 @@ static ms_status resolve_compare(ms_comparison *c, ms_error *err)
 
 static int run_compare(const ms_command *command, int argc, char **argv)
 {
-    compare_arguments a = {.comparison = {.repeats = 1, .seed = 1}, .output = "compare.csv"};
+    compare_arguments a = {
+        .comparison = {.repeats = 1, .seed = 1}, .output = "compare.csv", .argc = argc, .argv = argv};
     int first;
     ms_error err;
     ms_input_defaults(&a.comparison.input);
@@ -235,7 +246,10 @@ static int run_compare(const ms_command *command, int argc, char **argv)
         a.comparison.shape = argv + first;
         a.comparison.n_shapes = (size_t)(argc - first);
         a.comparison.words = a.json ? stderr : stdout;
-        const ms_status status = resolve_compare(&a.comparison, &err);
+        const ms_status status =
+            a.report && !a.comparison.charts
+                ? ms_fail(&err, MS_ERR_ARG, "--report takes --charts DIR, where the clumps are kept")
+                : resolve_compare(&a.comparison, &err);
         code = status == MS_OK ? execute_compare(command, &a) : ms_flags_refuse(command, status, &err);
     }
     ms_methods_free(&a.comparison.methods);
@@ -245,8 +259,8 @@ static int run_compare(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_compare = {
     .name = "compare",
     .summary = "methods x shapes x resolutions x numbers of spheres, as CSV and charts",
-    .usage =
-        "SHAPE... [-g NAME[:OPTION=VALUE,...]]... [-n N,N,...] [--cells N,N,...] [-o FILE] [--charts DIR] [--json]",
+    .usage = "SHAPE... [-g NAME[:OPTION=VALUE,...]]... [-n N,N,...] [--cells N,N,...] [-o FILE] [--charts DIR "
+             "[--report FILE]] [--json]",
     .example = "mskit compare grain.stl -g mss -g mss:variant=paper -g setcover -n 5,10,20,50 --charts charts",
     .flags = FLAGS,
     .run = run_compare,

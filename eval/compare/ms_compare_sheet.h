@@ -18,6 +18,9 @@ typedef struct ms_compare_sheet {
 ms_status ms_compare_sheet_keep(const ms_compare_sheet *sheet, const ms_method *method, double asked,
                                 const ms_clump *clump, ms_error *err);
 
+/** Where that is; the caller frees it; NULL without memory. */
+char *ms_compare_sheet_path(const ms_compare_sheet *sheet, const ms_method *method, double asked, ms_error *err);
+
 /** Adds the files of a sheet, those of its clumps among them. */
 ms_status ms_compare_sheet_list(ms_files *files, const ms_compare_sheet *sheet, ms_error *err);
 

@@ -42,7 +42,7 @@ ROOMS = {
                      "eval/stability", "eval/view"],
     "eval/compare": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure",
                      "common/mesh",
-                     "common/volume", "common/voxel", "generators", "eval/chart", "eval/cli", "eval/queue"],
+                     "common/volume", "common/voxel", "generators", "eval/chart", "eval/cli", "eval/queue", "eval/view"],
     "eval/grains": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh/formats",
                     "common/volume", "generators", "eval/chart", "eval/cli", "eval/queue"],
     "eval/population": ["common/base", "common/clump", "common/clump/formats", "eval/chart", "eval/cli", "eval/grains"],
