@@ -24,7 +24,7 @@ static size_t index_of(const ms_isosurface *f, const int at[3])
 }
 
 /* Doubles the room of an array; it stays as it is without memory. */
-static ms_status grow_array(void **array, size_t *room, size_t size, ms_error *err)
+static ms_status double_room(void **array, size_t *room, size_t size, ms_error *err)
 {
     const size_t more = 2 * *room + 1024;
     void *grown = more < UINT32_MAX ? realloc(*array, more * size) : NULL;
@@ -51,7 +51,7 @@ static ms_status cut_edge(growth *g, const int low[3], int direction, ms_error *
     }
     if (g->mesh.n_vertices == g->vertices) {
         void *array = g->mesh.vertex;
-        const ms_status status = grow_array(&array, &g->vertices, sizeof *g->mesh.vertex, err);
+        const ms_status status = double_room(&array, &g->vertices, sizeof *g->mesh.vertex, err);
         g->mesh.vertex = array;
         if (status != MS_OK) {
             return status;
@@ -95,7 +95,7 @@ static ms_status put_cut_triangle(growth *g, uint32_t a, uint32_t b, uint32_t c,
 {
     if (g->mesh.n_triangles == g->triangles) {
         void *array = g->mesh.triangle;
-        const ms_status status = grow_array(&array, &g->triangles, sizeof *g->mesh.triangle, err);
+        const ms_status status = double_room(&array, &g->triangles, sizeof *g->mesh.triangle, err);
         g->mesh.triangle = array;
         if (status != MS_OK) {
             return status;

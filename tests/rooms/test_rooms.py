@@ -119,6 +119,8 @@ def find_circle(graph):
 
 
 class Rooms(unittest.TestCase):
+    maxDiff = None
+
     @classmethod
     def setUpClass(cls):
         cls.sources = read_sources()
