@@ -84,7 +84,7 @@ static ms_status draw_clump(ms_picture *picture, const ms_view *view, const ms_c
 {
     ms_clump clump;
     if (!method->generator) {
-        ms_render_clump(picture, view, &method->clump);
+        ms_render_clump(picture, view, &method->clump[sheet->at].clump);
         return MS_OK;
     }
     char *path = ms_compare_sheet_path(sheet, method, asked, err);

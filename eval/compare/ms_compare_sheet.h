@@ -9,6 +9,7 @@
 /** What is on a sheet; all borrowed. */
 typedef struct ms_compare_sheet {
     const char *folder, *shape; /* shape: begins the names of its files */
+    size_t at;                  /* of the shape among those that clumps of other tools go with */
     const ms_methods *methods;
     const double *asked; /* numbers of spheres, ascending */
     size_t n_asked;

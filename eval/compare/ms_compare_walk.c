@@ -10,7 +10,9 @@
 #include "ms_compare.h"
 #include "ms_compare_charts.h"
 #include "ms_compare_plan.h"
+#include "ms_compare_population_write.h"
 #include "ms_compare_sheet.h"
+#include "ms_compare_verdict.h"
 #include "ms_trial.h"
 
 /* A row, with the texts that it borrows. */
@@ -74,10 +76,14 @@ static void note_drawn(compare_walk *w, ms_status status, const ms_error *err)
 }
 
 /* The sheet of a shape of that name. */
-static ms_compare_sheet plan_sheet(const ms_comparison *a, const char *name)
+static ms_compare_sheet plan_sheet(const ms_comparison *a, const char *name, size_t at)
 {
-    return (ms_compare_sheet){
-        .folder = a->charts, .shape = name, .methods = &a->methods, .asked = a->asked.value, .n_asked = a->asked.count};
+    return (ms_compare_sheet){.folder = a->charts,
+                              .shape = name,
+                              .at = at,
+                              .methods = &a->methods,
+                              .asked = a->asked.value,
+                              .n_asked = a->asked.count};
 }
 
 /* For the contact sheet: charts are drawn of runs in turn, so that no other run is at it. */
@@ -89,7 +95,7 @@ static void keep_clump(compare_walk *w, const ms_compare_run *run, double asked,
     const double finest = w->a->cells.value[w->a->cells.count - 1];
     if (w->a->charts && run->method->generator && !(run->stage->cells < finest)) {
         ms_compare_name(name, sizeof name, run->stage->shape, w->a->label);
-        const ms_compare_sheet sheet = plan_sheet(w->a, name);
+        const ms_compare_sheet sheet = plan_sheet(w->a, name, run->stage->at);
         note_drawn(w, ms_compare_sheet_keep(&sheet, run->method, asked, &prefix, &err), &err);
     }
 }
@@ -100,7 +106,7 @@ static void draw_sheet(compare_walk *w, const ms_compare_stage *stage)
     ms_error err;
     if (stage->shared.status == MS_OK) {
         ms_compare_name(name, sizeof name, stage->shape, w->a->label);
-        const ms_compare_sheet sheet = plan_sheet(w->a, name);
+        const ms_compare_sheet sheet = plan_sheet(w->a, name, stage->at);
         note_drawn(w, ms_compare_sheet_draw(&sheet, &stage->shared.input.target, &err), &err);
     }
 }
@@ -110,7 +116,7 @@ static ms_status judge_clump(compare_walk *w, compare_result *result, const ms_c
                              const ms_trial *trial, double seconds)
 {
     const ms_method *method = run->method;
-    const ms_clump *clump = method->generator ? &trial->clump : &method->clump;
+    const ms_clump *clump = method->generator ? &trial->clump : &method->clump[run->stage->at].clump;
     const size_t n = asked < (double)clump->n_spheres ? (size_t)asked : clump->n_spheres;
     ms_compare_row *row = &result->row;
     if (method->generator) {
@@ -252,7 +258,7 @@ static ms_status list_charts(ms_files *files, const ms_comparison *a, size_t s, 
             return ms_fail(err, MS_ERR_ARG, "two shapes are called %s, and so would be their charts; rename one", name);
         }
     }
-    const ms_compare_sheet sheet = plan_sheet(a, name);
+    const ms_compare_sheet sheet = plan_sheet(a, name, s);
     const ms_status status = ms_compare_sheet_list(files, &sheet, err);
     return status == MS_OK ? ms_compare_charts_list(files, a->charts, name, err) : status;
 }
@@ -265,6 +271,9 @@ ms_status ms_compare_list_files(ms_files *files, const ms_comparison *comparison
         if (status == MS_OK && comparison->charts) {
             status = list_charts(files, comparison, s, err);
         }
+    }
+    if (status == MS_OK && comparison->population) {
+        status = ms_compare_population_list(files, comparison->population, err);
     }
     return status == MS_OK ? ms_methods_list_files(files, &comparison->methods, err) : status;
 }
@@ -296,6 +305,26 @@ static ms_status walk_plan(compare_walk *w, ms_error *err)
     return status;
 }
 
+/* What is made of all rows together: charts, the population, the verdict. */
+static void conclude(compare_walk *w)
+{
+    const ms_comparison *a = w->a;
+    ms_compare_records all;
+    ms_error why;
+    const ms_status cut = ms_compare_records_cut(&all, w->csv, &why);
+    note_drawn(w, cut, &why);
+    if (cut == MS_OK && a->charts) {
+        note_drawn(w, ms_compare_charts(&all, a->charts, &why), &why);
+    }
+    if (cut == MS_OK && a->population) {
+        note_drawn(w, ms_compare_population_write(&all, a->population, a->words, &why), &why);
+    }
+    if (cut == MS_OK) {
+        note_drawn(w, ms_compare_verdict_say(stderr, &all, &why), &why);
+    }
+    ms_compare_records_free(&all);
+}
+
 ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error *err)
 {
     ms_compare_plan plan;
@@ -314,11 +343,8 @@ ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error
         fprintf(comparison->words, "; %zu of the new ones failed, see the column cause", w.failed);
     }
     putc('\n', comparison->words);
-    if (comparison->charts) {
-        ms_error why;
-        note_drawn(&w, ms_compare_charts(csv, comparison->charts, &why), &why);
-        *err = w.why_not;
-    }
+    conclude(&w);
+    *err = w.why_not;
     if (w.drawn == MS_OK && w.made > 0 && w.failed == w.made) {
         return ms_fail(err, MS_ERR_SHAPE, "not one of %zu rows succeeded; the first failed because of this: %.700s",
                        w.made, w.first_cause.text);

@@ -43,7 +43,7 @@ ROOMS = {
     "eval/compare": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure",
                      "common/mesh",
                      "common/volume", "common/voxel", "generators", "eval/chart", "eval/cli", "eval/queue", "eval/view"],
-    "eval/grains": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh/formats",
+    "eval/grains": ["common/base", "common/clump", "common/clump/formats", "common/measure",
                     "common/volume", "generators", "eval/chart", "eval/cli", "eval/queue"],
     "eval/population": ["common/base", "common/clump", "common/clump/formats", "eval/chart", "eval/cli", "eval/grains"],
     "eval/queue": ["common/base", "eval/cli"],
