@@ -210,12 +210,14 @@ static int read_status(ms_grain_status *status, const char *named)
     return found;
 }
 
-ms_status ms_grain_row_read(ms_grain_status *status, double *spheres, const char *line, ms_error *err)
+ms_status ms_grain_row_read(ms_grain_status *status, int *is_remarked, double *spheres, const char *line, ms_error *err)
 {
     row_fields fields;
     cut_row(&fields, line);
     const char *n = find_field(&fields, "n");
     const int found = read_status(status, find_field(&fields, "status"));
+    const char *cause = find_field(&fields, "cause");
+    *is_remarked = found && *status == MS_GRAIN_OK && cause && cause[0];
     *spheres = n ? strtod(n, NULL) : 0;
     free_fields(&fields);
     return found ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "has no status of a grain");

@@ -63,6 +63,7 @@ static ms_status seek_number(ms_stability_run *run, ms_run job, ms_error *err)
 {
     ms_clump clump;
     ms_stop_reason reason;
+    job.remark = NULL; /* of its clump the number alone is kept */
     job.stop = (ms_stop){.radius = run->min_radius};
     job.stop.spheres =
         run->asked < MS_CLUMP_MAX_SPHERES / UNTIL_FACTOR ? run->asked * UNTIL_FACTOR : MS_CLUMP_MAX_SPHERES;
@@ -73,12 +74,14 @@ static ms_status seek_number(ms_stability_run *run, ms_run job, ms_error *err)
     return status;
 }
 
-static ms_status run_method(ms_stability_run *run, const ms_target *target, const ms_motion *motion,
+/* @param[out] remarks of the method */
+static ms_status run_method(ms_stability_run *run, ms_error *remarks, const ms_target *target, const ms_motion *motion,
                             const ms_stability *s, ms_error *err)
 {
     ms_clump clump;
     ms_run job = {.target = target, .settings = &run->method->settings, .seed = run->seed};
     job.stop = (ms_stop){.spheres = run->asked, .radius = run->min_radius};
+    ms_generator_keep_remarks(&job, remarks);
     const double start = omp_get_wtime();
     ms_status status = ms_generator_run(&clump, &run->reason, run->method->generator, &job, err);
     run->seconds = omp_get_wtime() - start;
@@ -100,6 +103,7 @@ void ms_stability_try(ms_stability_run *run, const ms_stability *s)
     const int threads = omp_get_max_threads();
     ms_changed c;
     ms_target target = {0};
+    ms_error remarks = {""};
     run->shape_checksum = s->input->checksum;
     run->shortest_side = ms_input_shortest_side(&s->input->mesh);
     ms_status status = apply_change(&c, run, s, &run->cause);
@@ -113,11 +117,11 @@ void ms_stability_try(ms_stability_run *run, const ms_stability *s)
     }
     if (status != MS_OK) {
         run->outcome = MS_OUTCOME_UNUSABLE;
-    } else if (run_method(run, &target, &c.motion, s, &run->cause) != MS_OK) {
+    } else if (run_method(run, &remarks, &target, &c.motion, s, &run->cause) != MS_OK) {
         run->outcome = MS_OUTCOME_FAILED;
     } else {
         run->outcome = run->metrics.spheres < run->asked ? MS_OUTCOME_SHORT : MS_OUTCOME_OK;
-        run->cause.text[0] = 0;
+        run->cause = remarks;
     }
     omp_set_num_threads(threads);
     ms_target_free(&target);

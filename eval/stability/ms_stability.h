@@ -51,7 +51,7 @@ typedef struct ms_stability_run {
     size_t spheres_until; /* number with which the method met the mismatch asked for; 0: not with 10 times `asked` */
     double seconds;       /* of the method */
     uint64_t checksum;    /* of the spheres, moved back */
-    ms_error cause;       /* "" unless failed or unusable */
+    ms_error cause;       /* why it failed or is unusable; of the others what the method remarks; "" without */
 } ms_stability_run;
 
 /**
