@@ -330,7 +330,7 @@ static ms_status make_all(const grains_arguments *a, ms_error *err)
     ms_grain_assembly assembly;
     char *header = ms_grain_row_line(NULL);
     ms_status status =
-        header ? ms_outputs_make_folder(a->folder, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the header");
+        header ? ms_files_make_folder(a->folder, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the header");
     ms_grains_table(table, sizeof table, &a->grains);
     if (status == MS_OK) {
         status = ms_csv_open(&csv, table, header, a->resume, err);
@@ -398,7 +398,7 @@ static ms_status choose_grains(const grains_arguments *a, const char *from, ms_e
     status = ms_library_make(&library, &table, &goal, err);
     ms_progress_close();
     if (status == MS_OK) {
-        status = ms_outputs_make_folder(a->folder, err);
+        status = ms_files_make_folder(a->folder, err);
         if (status == MS_OK) {
             status = ms_library_write(&written, &library, from, a->folder, err);
         }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/ms_expectation.h"
+#include "cli/ms_files.h"
 #include "ms_compare.h"
 #include "ms_compare_charts.h"
 #include "ms_compare_plan.h"
@@ -348,7 +349,10 @@ ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error
     if (status != MS_OK) {
         return status;
     }
-    status = walk_plan(&w, err);
+    if (comparison->charts) {
+        status = ms_files_make_folder(comparison->charts, err);
+    }
+    status = status == MS_OK ? walk_plan(&w, err) : status;
     ms_compare_plan_free(&plan);
     if (status != MS_OK) {
         return status;

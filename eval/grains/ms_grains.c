@@ -8,8 +8,8 @@
 
 #include "base/ms_file.h"
 #include "base/ms_quaternion.h"
+#include "cli/ms_files.h"
 #include "cli/ms_mass.h"
-#include "cli/ms_outputs.h"
 #include "clump/ms_template.h"
 #include "measure/ms_metrics.h"
 #include "volume/ms_components.h"
@@ -172,7 +172,7 @@ static ms_status write_format(const ms_grain_row *row, const ms_content *content
     ms_grain_row_path(path, sizeof path, g->folder, row);
     char *slash = strrchr(path, '/');
     *slash = '\0';
-    ms_status status = ms_outputs_make_folder(path, err);
+    ms_status status = ms_files_make_folder(path, err);
     *slash = '/';
     snprintf(path + strlen(path), sizeof path - strlen(path), ".%s", format->ending);
     if (status == MS_OK) {
