@@ -236,13 +236,14 @@ ms_status ms_grain_row_find(ms_grain_found *found, const char *line, ms_error *e
     cut_row(&fields, line);
     const char *file = find_field(&fields, "file");
     const char *source = find_field(&fields, "source");
+    found->number = read_number(&fields, "grain");
     const int is_row = file && strlen(file) < sizeof found->file && source && strlen(source) < sizeof found->source &&
+                       found->number >= 1 && found->number <= 9007199254740992.0 &&
                        read_status(&found->status, find_field(&fields, "status"));
     if (is_row) {
         snprintf(found->file, sizeof found->file, "%s", file);
         snprintf(found->source, sizeof found->source, "%s", source);
         found->label = read_number(&fields, "label");
-        found->number = read_number(&fields, "grain");
         found->volume = read_number(&fields, "volume");
         for (int c = 0; c < PLACE_COLUMNS; c++) {
             *place_number(&found->place, c) = read_number(&fields, PLACE[c]);
