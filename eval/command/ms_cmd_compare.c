@@ -137,9 +137,9 @@ static ms_status check_files(const ms_comparison *c, const char *output, const c
             return ms_file_fail_open(err, c->shape[s], errno);
         }
     }
-    ms_status status = ms_compare_list_files(&files, c, err);
-    if (status == MS_OK && c->charts) {
-        status = ms_outputs_make_folder(c->charts, err);
+    ms_status status = c->charts ? ms_files_add_folder(&files, c->charts, err) : MS_OK;
+    if (status == MS_OK) {
+        status = ms_compare_list_files(&files, c, err);
     }
     if (status == MS_OK && c->population) {
         status = ms_outputs_make_folder(c->population, err);

@@ -303,15 +303,19 @@ static ms_status report_sum(const ms_grains_sum *sum, const ms_grain_assembly *a
 {
     if (a->json) {
         return ms_report_print(stdout,
-                               json_pack("{s:o,s:I,s:I,s:I,s:I,s:f,s:o*}", "table", ms_report_text(table), "grains",
+                               json_pack("{s:o,s:I,s:I,s:I,s:I,s:I,s:f,s:o*}", "table", ms_report_text(table), "grains",
                                          (json_int_t)sum->grains, "ok", (json_int_t)sum->ok, "left_out",
-                                         (json_int_t)sum->left_out, "failed", (json_int_t)sum->failed, "spheres",
-                                         sum->spheres, "assembly", assembly ? assembly_json(assembly) : NULL),
+                                         (json_int_t)sum->left_out, "failed", (json_int_t)sum->failed, "remarked",
+                                         (json_int_t)sum->remarked, "spheres", sum->spheres, "assembly",
+                                         assembly ? assembly_json(assembly) : NULL),
                                err);
     }
     printf("wrote %s: %zu grains, %zu with a clump, %.0f spheres in all", table, sum->grains, sum->ok, sum->spheres);
-    printf("; %zu left out, %zu failed%s\n", sum->left_out, sum->failed,
-           sum->failed + sum->left_out ? ": see the column cause" : "");
+    printf("; %zu left out, %zu failed", sum->left_out, sum->failed);
+    if (sum->remarked) {
+        printf(", %zu with a remark of the method", sum->remarked);
+    }
+    puts(sum->failed + sum->left_out + sum->remarked ? ": see the column cause" : "");
     if (assembly) {
         print_assembly(assembly, a->folder);
     }
@@ -326,7 +330,7 @@ static ms_status make_all(const grains_arguments *a, ms_error *err)
     ms_grain_assembly assembly;
     char *header = ms_grain_row_line(NULL);
     ms_status status =
-        header ? ms_outputs_make_folder(a->folder, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the header");
+        header ? ms_files_make_folder(a->folder, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the header");
     ms_grains_table(table, sizeof table, &a->grains);
     if (status == MS_OK) {
         status = ms_csv_open(&csv, table, header, a->resume, err);
@@ -394,7 +398,7 @@ static ms_status choose_grains(const grains_arguments *a, const char *from, ms_e
     status = ms_library_make(&library, &table, &goal, err);
     ms_progress_close();
     if (status == MS_OK) {
-        status = ms_outputs_make_folder(a->folder, err);
+        status = ms_files_make_folder(a->folder, err);
         if (status == MS_OK) {
             status = ms_library_write(&written, &library, from, a->folder, err);
         }

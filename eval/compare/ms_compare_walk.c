@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/ms_expectation.h"
+#include "cli/ms_files.h"
 #include "ms_compare.h"
 #include "ms_compare_charts.h"
 #include "ms_compare_plan.h"
@@ -20,6 +21,7 @@ typedef struct compare_result {
     ms_compare_row row;
     char checksum[20];
     ms_error cause;
+    int is_remarked; /* nonzero: the method has a remark on the clump */
 } compare_result;
 
 /* Where the comparison stands. */
@@ -29,6 +31,7 @@ typedef struct compare_walk {
     compare_result **result; /* of each run that is done and not taken; NULL without memory */
     ms_csv *csv;
     size_t made, failed; /* rows; of those made how many failed */
+    size_t remarked;     /* of the others: the method has a remark on the clump */
     ms_error first_cause;
     ms_status drawn;  /* of the first chart that failed; the comparison goes on */
     ms_error why_not; /* it failed */
@@ -164,6 +167,18 @@ static ms_status make_trial(compare_walk *w, ms_trial *trial, const ms_compare_r
     return ms_trial_make(trial, &how, &run->stage->shared.input.target, err);
 }
 
+/* What a row that failed, in all or in its masses, has as its cause, and what the method remarks on its clump. */
+static void put_cause(compare_result *r, const ms_trial *trial, int failed)
+{
+    char *text = r->cause.text;
+    const size_t length = failed ? strlen(text) : 0;
+    if (!failed || trial->remarks.text[0]) {
+        snprintf(text + length, sizeof r->cause.text - length, "%s%s", failed ? "; " : "", trial->remarks.text);
+    }
+    r->row.text[MS_COLUMN_CAUSE] = text[0] ? text : NULL;
+    r->is_remarked = trial->remarks.text[0] != '\0';
+}
+
 /* The rows of a run, from `there` on; those before were there. */
 static void make_rows(compare_walk *w, compare_result *result, const ms_compare_run *run, int beside)
 {
@@ -187,10 +202,9 @@ static void make_rows(compare_walk *w, compare_result *result, const ms_compare_
         if (shared->status == MS_OK) {
             put_input(&r->row, &shared->input);
         }
-        if (made != MS_OK ||
-            judge_clump(w, r, run, run->asked[k], &trial, trial.seconds ? trial.seconds[k] : 0) != MS_OK) {
-            r->row.text[MS_COLUMN_CAUSE] = r->cause.text;
-        }
+        const int failed = made != MS_OK ||
+                           judge_clump(w, r, run, run->asked[k], &trial, trial.seconds ? trial.seconds[k] : 0) != MS_OK;
+        put_cause(r, &trial, failed);
     }
     ms_trial_free(&trial);
 }
@@ -209,24 +223,26 @@ static void work_run(void *context, size_t at, ms_queue_place *place)
 }
 
 /* Counts it, and remembers why the first one failed. Nonzero if it did. */
-static int note_row(compare_walk *w, const ms_compare_row *row)
+static int note_row(compare_walk *w, const compare_result *result)
 {
+    const ms_compare_row *row = &result->row;
     const int failed = !isfinite(row->number[MS_COLUMN_DICE]);
     if (failed && !w->first_cause.text[0]) {
         ms_fail(&w->first_cause, MS_ERR_SHAPE, "%s", row->text[MS_COLUMN_CAUSE]);
     }
     w->made++;
+    w->remarked += !failed && result->is_remarked;
     return failed;
 }
 
-static ms_status add_row(compare_walk *w, const ms_compare_row *row, size_t *failed, ms_error *err)
+static ms_status add_row(compare_walk *w, const compare_result *result, size_t *failed, ms_error *err)
 {
-    char *line = ms_compare_line(row);
+    char *line = ms_compare_line(&result->row);
     const ms_status status = line ? ms_csv_add(w->csv, line, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for a row");
     free(line);
     if (status == MS_OK) {
-        *failed += note_row(w, row);
-        say_row(w->a->words, row);
+        *failed += note_row(w, result);
+        say_row(w->a->words, &result->row);
     }
     return status;
 }
@@ -240,7 +256,7 @@ static ms_status take_rows(void *context, size_t at, size_t *failed, ms_error *e
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu rows", run->count);
     }
     for (size_t k = run->there; k < run->count && status == MS_OK; k++) {
-        status = add_row(w, &w->result[at][k].row, failed, err);
+        status = add_row(w, &w->result[at][k], failed, err);
     }
     free(w->result[at]);
     w->result[at] = NULL;
@@ -333,7 +349,10 @@ ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error
     if (status != MS_OK) {
         return status;
     }
-    status = walk_plan(&w, err);
+    if (comparison->charts) {
+        status = ms_files_make_folder(comparison->charts, err);
+    }
+    status = status == MS_OK ? walk_plan(&w, err) : status;
     ms_compare_plan_free(&plan);
     if (status != MS_OK) {
         return status;
@@ -341,6 +360,9 @@ ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error
     fprintf(comparison->words, "wrote %s, %zu rows", csv->path, csv->n_rows);
     if (w.failed) {
         fprintf(comparison->words, "; %zu of the new ones failed, see the column cause", w.failed);
+    }
+    if (w.remarked) {
+        fprintf(comparison->words, "; on %zu of them the method has a remark, see the column cause", w.remarked);
     }
     putc('\n', comparison->words);
     conclude(&w);

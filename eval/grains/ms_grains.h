@@ -27,6 +27,7 @@ typedef struct ms_grains {
 /** What came of it, of the rows that were there before, too. */
 typedef struct ms_grains_sum {
     size_t grains, ok, left_out, failed; /* of this part */
+    size_t remarked;                     /* of those ok: the method has a remark */
     double spheres;
 } ms_grains_sum;
 

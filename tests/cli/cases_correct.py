@@ -292,10 +292,12 @@ class Correct(Case):
         self.assert_refused("correct", "c.csv", "--target", "missing.stl", "--density", "1", "-o", "e.csv", code=1,
                             says=("missing.stl",))
         self.assert_refused("convert", "c.csv", "-o", "t.liggghts", code=1, says=("mskit correct",))
+        self.assert_refused("convert", "c.csv", "-o", "e.csv", "--density", "5", code=1, says=("c.csv has no masses",))
         self.assert_refused("convert", "c.csv", "--frame", "c.csv", "-o", "e.csv", code=1, says=("no JSON",))
 
     def test_wrong_usage(self):
         whole = ("correct", "c.csv", "--target", "box.obj", "--density", "1")
+        union = ("correct", "c.csv", "--properties", "union", "--density", "1", "-o", "d.csv")
         for args, says in (
                 (("correct", "c.csv", "-o", "d.csv", "--density", "1"), "--target SHAPE or --properties union"),
                 (("correct", "c.csv", "-o", "d.csv", "--target", "box.obj"), "--density"),
@@ -304,6 +306,8 @@ class Correct(Case):
                 ((*whole, "--unit", "ft", "-o", "d.csv"), "'ft'"),
                 ((*whole, "--unit", "m", "--scale", "1", "-o", "d.csv"), "exclude"),
                 ((*whole, "--axes", "x", "-o", "d.csv"), "principal, input"),
+                ((*union, "--weld", "0.1"), "--weld is of a shape"), ((*union, "--label", "2"), "--label is of a shape"),
+                ((*union, "--cells", "20"), "--cells is of a shape"),
                 ((*whole, "--format", "csv", "--format", "csv"), "twice"),
                 (("convert", "c.csv"), "-o FILE"),
                 (("convert", "c.csv", "-o", "a.xyz"), "names no format"),
