@@ -58,7 +58,7 @@ static int is_text(const char *field, const char *text, ms_error *err, ms_status
     int same = 0;
     if (stream) {
         ms_escape_csv_path(stream, text);
-        if (fclose(stream) == 0) {
+        if (fclose(stream) == 0 && escaped) {
             same = ms_csv_split(&word, 1, escaped) == 1 && strcmp(word, field) == 0;
         }
     }
