@@ -352,6 +352,9 @@ ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error
     if (comparison->charts) {
         status = ms_files_make_folder(comparison->charts, err);
     }
+    if (status == MS_OK && comparison->population) {
+        status = ms_files_make_folder(comparison->population, err);
+    }
     status = status == MS_OK ? walk_plan(&w, err) : status;
     ms_compare_plan_free(&plan);
     if (status != MS_OK) {
