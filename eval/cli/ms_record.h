@@ -17,6 +17,7 @@ typedef struct ms_result {
     ms_metrics metrics;
     ms_mass mass;           /* zeros without --correct */
     ms_equal_volume volume; /* zeros without --equal-volume */
+    ms_error remarks;       /* of the method, where they are kept */
     double generate_seconds, score_seconds;
 } ms_result;
 

@@ -138,11 +138,11 @@ static ms_status check_files(const ms_comparison *c, const char *output, const c
         }
     }
     ms_status status = c->charts ? ms_files_add_folder(&files, c->charts, err) : MS_OK;
-    if (status == MS_OK) {
-        status = ms_compare_list_files(&files, c, err);
-    }
     if (status == MS_OK && c->population) {
         status = ms_files_add_folder(&files, c->population, err);
+    }
+    if (status == MS_OK) {
+        status = ms_compare_list_files(&files, c, err);
     }
     if (status == MS_OK) {
         status = ms_files_add(&files, output, MS_FILE_WRITTEN, err);

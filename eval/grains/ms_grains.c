@@ -199,15 +199,12 @@ static ms_status write_grain(const ms_grain_row *row, const ms_input *input, con
     return status;
 }
 
-/* @param[out] remarks of the method */
-static ms_status make_clump(ms_result *r, ms_error *remarks, const ms_input *input, const ms_grain_how *how,
-                            const ms_grains *g, ms_error *err)
+static ms_status make_clump(ms_result *r, const ms_input *input, const ms_grain_how *how, const ms_grains *g,
+                            ms_error *err)
 {
-    ms_run run = {.target = &input->target,
-                  .stop = how->stop,
-                  .settings = &how->recipe.settings,
-                  .seed = (uint64_t)how->recipe.seed};
-    ms_generator_keep_remarks(&run, remarks);
+    ms_run run = {.target = &input->target, .stop = how->stop, .settings = &how->recipe.settings};
+    run.seed = (uint64_t)how->recipe.seed;
+    ms_generator_keep_remarks(&run, &r->remarks);
     const double start = omp_get_wtime();
     ms_status status = ms_generator_run(&r->clump, &r->reason, how->recipe.generator, &run, err);
     const double generated = omp_get_wtime();
@@ -239,9 +236,8 @@ static ms_status drop_pieces(ms_grain_row *row, ms_input *input, const ms_grains
     return status;
 }
 
-/* The grain from its shape to its files. @param[out] remarks of the method */
-static ms_status make_grain(ms_grain_row *row, ms_result *r, ms_error *remarks, const grains_work *w,
-                            ms_queue_place *place)
+/* The grain from its shape to its files. */
+static ms_status make_grain(ms_grain_row *row, ms_result *r, const grains_work *w, ms_queue_place *place)
 {
     const ms_grain *grain = row->grain;
     ms_input_flags flags = grain->how->input;
@@ -272,7 +268,7 @@ static ms_status make_grain(ms_grain_row *row, ms_result *r, ms_error *remarks, 
                                                  : (double)NAN;
         row->voxel_size = input.target.grid.h;
         row->volume = input.target.body.volume;
-        status = make_clump(r, remarks, &input, grain->how, w->g, &row->cause);
+        status = make_clump(r, &input, grain->how, w->g, &row->cause);
     }
     if (status == MS_OK) {
         status = find_place(&row->place, &r->mass, &input.target.body, &row->cause);
@@ -291,21 +287,20 @@ static void work_grain(void *context, size_t k, ms_queue_place *place)
     const size_t at = w->there + k;
     ms_grain_row row = begin_row(w, at);
     ms_result result;
-    ms_error remarks = {""};
     memset(&result, 0, sizeof result);
     const double start = omp_get_wtime();
     if (!leave_out(&row, w->g)) {
-        row.status = make_grain(&row, &result, &remarks, w, place) == MS_OK ? MS_GRAIN_OK : MS_GRAIN_FAILED;
+        row.status = make_grain(&row, &result, w, place) == MS_OK ? MS_GRAIN_OK : MS_GRAIN_FAILED;
     }
     if (row.status == MS_GRAIN_OK) {
-        row.cause = remarks;
+        row.cause = result.remarks;
     } else {
         row.result = NULL;
     }
     row.seconds = w->seconds[at] = omp_get_wtime() - start;
     row.beside = ms_queue_beside(place);
     w->status[at] = row.status;
-    w->remarked[at] = row.status == MS_GRAIN_OK && remarks.text[0];
+    w->remarked[at] = row.status == MS_GRAIN_OK && result.remarks.text[0];
     w->spheres[at] = row.result ? (double)result.clump.n_spheres : 0;
     w->line[at] = ms_grain_row_line(&row);
     ms_clump_free(&result.clump);
