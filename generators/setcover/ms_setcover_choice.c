@@ -8,12 +8,12 @@
 static const double CELL_OF_GAIN = 0.5;
 
 /* Moves begin with this part of the cells' side, but at most of the radius, and are halved. */
-static const double FIRST_MOVE = 0.5, LARGEST_MOVE = 0.25;
+static const double FIRST_MOVE = 0.25, LARGEST_MOVE = 0.25;
 
 /* Spheres that add less are left where they are. */
-static const double LEAST_GAIN = 16;
+static const double LEAST_GAIN = 32;
 
-enum { HALVINGS = 2, MOVES = 6 };
+enum { HALVINGS = 3, MOVES = 6 };
 
 /* The side of cells among which the best may add so much. */
 static double scale_of_gain(const ms_setcover_choice *choice, double gain)
