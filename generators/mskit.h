@@ -17,6 +17,7 @@
 #include "base/ms_version.h"
 #include "clump/formats/ms_read.h"
 #include "clump/formats/ms_write.h"
+#include "clump/ms_carriers.h"
 #include "clump/ms_clump.h"
 #include "clump/ms_density.h"
 #include "clump/ms_particle.h"

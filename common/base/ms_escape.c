@@ -233,6 +233,62 @@ void ms_escape_csv_path(FILE *stream, const char *text)
     put_field(stream, is_formula(text) ? "./" : "", text);
 }
 
+void ms_escape_html(FILE *stream, const char *text)
+{
+    while (*text) {
+        const character c = read_character(text);
+        if (!is_printable(c)) {
+            putc('?', stream);
+        } else if (c.code < 0x80 && strchr("<>&\"'`", (int)c.code)) {
+            fprintf(stream, "&#%u;", (unsigned)c.code);
+        } else {
+            fwrite(text, 1, c.length, stream);
+        }
+        text += c.length ? c.length : 1;
+    }
+}
+
+void ms_escape_html_json(FILE *stream, const char *json)
+{
+    for (; *json; json++) {
+        if (strchr("<>&", *json)) {
+            fprintf(stream, "\\u%04x", (unsigned)*json);
+        } else {
+            putc(*json, stream);
+        }
+    }
+}
+
+/* What no shell minds, and what does not end its quotes. */
+static int is_bare(const char *text)
+{
+    int bare = *text != '\0';
+    while (*text && bare) {
+        const character c = read_character(text);
+        bare = is_plain(c) && c.code < 0x80;
+        text += c.length;
+    }
+    return bare;
+}
+
+void ms_escape_shell(FILE *stream, const char *text)
+{
+    const char *quote = is_bare(text) ? "" : "'";
+    fputs(quote, stream);
+    while (*text) {
+        const character c = read_character(text);
+        if (*text == '\'') {
+            fputs("'\\''", stream);
+        } else if (is_printable(c)) {
+            fwrite(text, 1, c.length, stream);
+        } else {
+            putc('?', stream);
+        }
+        text += c.length ? c.length : 1;
+    }
+    fputs(quote, stream);
+}
+
 char *ms_escape_utf8(const char *text)
 {
     char *copy = strdup(text);

@@ -43,6 +43,17 @@ void ms_escape_csv(FILE *stream, const char *text);
 /** The same of a path: "./" instead of the apostrophe, so that it still names the file. */
 void ms_escape_csv_path(FILE *stream, const char *text);
 
+/** Text of HTML, in an element or within the quotes of an attribute; control characters and bytes that are no UTF-8
+ * become '?'. */
+void ms_escape_html(FILE *stream, const char *text);
+
+/** JSON, whole and ASCII, within an HTML script element: what could end the element or begin a comment in it stands as
+ * its number, which JSON takes in strings, where alone such signs are. */
+void ms_escape_html_json(FILE *stream, const char *json);
+
+/** A word of a POSIX shell, in single quotes where it has to be; no control characters: '?'. */
+void ms_escape_shell(FILE *stream, const char *text);
+
 /** For JSON: a copy in which bytes that are no UTF-8 are '?'. The caller frees it; NULL without memory. */
 char *ms_escape_utf8(const char *text);
 

@@ -9,12 +9,13 @@
 
 _Static_assert((int)MS_CLUMP_MAX_SPHERES <= (int)MS_RASTER_MAX_BALLS, "every clump can be counted on a grid");
 
-ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err)
+/* Puts a sphere behind the first `at`. */
+static ms_status append(ms_clump *clump, size_t at, const ms_sphere *sphere, ms_error *err)
 {
-    if (clump->n_spheres == MS_CLUMP_MAX_SPHERES) {
+    if (at == MS_CLUMP_MAX_SPHERES) {
         return ms_fail(err, MS_ERR_LIMIT, "a clump cannot have more than %d spheres", MS_CLUMP_MAX_SPHERES);
     }
-    if (clump->n_spheres == clump->capacity) {
+    if (at == clump->capacity) {
         const size_t capacity = 2 * clump->capacity + 16;
         ms_sphere *grown = realloc(clump->sphere, capacity * sizeof *grown);
         if (!grown) {
@@ -23,17 +24,47 @@ ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err)
         clump->sphere = grown;
         clump->capacity = capacity;
     }
-    clump->sphere[clump->n_spheres++] = *sphere;
+    clump->sphere[at] = *sphere;
     free(clump->mass);
     clump->mass = NULL;
     return MS_OK;
 }
 
+ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err)
+{
+    const ms_status status = append(clump, clump->n_spheres, sphere, err);
+    if (status == MS_OK) {
+        clump->n_spheres++;
+        clump->n_carriers = 0;
+    }
+    return status;
+}
+
+ms_status ms_clump_add_carrier(ms_clump *clump, const ms_sphere *carrier, ms_error *err)
+{
+    const ms_status status = append(clump, ms_clump_count_masses(clump), carrier, err);
+    clump->n_carriers += status == MS_OK;
+    return status;
+}
+
+void ms_clump_drop_masses(ms_clump *clump)
+{
+    clump->n_carriers = 0;
+    free(clump->mass);
+    clump->mass = NULL;
+}
+
+size_t ms_clump_count_masses(const ms_clump *clump)
+{
+    return clump->n_spheres + clump->n_carriers;
+}
+
 ms_status ms_clump_alloc_masses(ms_clump *clump, ms_error *err)
 {
-    double *mass = realloc(clump->mass, (clump->n_spheres + 1) * sizeof *mass);
+    const size_t n = ms_clump_count_masses(clump);
+    double *mass = realloc(clump->mass, (n + 1) * sizeof *mass);
     if (!mass) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for the masses of %zu spheres", clump->n_spheres);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the masses of %zu spheres", n);
     }
     clump->mass = mass;
     return MS_OK;

@@ -6,113 +6,28 @@
 
 #include "base/ms_vector.h"
 #include "ms_linear_program.h"
+#include "ms_mass_equations.h"
 
 /* Errors below this are rounding, and are said to be 0. */
 static const double EXACT = 1e-9;
 
-/* The equations (2) to (5) without units: lengths over the radius of gyration and from the true centre, masses over
- * that of the particle, along the axes in which they are solved. */
-typedef struct equations {
-    size_t n;
-    double (*place)[3];
-    double *square; /* of the radius */
-    double axis[3][3];
-    double moment[3], product[3]; /* what they shall sum to; products yz, zx, xy */
-    double mean;                  /* of the moments */
-} equations;
-
-static void free_equations(equations *e)
-{
-    free(e->place);
-    free(e->square);
-}
-
-/* The axes, and the tensor along them. */
-static ms_status choose_tensor(equations *e, const ms_particle *particle, int input_frame, double unit, ms_error *err)
-{
-    ms_principal principal = {.axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    ms_body body = {.volume = 1};
-    for (int i = 0; i < 9; i++) {
-        body.inertia[i / 3][i % 3] = particle->inertia[i / 3][i % 3] / particle->mass / unit / unit;
-    }
-    ms_status status = input_frame ? MS_OK : ms_inertia_principal(&principal, &body, err);
-    for (int m = 0; m < 3; m++) {
-        const int i = (m + 1) % 3, j = (m + 2) % 3;
-        e->moment[m] = input_frame ? body.inertia[m][m] : principal.moment[m];
-        e->product[m] = input_frame ? body.inertia[i][j] : 0;
-        e->mean += e->moment[m] / 3;
-    }
-    memcpy(e->axis, principal.axis, sizeof e->axis);
-    return status;
-}
-
-static ms_status make_equations(equations *e, const ms_clump *clump, const ms_particle *particle, int input_frame,
-                                ms_error *err)
-{
-    const double unit = ms_particle_gyration(particle);
-    memset(e, 0, sizeof *e);
-    e->n = clump->n_spheres;
-    e->place = malloc(e->n * sizeof *e->place);
-    e->square = malloc(e->n * sizeof *e->square);
-    if (!e->place || !e->square) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for the equations of %zu spheres", e->n);
-    }
-    ms_status status = choose_tensor(e, particle, input_frame, unit * particle->scale, err);
-    for (size_t s = 0; s < e->n && status == MS_OK; s++) {
-        const double r = clump->sphere[s].radius / unit;
-        double from_centre[3];
-        for (int k = 0; k < 3; k++) {
-            from_centre[k] = (clump->sphere[s].centre[k] - particle->centre[k]) / unit;
-        }
-        for (int m = 0; m < 3; m++) {
-            e->place[s][m] = ms_dot(e->axis[m], from_centre);
-        }
-        e->square[s] = r * r;
-        if (!(ms_dot(from_centre, from_centre) + e->square[s] < 1e12)) {
-            status = ms_fail(err, MS_ERR_ARG,
-                             "sphere %zu is more than a million radii of gyration away from the centre of the "
-                             "particle; are clump and particle in one unit and frame?",
-                             s + 1);
-        }
-    }
-    return status;
-}
-
-/* How much a unit of mass at sphere s adds to the moment about axis m, and to the product of the other two. */
-static double moment_of(const equations *e, size_t s, int m)
-{
-    const double a = e->place[s][(m + 1) % 3], b = e->place[s][(m + 2) % 3];
-    return a * a + b * b + 0.4 * e->square[s];
-}
-
-static double product_of(const equations *e, size_t s, int m)
-{
-    return -e->place[s][(m + 1) % 3] * e->place[s][(m + 2) % 3];
-}
-
 /* The goals in their order: each is a column that is made least and then held. */
 enum goal { CENTRE, EPSILON, PRODUCTS, GOALS };
 
-static ms_linear_program *make_programme(const equations *e, double least, double most, int input_frame, ms_error *err)
+static ms_linear_program *make_programme(const ms_mass_equations *e, double least, double most, int input_frame,
+                                         ms_error *err)
 {
+    const int goal[MS_MASS_EQUATIONS_KINDS] = {-1, CENTRE, EPSILON, input_frame ? EPSILON : PRODUCTS};
     double *row = malloc((e->n + 1) * sizeof *row);
     ms_linear_program *p = row ? ms_linear_program_new(e->n, GOALS, least, most, err) : NULL;
     if (!row) {
         ms_fail(err, MS_ERR_NOMEM, "no memory for the equations of %zu spheres", e->n);
         return NULL;
     }
-    for (size_t s = 0; s < e->n; s++) {
-        row[s] = 1;
-    }
-    ms_status status = p ? ms_linear_program_equation(p, row, 1, -1, 0, err) : MS_ERR_NOMEM;
-    for (int m = 0; m < 9 && status == MS_OK; m++) {
-        const int axis = m % 3, kind = m / 3;
-        const double right[3] = {0, e->moment[axis], e->product[axis]}, slack[3] = {1, e->moment[axis], e->mean};
-        const int goal[3] = {CENTRE, EPSILON, input_frame ? EPSILON : PRODUCTS};
-        for (size_t s = 0; s < e->n; s++) {
-            row[s] = kind == 0 ? e->place[s][axis] : kind == 1 ? moment_of(e, s, axis) : product_of(e, s, axis);
-        }
-        status = ms_linear_program_equation(p, row, right[kind], goal[kind], slack[kind], err);
+    ms_status status = p ? MS_OK : MS_ERR_NOMEM;
+    for (int k = 0; k < MS_MASS_EQUATIONS_COUNT && status == MS_OK; k++) {
+        const ms_mass_equation q = ms_mass_equations_get(row, e, k);
+        status = ms_linear_program_equation(p, row, q.right, goal[q.kind], q.scale, err);
     }
     free(row);
     if (status != MS_OK) {
@@ -123,7 +38,7 @@ static ms_linear_program *make_programme(const equations *e, double least, doubl
 }
 
 /* What the masses sum to, by other means than the rows of the programme. */
-static ms_status judge_masses(ms_density_report *report, const equations *e, const ms_clump *clump,
+static ms_status judge_masses(ms_density_report *report, const ms_mass_equations *e, const ms_clump *clump,
                               const ms_particle *particle, ms_error *err)
 {
     ms_particle sum;
@@ -147,7 +62,7 @@ static ms_status judge_masses(ms_density_report *report, const equations *e, con
         report->error_product[m] = (product - e->product[m]) / e->mean;
     }
     report->least_mass = report->most_mass = clump->mass[0];
-    for (size_t s = 1; s < clump->n_spheres; s++) {
+    for (size_t s = 1; s < ms_clump_count_masses(clump); s++) {
         report->least_mass = fmin(report->least_mass, clump->mass[s]);
         report->most_mass = fmax(report->most_mass, clump->mass[s]);
     }
@@ -156,7 +71,7 @@ static ms_status judge_masses(ms_density_report *report, const equations *e, con
 
 /* What the programme is made of, and what it gives. */
 typedef struct solution {
-    const equations *e;
+    const ms_mass_equations *e;
     double least, most, centre_tolerance;
     int input_frame;
     double *share; /* of the mass, one per sphere; those of the last step that came to an end */
@@ -218,11 +133,11 @@ static void note_reached(ms_density_report *report, const solution *s)
 static ms_status check_clump(const ms_clump *clump, double least, double most, const ms_density_options *options,
                              ms_error *err)
 {
-    const double n = (double)clump->n_spheres;
+    const double n = (double)ms_clump_count_masses(clump);
     if (clump->n_spheres == 0) {
         return ms_fail(err, MS_ERR_ARG, "a clump without spheres has no masses");
     }
-    for (size_t s = 0; s < clump->n_spheres; s++) {
+    for (size_t s = 0; s < ms_clump_count_masses(clump); s++) {
         const ms_sphere *b = &clump->sphere[s];
         if (!isfinite(b->centre[0] + b->centre[1] + b->centre[2]) || !isfinite(b->radius) || !(b->radius > 0)) {
             return ms_fail(err, MS_ERR_ARG, "sphere %zu is not finite or its radius is not above 0", s + 1);
@@ -232,7 +147,7 @@ static ms_status check_clump(const ms_clump *clump, double least, double most, c
         return ms_fail(err, MS_ERR_ARG,
                        "no masses of %zu spheres, each from %g to %g of the whole, sum to the whole (Yuan's eq. 5); "
                        "lower the least or raise the greatest mass",
-                       clump->n_spheres, least, most);
+                       ms_clump_count_masses(clump), least, most);
     }
     if (!(options->centre_tolerance >= 0) || !isfinite(options->centre_tolerance)) {
         return ms_fail(err, MS_ERR_ARG, "the tolerance on the centre of mass, %g, is not 0 or more",
@@ -241,19 +156,23 @@ static ms_status check_clump(const ms_clump *clump, double least, double most, c
     return MS_OK;
 }
 
+double ms_density_least(const ms_density_options *options, size_t n)
+{
+    return options->least > 0 ? options->least : fmin(1e-3, 0.5 / (double)n);
+}
+
 ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_particle *particle,
                            const ms_density_options *options, ms_error *err)
 {
-    const double n = (double)clump->n_spheres;
-    const double least = options->least > 0 ? options->least : fmin(1e-3, 0.5 / n);
+    const double least = ms_density_least(options, ms_clump_count_masses(clump));
     const double most = options->most > 0 ? options->most : 1;
     const double tolerance = options->centre_tolerance > 0 ? options->centre_tolerance : MS_DENSITY_CENTRE_TOLERANCE;
-    equations e = {0};
+    ms_mass_equations e = {0};
     solution s = {&e, least, most, tolerance, options->input_frame, NULL, {0}, 0};
     memset(report, 0, sizeof *report);
     ms_status status = check_clump(clump, least, most, options, err);
     if (status == MS_OK) {
-        status = make_equations(&e, clump, particle, options->input_frame, err);
+        status = ms_mass_equations_make(&e, clump, particle, options->input_frame, err);
     }
     if (status == MS_OK) {
         status = ms_clump_alloc_masses(clump, err);
@@ -274,6 +193,6 @@ ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_
         free(clump->mass);
         clump->mass = NULL;
     }
-    free_equations(&e);
+    ms_mass_equations_free(&e);
     return status;
 }

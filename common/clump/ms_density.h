@@ -19,6 +19,9 @@ typedef struct ms_density_options {
                                 radius of gyration; 0: MS_DENSITY_CENTRE_TOLERANCE */
 } ms_density_options;
 
+/** The least share of a mass among n of them. */
+MS_API double ms_density_least(const ms_density_options *options, size_t n);
+
 /** What was reached. Errors are relative: of the mass and the moments to their own true values, of the products of
  * inertia to the mean moment, of the centre to the radius of gyration. */
 typedef struct ms_density_report {
@@ -41,7 +44,7 @@ typedef struct ms_density_report {
  * but they need not. Here they come third, so that his epsilon stays the least one, and the whole tensor is met
  * wherever some masses do so.
  *
- * @param[in,out] clump    its masses are set; on failure it has none
+ * @param[in,out] clump    its masses are set, of spheres and carriers alike; on failure it has none
  * @param[out]    report   zeros on failure
  * @param         particle what the clump stands for
  * @return MS_OK; MS_ERR_ARG for no spheres, a radius or place that is not finite, or bounds that no masses obey;

@@ -244,6 +244,17 @@ ms_status ms_linear_program_minimise(ms_linear_program *p, int goal, double allo
     return MS_OK;
 }
 
+ms_status ms_linear_program_weigh(ms_linear_program *p, const double *weight, ms_error *err)
+{
+    const int n = (int)p->n;
+    for (int s = 0; s < n; s++) {
+        glp_set_obj_coef(p->problem, s + 1, weight[s]);
+    }
+    /* Shares that could be 0 are not to have what all have alike. */
+    glp_set_col_bnds(p->problem, n + 1, GLP_FX, glp_get_col_lb(p->problem, n + 1), 0);
+    return minimise_objective(p, err);
+}
+
 ms_status ms_linear_program_spread(ms_linear_program *p, ms_error *err)
 {
     const int u = (int)p->n + 1;

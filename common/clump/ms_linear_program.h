@@ -46,6 +46,10 @@ ms_status ms_linear_program_equation(ms_linear_program *p, const double *row, do
  */
 ms_status ms_linear_program_minimise(ms_linear_program *p, int goal, double allowed, double *value, ms_error *err);
 
+/** Makes the weighted sum of the shares least. No other step follows but this one again. @param weight n values, 0 or
+ * more @return as ms_linear_program_minimise */
+ms_status ms_linear_program_weigh(ms_linear_program *p, const double *weight, ms_error *err);
+
 /** Makes the smallest share greatest. @return as ms_linear_program_minimise */
 ms_status ms_linear_program_spread(ms_linear_program *p, ms_error *err);
 

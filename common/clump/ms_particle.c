@@ -64,15 +64,15 @@ ms_status ms_particle_from_spheres(ms_particle *particle, const ms_clump *clump,
     if (!clump->mass || clump->n_spheres == 0 || !is_positive(scale)) {
         return ms_fail(err, MS_ERR_ARG, "the spheres have no masses to sum, or the scale %g is not above 0", scale);
     }
-    for (size_t s = 0; s < clump->n_spheres; s++) {
+    for (size_t s = 0; s < ms_clump_count_masses(clump); s++) {
         particle->mass += clump->mass[s];
     }
-    for (size_t s = 0; s < clump->n_spheres; s++) {
+    for (size_t s = 0; s < ms_clump_count_masses(clump); s++) {
         for (int k = 0; k < 3; k++) {
             particle->centre[k] += clump->mass[s] / particle->mass * clump->sphere[s].centre[k];
         }
     }
-    for (size_t s = 0; s < clump->n_spheres; s++) {
+    for (size_t s = 0; s < ms_clump_count_masses(clump); s++) {
         add_solid(particle->inertia, &clump->sphere[s], clump->mass[s], particle->centre);
     }
     for (int i = 0; i < 9; i++) {

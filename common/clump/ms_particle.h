@@ -28,7 +28,7 @@ MS_API ms_status ms_particle_from_body(ms_particle *particle, const ms_body *bod
                                        ms_error *err);
 
 /**
- * What an engine finds that sums the spheres: each solid, of the mass that the clump says.
+ * What an engine finds that sums the spheres and carriers: each solid, of the mass that the clump says.
  *
  * @param[out] particle zeros on failure; its density is not known
  * @param      scale    metres in a unit of length of the clump

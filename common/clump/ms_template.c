@@ -15,7 +15,8 @@ static ms_status principal_of(ms_principal *principal, const ms_particle *partic
 static ms_status carry_spheres(ms_template *made, const ms_clump *clump, ms_error *err)
 {
     ms_status status = MS_OK;
-    for (size_t s = 0; s < clump->n_spheres && status == MS_OK; s++) {
+    const size_t n = ms_clump_count_masses(clump);
+    for (size_t s = 0; s < n && status == MS_OK; s++) {
         ms_sphere sphere = {.radius = made->scale * clump->sphere[s].radius};
         double from_centre[3];
         for (int k = 0; k < 3; k++) {
@@ -24,13 +25,14 @@ static ms_status carry_spheres(ms_template *made, const ms_clump *clump, ms_erro
         for (int m = 0; m < 3; m++) {
             sphere.centre[m] = made->scale * ms_dot(made->axis[m], from_centre);
         }
-        status = ms_clump_add(&made->clump, &sphere, err);
+        status = s < clump->n_spheres ? ms_clump_add(&made->clump, &sphere, err)
+                                      : ms_clump_add_carrier(&made->clump, &sphere, err);
     }
     if (status == MS_OK && clump->mass) {
         status = ms_clump_alloc_masses(&made->clump, err);
     }
     if (status == MS_OK && clump->mass) {
-        memcpy(made->clump.mass, clump->mass, clump->n_spheres * sizeof *clump->mass);
+        memcpy(made->clump.mass, clump->mass, n * sizeof *clump->mass);
     }
     return status;
 }
@@ -61,7 +63,7 @@ ms_status ms_template_undo(ms_clump *clump, const ms_particle *particle, ms_erro
 {
     ms_principal principal;
     ms_status status = principal_of(&principal, particle, err);
-    for (size_t s = 0; s < clump->n_spheres && status == MS_OK; s++) {
+    for (size_t s = 0; s < ms_clump_count_masses(clump) && status == MS_OK; s++) {
         ms_sphere *sphere = &clump->sphere[s];
         double source[3];
         for (int k = 0; k < 3; k++) {

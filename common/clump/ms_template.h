@@ -7,7 +7,7 @@
 MS_C_BEGIN
 
 typedef struct ms_template {
-    ms_clump clump;       /* with masses if the source has them */
+    ms_clump clump;       /* with masses and carriers if the source has them */
     ms_particle particle; /* scale 1, centre 0, a diagonal inertia whose moments ascend */
     double axis[3][3];    /* rows: the principal axes in the frame of the source (ms_inertia_principal) */
     double centre[3];     /* of mass, in the unit and frame of the source */
@@ -24,7 +24,7 @@ typedef struct ms_template {
 MS_API ms_status ms_template_make(ms_template *made, const ms_clump *clump, const ms_particle *particle, ms_error *err);
 
 /**
- * Carries spheres in the frame of a template back into that of the source, in place.
+ * Carries spheres and carriers in the frame of a template back into that of the source, in place.
  *
  * @param particle of the source, as ms_template_make had it
  * @return MS_OK; as ms_inertia_principal, and the clump is as it was

@@ -148,11 +148,11 @@ static void add_to_row(cut_worker *w, const cut_polygon *p, int cell[3])
 static void cut_triangle(cut_worker *w, uint32_t triangle)
 {
     cut_polygon whole = {.n = 3};
+    double corner[3][3];
+    ms_grid_corners(corner, w->grid, w->mesh, triangle);
     for (int c = 0; c < 3; c++) {
-        double at[3];
-        ms_grid_at(at, w->grid, w->mesh->vertex[w->mesh->triangle[triangle][c]]);
         for (int a = 0; a < 3; a++) {
-            whole.corner[c][a] = 2 * at[a] + 1;
+            whole.corner[c][a] = 2 * corner[c][a] + 1;
         }
     }
     for (int half = 0; half < 2; half++) {
@@ -264,11 +264,11 @@ typedef struct plane_lists {
 
 static void find_planes(int *from, int *to, const ms_grid *grid, const ms_mesh *mesh, size_t triangle)
 {
-    double at[3], lo = HUGE_VAL, hi = -HUGE_VAL;
+    double corner[3][3], lo = HUGE_VAL, hi = -HUGE_VAL;
+    ms_grid_corners(corner, grid, mesh, triangle);
     for (int c = 0; c < 3; c++) {
-        ms_grid_at(at, grid, mesh->vertex[mesh->triangle[triangle][c]]);
-        lo = fmin(lo, at[2]);
-        hi = fmax(hi, at[2]);
+        lo = fmin(lo, corner[c][2]);
+        hi = fmax(hi, corner[c][2]);
     }
     *from = (int)fmin(fmax(floor(lo + 0.5), 0), grid->n[2] - 1);
     *to = (int)fmin(fmax(floor(hi + 0.5) + 1, *from + 1), grid->n[2]);

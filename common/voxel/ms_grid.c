@@ -82,6 +82,13 @@ void ms_grid_place(double place[3], const ms_grid *grid, const double at[3])
     }
 }
 
+void ms_grid_corners(double corner[3][3], const ms_grid *grid, const ms_mesh *mesh, size_t triangle)
+{
+    for (int c = 0; c < 3; c++) {
+        ms_grid_at(corner[c], grid, mesh->vertex[mesh->triangle[triangle][c]]);
+    }
+}
+
 int ms_grid_holds(const ms_grid *grid, const double at[3])
 {
     int voxel[3];

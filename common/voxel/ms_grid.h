@@ -7,6 +7,7 @@
 
 #include "base/ms_error.h"
 #include "base/ms_sphere.h"
+#include "mesh/ms_mesh.h"
 
 MS_C_BEGIN
 
@@ -42,6 +43,15 @@ static inline size_t ms_grid_index(const ms_grid *grid, int i, int j, int k)
     return (size_t)i + (size_t)grid->n[0] * ((size_t)j + (size_t)grid->n[1] * (size_t)k);
 }
 
+/** The voxel at an index, of a lattice of extents n: the inverse of ms_grid_index. */
+static inline void ms_grid_voxel(int voxel[3], const int n[3], size_t index)
+{
+    const size_t row = index / (size_t)n[0];
+    voxel[0] = (int)(index % (size_t)n[0]);
+    voxel[1] = (int)(row % (size_t)n[1]);
+    voxel[2] = (int)(row / (size_t)n[1]);
+}
+
 /**
  * An empty grid (all background).
  *
@@ -66,6 +76,9 @@ MS_API void ms_grid_at(double at[3], const ms_grid *grid, const double place[3])
 
 /** The place in the mesh's frame of a point of the grid. */
 MS_API void ms_grid_place(double place[3], const ms_grid *grid, const double at[3]);
+
+/** The corners of a triangle of a mesh, in voxels. */
+MS_API void ms_grid_corners(double corner[3][3], const ms_grid *grid, const ms_mesh *mesh, size_t triangle);
 
 /** Nonzero if a point of the grid lies in a voxel inside the shape; 0 beyond the grid. */
 MS_API int ms_grid_holds(const ms_grid *grid, const double at[3]);

@@ -141,9 +141,9 @@ ms_status ms_signed_distance_open(ms_signed_distance *field, const ms_target *ta
 static float compute_node(const ms_signed_distance *field, size_t node)
 {
     const ms_grid *grid = &field->target->grid;
-    const size_t nx = (size_t)field->n[0], ny = (size_t)field->n[1];
-    const int i = (int)(node % nx) * field->step, j = (int)(node / nx % ny) * field->step,
-              k = (int)(node / nx / ny) * field->step;
+    int on[3];
+    ms_grid_voxel(on, field->n, node);
+    const int i = on[0] * field->step, j = on[1] * field->step, k = on[2] * field->step;
     const double at[3] = {i, j, k};
     double place[3];
     ms_grid_place(place, grid, at);

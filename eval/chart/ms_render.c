@@ -55,45 +55,56 @@ static void project(double out[3], const ms_view *view, const double point[3])
     }
 }
 
-/* Box of the voxels, or of the mesh. */
-static void find_box(double lo[3], double hi[3], const ms_target *target)
+/* All of a mesh, or without one of a box. */
+static ms_status view_body(ms_view *view, const ms_body *body, const ms_mesh *mesh, const double lo[3],
+                           const double hi[3], ms_error *err)
 {
-    const ms_grid *g = &target->grid;
-    if (target->mesh) {
-        ms_mesh_box(lo, hi, target->mesh);
-        return;
+    ms_principal principal;
+    double reach = 0;
+    const ms_status status = ms_inertia_principal(&principal, body, err);
+    if (status != MS_OK) {
+        return status;
     }
+    memcpy(view->axis, principal.axis, sizeof view->axis);
+    turn(view->axis[0], view->axis[2], -25);
+    turn(view->axis[1], view->axis[2], 30);
     for (int k = 0; k < 3; k++) {
-        lo[k] = g->origin[k];
-        hi[k] = g->origin[k] + g->h * (g->n[k] - 1);
+        view->centre[k] = (lo[k] + hi[k]) / 2;
     }
+    const size_t count = mesh ? mesh->n_vertices : 8;
+    for (size_t v = 0; v < count; v++) {
+        const double corner[3] = {v & 1 ? hi[0] : lo[0], v & 2 ? hi[1] : lo[1], v & 4 ? hi[2] : lo[2]};
+        double at[3];
+        project(at, view, mesh ? mesh->vertex[v] : corner);
+        reach = fmax(reach, fmax(fabs(at[0]), fabs(at[1])));
+    }
+    view->scale = 0.46 * view->size / reach;
+    return MS_OK;
 }
 
 ms_status ms_render_view(ms_view *view, const ms_target *target, int x, int y, int size, ms_error *err)
 {
-    ms_principal principal;
-    double lo[3], hi[3], reach = 0;
-    const ms_status status = ms_inertia_principal(&principal, &target->body, err);
-    if (status != MS_OK) {
-        return status;
-    }
+    const ms_grid *g = &target->grid;
+    double lo[3], hi[3];
     *view = (ms_view){.scale = 1, .x = x, .y = y, .size = size};
-    memcpy(view->axis, principal.axis, sizeof view->axis);
-    turn(view->axis[0], view->axis[2], -25);
-    turn(view->axis[1], view->axis[2], 30);
-    find_box(lo, hi, target);
     for (int k = 0; k < 3; k++) {
-        view->centre[k] = (lo[k] + hi[k]) / 2;
+        lo[k] = g->origin[k];
+        hi[k] = g->origin[k] + g->h * (g->n[k] - 1);
     }
-    const size_t count = target->mesh ? target->mesh->n_vertices : 8;
-    for (size_t v = 0; v < count; v++) {
-        const double corner[3] = {v & 1 ? hi[0] : lo[0], v & 2 ? hi[1] : lo[1], v & 4 ? hi[2] : lo[2]};
-        double at[3];
-        project(at, view, target->mesh ? target->mesh->vertex[v] : corner);
-        reach = fmax(reach, fmax(fabs(at[0]), fabs(at[1])));
+    if (target->mesh) {
+        ms_mesh_box(lo, hi, target->mesh);
     }
-    view->scale = 0.46 * size / reach;
-    return MS_OK;
+    return view_body(view, &target->body, target->mesh, lo, hi, err);
+}
+
+ms_status ms_render_mesh_view(ms_view *view, const ms_mesh *mesh, int x, int y, int size, ms_error *err)
+{
+    ms_body body;
+    double lo[3], hi[3];
+    *view = (ms_view){.scale = 1, .x = x, .y = y, .size = size};
+    ms_mesh_box(lo, hi, mesh);
+    const ms_status status = ms_inertia_mesh(&body, mesh, err);
+    return status == MS_OK ? view_body(view, &body, mesh, lo, hi, err) : status;
 }
 
 /* Lit from the upper left, in front of whatever was there; what is turned from the light is darker still. */
@@ -274,23 +285,26 @@ static void put_png(FILE *stream, const ms_picture *picture, const uint8_t *pack
     put_chunk(stream, "IEND", NULL, 0);
 }
 
-ms_status ms_render_picture_write(const ms_picture *picture, const char *path, ms_error *err)
+ms_status ms_render_picture_put(FILE *stream, const ms_picture *picture, ms_error *err)
 {
     const size_t width = (size_t)picture->width, height = (size_t)picture->height, raw_size = (width + 1) * height;
     uLongf size = compressBound((uLong)raw_size);
     uint8_t *raw = calloc(raw_size, 1), *packed = malloc(size);
-    ms_output output;
     for (size_t j = 0; raw && j < height; j++) { /* each row begins with 0: it is not filtered */
         memcpy(raw + j * (width + 1) + 1, picture->grey + j * width, width);
     }
-    ms_status status = raw && packed && compress(packed, &size, raw, (uLong)raw_size) == Z_OK
-                           ? ms_output_open(&output, path, err)
-                           : ms_fail(err, MS_ERR_NOMEM, "%s: no memory for the picture", path);
-    if (status == MS_OK) {
-        put_png(output.stream, picture, packed, size);
-        status = ms_output_close(&output, MS_OK, err);
+    const int done = raw && packed && compress(packed, &size, raw, (uLong)raw_size) == Z_OK;
+    if (done) {
+        put_png(stream, picture, packed, size);
     }
     free(raw);
     free(packed);
-    return status;
+    return done ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for a picture");
+}
+
+ms_status ms_render_picture_write(const ms_picture *picture, const char *path, ms_error *err)
+{
+    ms_output output;
+    const ms_status status = ms_output_open(&output, path, err);
+    return status == MS_OK ? ms_output_close(&output, ms_render_picture_put(output.stream, picture, err), err) : status;
 }

@@ -3,6 +3,7 @@
 #define MS_RENDER_H
 
 #include <stdint.h>
+#include <stdio.h>
 
 #include "clump/ms_clump.h"
 #include "voxel/ms_target.h"
@@ -33,6 +34,9 @@ ms_status ms_render_picture_alloc(ms_picture *picture, int width, int height, ms
  */
 ms_status ms_render_view(ms_view *view, const ms_target *target, int x, int y, int size, ms_error *err);
 
+/** The same of a closed mesh alone. */
+ms_status ms_render_mesh_view(ms_view *view, const ms_mesh *mesh, int x, int y, int size, ms_error *err);
+
 /** The mesh of the target, or the faces of its voxels. Cost: triangles + pixels. */
 void ms_render_target(ms_picture *picture, const ms_view *view, const ms_target *target);
 
@@ -41,6 +45,9 @@ void ms_render_clump(ms_picture *picture, const ms_view *view, const ms_clump *c
 
 /** Writes a PNG. @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM */
 ms_status ms_render_picture_write(const ms_picture *picture, const char *path, ms_error *err);
+
+/** The same to an open file. @return MS_OK; MS_ERR_NOMEM */
+ms_status ms_render_picture_put(FILE *stream, const ms_picture *picture, ms_error *err);
 
 void ms_render_picture_free(ms_picture *picture);
 

@@ -35,6 +35,9 @@ typedef struct ms_input_flags {
     {"fill-holes", 0, "EDGES", "fill holes of at most so many edges (0: none)"}, \
     {"drop-bodies", 0, "SHARE", "drop pieces that hold less than this part of the largest (0: none)"}
 
+#define MS_INPUT_RULE_FLAG \
+    {"rule", 0, "half|centre", "a voxel is inside if more than half of it is, or if its centre is (half)"}
+
 #define MS_INPUT_CUT_FLAG \
     {"cut", 0, NULL, "count coverage_cut, too, which takes about as long as the other measures"}
 
@@ -43,7 +46,7 @@ typedef struct ms_input_flags {
     {"deq", 0, "N", "voxel size = diameter of the ball of equal volume / N"}, \
     {"voxel-size", 0, "H", "voxel size in the shape's unit"}, \
     {"max-voxels", 0, "N", "voxels of the whole grid at most, as 500k or 20M; alone: the finest such grid"}, \
-    {"rule", 0, "half|centre", "a voxel is inside if more than half of it is, or if its centre is (half)"}, \
+    MS_INPUT_RULE_FLAG, \
     {"allow-open", 0, NULL, "take a mesh with holes: majority of the parities along three axes"}, \
     MS_INPUT_CUT_FLAG, \
     MS_INPUT_MENDING_FLAGS, \
@@ -64,6 +67,9 @@ typedef struct ms_input_text {
 
 /** Those that change what is measured and are not at their defaults, as "weld=0.001 allow-open"; not the label. */
 ms_input_text ms_input_flags_text(const ms_input_flags *flags);
+
+/** Adds a flag of the command's own that is given: a number above 0. */
+void ms_input_text_add(ms_input_text *to, const char *name, double value);
 
 /** A shape that was read. */
 typedef struct ms_input {

@@ -183,6 +183,11 @@ ms_input_text ms_input_flags_text(const ms_input_flags *flags)
     return to;
 }
 
+void ms_input_text_add(ms_input_text *to, const char *name, double value)
+{
+    add_number(to, value, 0, name);
+}
+
 ms_status ms_input_check_flags(const ms_input *input, const ms_input_flags *flags, ms_error *err)
 {
     const int given = (flags->cells > 0) + (flags->deq > 0) + (flags->voxel_size > 0);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/ms_choice.h"
+#include "ms_json_object.h"
 
 /* Takes one of two words; 1 for the second. */
 static ms_status take_choice(int *second, const char *name, const char *value, const char *const words[2],
@@ -29,9 +30,10 @@ ms_status ms_mass_flag(int *taken, ms_mass_flags *flags, const char *name, const
     } numbers[] = {
         {"density", &flags->density, DBL_MIN, DBL_MAX},
         {"scale", &flags->scale, DBL_MIN, DBL_MAX},
-        {"least-mass", &flags->options.least, DBL_MIN, 1},
-        {"most-mass", &flags->options.most, DBL_MIN, 1},
-        {"centre-tolerance", &flags->options.centre_tolerance, 0, DBL_MAX},
+        {"least-mass", &flags->options.masses.least, DBL_MIN, 1},
+        {"most-mass", &flags->options.masses.most, DBL_MIN, 1},
+        {"centre-tolerance", &flags->options.masses.centre_tolerance, 0, DBL_MAX},
+        {"carrier-depth", &flags->options.depth, DBL_MIN, DBL_MAX},
     };
     ms_status status;
     *taken = 1;
@@ -43,6 +45,10 @@ ms_status ms_mass_flag(int *taken, ms_mass_flags *flags, const char *name, const
             return status;
         }
     }
+    if (strcmp(name, "carriers") == 0) {
+        flags->any = flags->carriers = 1;
+        return MS_OK;
+    }
     flags->any |= strcmp(name, "unit") == 0 || strcmp(name, "properties") == 0 || strcmp(name, "axes") == 0;
     if (strcmp(name, "unit") == 0) {
         flags->unit = value;
@@ -52,7 +58,7 @@ ms_status ms_mass_flag(int *taken, ms_mass_flags *flags, const char *name, const
         return take_choice(&flags->of_union, name, value, PROPERTIES, err);
     }
     if (strcmp(name, "axes") == 0) {
-        return take_choice(&flags->options.input_frame, name, value, AXES, err);
+        return take_choice(&flags->options.masses.input_frame, name, value, AXES, err);
     }
     *taken = 0;
     return MS_OK;
@@ -66,6 +72,9 @@ ms_status ms_mass_resolve(ms_mass_flags *flags, ms_error *err)
     } UNITS[] = {{"m", 1}, {"mm", 1e-3}, {"um", 1e-6}};
     if (flags->unit && flags->scale > 0) {
         return ms_fail(err, MS_ERR_ARG, "--unit and --scale exclude one another");
+    }
+    if (flags->options.depth > 0 && !flags->carriers) {
+        return ms_fail(err, MS_ERR_ARG, "--carrier-depth takes --carriers beside it");
     }
     ms_choice choice = {.typed = flags->unit};
     for (size_t u = 0; flags->unit && u < 3; u++) {
@@ -96,9 +105,12 @@ ms_status ms_mass_correct(ms_mass *mass, ms_clump *clump, const ms_mass_flags *f
         status = ms_particle_from_body(&mass->particle, body, flags->density, flags->scale, err);
     }
     if (status == MS_OK) {
-        status = ms_density_solve(clump, &mass->report, &mass->particle, &flags->options, err);
+        ms_clump_drop_masses(clump);
+        status = flags->carriers ? ms_carriers_solve(clump, &mass->report, &mass->particle, &flags->options, err)
+                                 : ms_density_solve(clump, &mass->report, &mass->particle, &flags->options.masses, err);
     }
-    mass->all_at_once = flags->options.input_frame;
+    mass->n_carriers = flags->carriers && status == MS_OK ? (int)clump->n_carriers : -1;
+    mass->all_at_once = flags->options.masses.input_frame;
     mass->corrected = status == MS_OK;
     mass->seconds = omp_get_wtime() - start;
     return status;
@@ -123,6 +135,9 @@ void ms_mass_print(FILE *stream, const ms_mass *mass)
     if (r->centre > MS_DENSITY_CENTRE_TOLERANCE) {
         fprintf(stream, "  %-34s the least is %.3g along an axis; more spheres may help\n", "", r->centre);
     }
+    if (mass->n_carriers >= 0) {
+        fprintf(stream, "  %-34s %d%s\n", "carriers", mass->n_carriers, mass->n_carriers ? "" : ": none are needed");
+    }
     if (!r->optimal) {
         fprintf(stream, "  %-34s the simplex method came to no end; better ones may exist\n", "masses of the spheres");
     }
@@ -138,9 +153,13 @@ static json_t *pack_mass_vector(const double v[3])
 json_t *ms_mass_json(const ms_mass *mass)
 {
     const ms_density_report *r = &mass->report;
-    return json_pack("{s:f,s:f,s:f,s:b,s:f,s:f,s:f,s:f,s:o,s:o,s:f}", "epsilon", r->epsilon, "products_epsilon",
-                     r->products, "centre_epsilon", r->centre, "optimal", r->optimal, "least", r->least_mass, "most",
-                     r->most_mass, "error_mass", r->error_mass, "error_centre", r->error_centre, "error_moments",
-                     pack_mass_vector(r->error_moment), "error_products", pack_mass_vector(r->error_product), "seconds",
-                     mass->seconds);
+    json_t *json = json_pack("{s:f,s:f,s:f,s:b,s:f,s:f,s:f,s:f,s:o,s:o,s:f}", "epsilon", r->epsilon, "products_epsilon",
+                             r->products, "centre_epsilon", r->centre, "optimal", r->optimal, "least", r->least_mass,
+                             "most", r->most_mass, "error_mass", r->error_mass, "error_centre", r->error_centre,
+                             "error_moments", pack_mass_vector(r->error_moment), "error_products",
+                             pack_mass_vector(r->error_product), "seconds", mass->seconds);
+    if (mass->n_carriers >= 0) {
+        ms_json_object_set(&json, "carriers", json_integer(mass->n_carriers));
+    }
+    return json;
 }

@@ -5,7 +5,7 @@
 #include <jansson.h>
 #include <stdio.h>
 
-#include "clump/ms_density.h"
+#include "clump/ms_carriers.h"
 #include "ms_flags.h"
 #include "ms_input.h"
 
@@ -20,7 +20,9 @@
     {"axes", 0, "principal|input", "axes of the equations (principal)"}, \
     {"least-mass", 0, "M", "least mass of a sphere / that of the particle (1/1000, or 1/2n for n > 500)"}, \
     {"most-mass", 0, "M", "greatest mass of a sphere / that of the particle (1)"}, \
-    {"centre-tolerance", 0, "T", "how far the centre of mass may be off for better moments / radius of gyration (1e-7)"}
+    {"centre-tolerance", 0, "T", "how far the centre of mass may be off for better moments / gyration radius (1e-7)"}, \
+    {"carriers", 0, NULL, "small spheres within others, of mass and without contact: exact mass, centre, inertia"}, \
+    {"carrier-depth", 0, "D", "of carriers below the surface (1/10 of the radius around them, 1/100 of the body's)"}
 /* clang-format on */
 
 typedef struct ms_mass_flags {
@@ -28,7 +30,8 @@ typedef struct ms_mass_flags {
     const char *unit;      /* NULL: not given */
     int of_union;
     int any; /* one of the flags was given */
-    ms_density_options options;
+    int carriers;
+    ms_carriers_options options;
 } ms_mass_flags;
 
 /** Takes a flag if it is one of MS_MASS_FLAGS. @param[out] taken 0 if it is not */
@@ -43,6 +46,7 @@ typedef struct ms_mass {
     ms_density_report report;
     int corrected;   /* the report holds */
     int all_at_once; /* moments and products, by --axes input */
+    int n_carriers;  /* found with --carriers; -1 without */
     double seconds;
 } ms_mass;
 

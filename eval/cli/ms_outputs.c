@@ -6,10 +6,11 @@
 
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
+#include "view/ms_view_formats.h"
 
 static ms_status take_format(ms_outputs *outputs, const char *name, ms_error *err)
 {
-    const ms_format *format = ms_write_format_find(name, err);
+    const ms_format *format = ms_view_format_find(name, err);
     if (!format) {
         return MS_ERR_ARG;
     }
@@ -56,7 +57,7 @@ static ms_status check_need(const ms_format *format, ms_need need, ms_error *err
 static ms_status add_asked(ms_outputs *outputs, const char *path, ms_need need, ms_error *err)
 {
     ms_error cause;
-    const ms_format *format = outputs->n_formats ? outputs->format[0] : ms_write_format_of_path(path, &cause);
+    const ms_format *format = outputs->n_formats ? outputs->format[0] : ms_view_format_of_path(path, &cause);
     if (path[0] == '\0') {
         return ms_fail(err, MS_ERR_ARG, "--output '' names no file; use - for standard output");
     }
@@ -102,6 +103,13 @@ static int is_default(const ms_outputs *outputs, const ms_format *format, ms_nee
     return outputs->n_formats == 0 && format->need <= (outputs->folder ? need : MS_NEED_SPHERES);
 }
 
+static ms_status add_checked(ms_outputs *outputs, const char *source, const char *behind, const ms_format *format,
+                             ms_need need, ms_error *err)
+{
+    const ms_status status = check_need(format, need, err);
+    return status == MS_OK ? add_default(outputs, source, behind, format, err) : status;
+}
+
 static void free_files(ms_outputs *outputs)
 {
     for (size_t f = 0; f < outputs->n_files; f++) {
@@ -131,12 +139,21 @@ ms_status ms_outputs_resolve(ms_outputs *outputs, const char *source, const char
         return ms_fail(err, MS_ERR_ARG, "takes -o FILE, --format F or --all-formats DIR");
     }
     for (const ms_format *f = ms_formats; f->name && status == MS_OK; f++) {
-        if (is_default(outputs, f, need)) {
-            status = check_need(f, need, err);
-            status = status == MS_OK ? add_default(outputs, source, behind, f, err) : status;
-        }
+        status = is_default(outputs, f, need) ? add_checked(outputs, source, behind, f, need, err) : MS_OK;
+    }
+    for (const ms_format *f = ms_view_formats; f->name && outputs->n_formats && status == MS_OK; f++) {
+        status = is_default(outputs, f, need) ? add_checked(outputs, source, behind, f, need, err) : MS_OK;
     }
     return status;
+}
+
+int ms_outputs_shown(const ms_outputs *outputs)
+{
+    int found = 0;
+    for (size_t f = 0; f < outputs->n_files; f++) {
+        found += ms_view_format_is(outputs->file[f].format);
+    }
+    return found;
 }
 
 int ms_outputs_to_stdout(const ms_outputs *outputs)
@@ -206,7 +223,8 @@ static ms_status write_file(const ms_content *content, const char *path, const m
         fprintf(words, "wrote %s\n", path);
     }
     if (status == MS_OK) {
-        status = ms_write_remark(remark, content, format, err);
+        status = ms_view_format_is_surface(format) ? ms_view_surface_remark(remark, content, err)
+                                                   : ms_write_remark(remark, content, format, err);
     }
     if (status == MS_OK && remark[0]) {
         fprintf(stderr, "%s: %s\n", path, remark);

@@ -48,6 +48,9 @@ ms_status ms_outputs_flag(int *taken, ms_outputs *outputs, const char *name, con
 ms_status ms_outputs_resolve(ms_outputs *outputs, const char *source, const char *behind, ms_need need, int defaults,
                              ms_error *err);
 
+/** Number of files that show the clump (ms_view_formats.h) and take ms_view_about. */
+int ms_outputs_shown(const ms_outputs *outputs);
+
 /** Number of files that go to standard output. */
 int ms_outputs_to_stdout(const ms_outputs *outputs);
 

@@ -25,6 +25,11 @@ static ms_status take_until(ms_stop *stop, const char *text, ms_error *err)
     return status == MS_OK ? ms_stop_set(stop, name, number, err) : status;
 }
 
+ms_status ms_until_min_radius(double *radius, const char *value, ms_error *err)
+{
+    return ms_flags_number(radius, "min-radius", value, 1e-300, 1e300, err);
+}
+
 ms_status ms_until_flag(int *taken, ms_stop *stop, const char *name, const char *value, ms_error *err)
 {
     double number;
@@ -33,7 +38,7 @@ ms_status ms_until_flag(int *taken, ms_stop *stop, const char *name, const char 
         return take_until(stop, value, err);
     }
     if (strcmp(name, "min-radius") == 0) {
-        return ms_flags_number(&stop->radius, name, value, 1e-300, 1e300, err);
+        return ms_until_min_radius(&stop->radius, value, err);
     }
     if (strcmp(name, "spheres") == 0) {
         const ms_status status = ms_flags_whole(&number, name, value, 1, MS_CLUMP_MAX_SPHERES, err);

@@ -6,6 +6,8 @@
 #include "ms_stop.h"
 
 /* clang-format off */
+#define MS_MIN_RADIUS_FLAG {"min-radius", 0, "R", "no sphere smaller than this, for the sake of the time step"}
+
 #define MS_UNTIL_FLAGS \
     {"spheres", 'n', "N", "at most N spheres (50, if no --until is given)"}, \
     {"until", 0, "MEASURE=VALUE", \
@@ -16,6 +18,9 @@
 
 /** Takes a flag if it is one of MS_UNTIL_FLAGS. @param[out] taken 0 if it is not */
 ms_status ms_until_flag(int *taken, ms_stop *stop, const char *name, const char *value, ms_error *err);
+
+/** Takes the value of MS_MIN_RADIUS_FLAG, for commands that have it without the others. */
+ms_status ms_until_min_radius(double *radius, const char *value, ms_error *err);
 
 /** 50 spheres, where nothing else is asked for. */
 void ms_until_resolve(ms_stop *stop);

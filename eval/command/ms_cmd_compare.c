@@ -8,6 +8,7 @@
 #include "base/ms_file.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_report.h"
+#include "cli/ms_until.h"
 #include "compare/ms_compare.h"
 #include "compare/ms_compare_walk.h"
 #include "ms_commands.h"
@@ -17,8 +18,10 @@ static const ms_flag FLAGS[] = {
      "a method with its options; may be repeated (all but the baselines, by default options)"},
     {"clump", 0, "NAME=FILE", "spheres x,y,z,r of another tool; may be repeated; takes one shape"},
     {"spheres", 'n', "N,N,...", "numbers of spheres (5,10,20,50,100)"},
+    MS_MIN_RADIUS_FLAG,
     {"cells", 0, "N,N,...", "resolutions: cells along the shortest side of the shape's box (100)"},
     {"max-voxels", 0, "N", "voxels of a grid at most, as 500k or 20M; coarser where --cells asks for more"},
+    MS_INPUT_RULE_FLAG,
     {"repeat", 0, "R", "run each method R times; times are the medians (1)"},
     {"seed", 0, "S", "seed of methods that draw random numbers (1)"},
     {"output", 'o', "FILE", "the results, CSV (compare.csv)"},
@@ -97,6 +100,9 @@ static ms_status take_compare_flag(void *context, const char *name, const char *
     if (strcmp(name, "spheres") == 0) {
         return take_numbers(&c->asked, name, value, MS_CLUMP_MAX_SPHERES, err);
     }
+    if (strcmp(name, "min-radius") == 0) {
+        return ms_until_min_radius(&c->min_radius, value, err);
+    }
     if (strcmp(name, "repeat") == 0) {
         return ms_flags_whole(&c->repeats, name, value, 1, 1000, err);
     }
@@ -145,6 +151,22 @@ static ms_status walk_and_report(ms_csv *csv, const compare_arguments *a, ms_err
     return walked == MS_OK ? told : walked;
 }
 
+/* Spheres of another tool are judged as they are. */
+static void say_small_clumps(const ms_comparison *c)
+{
+    for (size_t m = 0; m < c->methods.count; m++) {
+        const ms_method *method = &c->methods.method[m];
+        size_t small = 0;
+        for (size_t s = 0; !method->generator && s < method->clump.n_spheres; s++) {
+            small += method->clump.sphere[s].radius < c->min_radius;
+        }
+        if (small > 0) {
+            fprintf(stderr, "%s: %zu of its %zu spheres are below --min-radius %g; they are judged as they are\n",
+                    method->name, small, method->clump.n_spheres, c->min_radius);
+        }
+    }
+}
+
 static int execute_compare(const ms_command *command, const compare_arguments *a)
 {
     ms_error err;
@@ -153,6 +175,7 @@ static int execute_compare(const ms_command *command, const compare_arguments *a
     ms_status status =
         header ? check_files(&a->comparison, a->output, &err) : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
     if (status == MS_OK) {
+        say_small_clumps(&a->comparison);
         status = ms_csv_open(&csv, a->output, header, a->resume, &err);
         if (status == MS_OK) {
             status = walk_and_report(&csv, a, &err);
@@ -193,6 +216,7 @@ static ms_status resolve_compare(ms_comparison *c, ms_error *err)
         snprintf(c->label, sizeof c->label, "%lu", (unsigned long)c->input.label);
     }
     c->flags = ms_input_flags_text(&c->input);
+    ms_input_text_add(&c->flags, "min-radius", c->min_radius);
     const ms_status status = check_standard(c, err);
     return status == MS_OK ? ms_methods_check(&c->methods, err) : status;
 }

@@ -26,6 +26,7 @@ typedef struct correct_arguments {
     ms_mass_flags mass;
     ms_outputs outputs;
     const char *clump, *target;
+    const char *of_shape; /* a flag about the shape and its grid; NULL without */
     int json;
 } correct_arguments;
 
@@ -34,6 +35,9 @@ static ms_status take_correct_flag(void *context, const char *name, const char *
     correct_arguments *a = context;
     int taken;
     ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
+    if (taken && strcmp(name, "threads") != 0 && strcmp(name, "max-memory") != 0) {
+        a->of_shape = name;
+    }
     if (!taken) {
         status = ms_mass_flag(&taken, &a->mass, name, value, err);
     }
@@ -140,6 +144,10 @@ static ms_status resolve_correct(correct_arguments *a, ms_error *err)
 {
     if (!a->target == !a->mass.of_union) {
         return ms_fail(err, MS_ERR_ARG, "takes either --target SHAPE or --properties union");
+    }
+    if (a->mass.of_union && a->of_shape) {
+        return ms_fail(err, MS_ERR_ARG, "--%s is of a shape, which --properties union takes none of; leave it out",
+                       a->of_shape);
     }
     if (!(a->mass.density > 0)) {
         return ms_fail(err, MS_ERR_ARG, "takes --density RHO, in kg/m^3");

@@ -18,6 +18,7 @@
 #include "cli/ms_until.h"
 #include "ms_commands.h"
 #include "ms_curve.h"
+#include "view/ms_view_formats.h"
 
 static const ms_flag FLAGS[] = {
     MS_RECIPE_FLAGS,
@@ -37,6 +38,8 @@ static const ms_flag FLAGS[] = {
 };
 
 typedef struct generate_arguments {
+    int argc; /* as the command was typed */
+    char **argv;
     const char *shape;
     ms_input_flags input;
     ms_recipe recipe;
@@ -231,8 +234,7 @@ static ms_status add_masses(ms_result *r, const generate_arguments *a, const ms_
     const ms_status status =
         ms_mass_correct(&r->mass, &r->clump, &a->mass, &input->target.body, ms_input_max_voxels(&a->input), err);
     if (status != MS_OK) {
-        free(r->clump.mass);
-        r->clump.mass = NULL;
+        ms_clump_drop_masses(&r->clump);
     }
     return status;
 }
@@ -273,7 +275,15 @@ static ms_status write_outputs(const generate_arguments *a, const ms_input *inpu
 {
     FILE *words = writes_to_stdout(a) ? stderr : stdout;
     const ms_particle *particle = r->mass.particle.mass > 0 ? &r->mass.particle : NULL; /* with masses or without */
-    const ms_content content = {.clump = &r->clump, .particle = particle, .record = record};
+    const ms_view_about about = {.shape = input->path,
+                                 .target = &input->target,
+                                 .metrics = &r->metrics,
+                                 .ordered = ms_generator_is_nested(a->recipe.generator, &a->recipe.settings),
+                                 .h = input->target.grid.h,
+                                 .max_points = ms_input_max_voxels(&a->input),
+                                 .argc = a->argc,
+                                 .argv = a->argv};
+    const ms_content content = {.clump = &r->clump, .particle = particle, .record = record, .more = &about};
     ms_status status = ms_outputs_write(&a->outputs, &content, words, err);
     if (status == MS_OK && a->target_grid) {
         status = ms_grid_write(&input->target.grid, a->target_grid, err);
@@ -424,7 +434,8 @@ static ms_status resolve_generate(generate_arguments *a, ms_error *err)
 
 static int run_generate(const ms_command *command, int argc, char **argv)
 {
-    generate_arguments a = {.recipe = {.name = MS_GENERATOR_DEFAULT, .seed = 1}, .work = {.power = 1}};
+    generate_arguments a = {
+        .argc = argc, .argv = argv, .recipe = {.name = MS_GENERATOR_DEFAULT, .seed = 1}, .work = {.power = 1}};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);

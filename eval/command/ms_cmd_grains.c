@@ -50,6 +50,7 @@ typedef struct grains_arguments {
     double choose, classes; /* 0: not given */
     const char *by;
     int with_size;
+    const char *not_of_choice, *not_of_merge; /* a flag that --choose, or --merge, has no use for; NULL without */
 } grains_arguments;
 
 static ms_status take_part(ms_grains *g, const char *text, ms_error *err)
@@ -131,10 +132,28 @@ static ms_status take_grains_value(int *taken, grains_arguments *a, const char *
     return *taken ? take_part(&a->grains, value, err) : MS_OK;
 }
 
+static int is_word_of(const char *const *list, const char *name)
+{
+    while (*list && strcmp(*list, name) != 0) {
+        list++;
+    }
+    return *list != NULL;
+}
+
+/* The clumps are there: how they would be made is not heeded. */
+static void note_useless(grains_arguments *a, const char *name)
+{
+    static const char *const OF_CHOICE[] = {"choose", "by", "with-size", "classes", "seed", "output", "json", NULL},
+                             *const OF_MERGE[] = {"merge", "output", NULL};
+    a->not_of_choice = is_word_of(OF_CHOICE, name) ? a->not_of_choice : name;
+    a->not_of_merge = is_word_of(OF_MERGE, name) ? a->not_of_merge : name;
+}
+
 static ms_status take_grains_flag(void *context, const char *name, const char *value, ms_error *err)
 {
     grains_arguments *a = context;
     int taken;
+    note_useless(a, name);
     ms_grain_how_note(&a->how, name, value);
     ms_status status = ms_mass_flag(&taken, &a->mass, name, value, err);
     if (!taken && take_grains_word(a, name)) {
@@ -208,6 +227,23 @@ static ms_status resolve_choice(const grains_arguments *a, ms_error *err)
     return MS_OK;
 }
 
+/* Refuses a flag that would pass without effect. */
+static ms_status refuse_useless(const grains_arguments *a, ms_error *err)
+{
+    if (a->choose > 0 && a->not_of_choice) {
+        return ms_fail(err, MS_ERR_ARG, "--choose takes clumps as they were made: --%s has no effect, leave it out",
+                       a->not_of_choice);
+    }
+    if (a->merge && a->not_of_merge) {
+        return ms_fail(err, MS_ERR_ARG, "--merge joins tables as they are: --%s has no effect, leave it out",
+                       a->not_of_merge);
+    }
+    if (a->dry_run && a->json) {
+        return ms_fail(err, MS_ERR_ARG, "--dry-run makes no sums for --json; leave it out");
+    }
+    return MS_OK;
+}
+
 /* What follows from all flags together. */
 static ms_status resolve_grains(grains_arguments *a, ms_error *err)
 {
@@ -229,6 +265,9 @@ static ms_status resolve_grains(grains_arguments *a, ms_error *err)
     }
     if (status == MS_OK) {
         status = resolve_choice(a, err);
+    }
+    if (status == MS_OK) {
+        status = refuse_useless(a, err);
     }
     return status == MS_OK ? ms_grain_how_resolve(&a->how, err) : status;
 }

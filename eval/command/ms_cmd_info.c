@@ -285,8 +285,12 @@ static int run_info(const ms_command *command, int argc, char **argv)
     if (status != MS_OK) {
         return ms_flags_fail(command, &err);
     }
-    status =
-        input.labels.count > 1 && !a.input.label ? list_labels(&input, a.json, &err) : tell_shape(&input, &a, &err);
+    const int is_list = input.labels.count > 1 && !a.input.label;
+    if (is_list && a.expect) {
+        ms_input_free(&input);
+        return ms_flags_wrong_usage(command, "--expect is of one shape; give --label L beside it");
+    }
+    status = is_list ? list_labels(&input, a.json, &err) : tell_shape(&input, &a, &err);
     ms_input_free(&input);
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }

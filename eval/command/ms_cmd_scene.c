@@ -10,6 +10,7 @@
 #include "cli/ms_outputs.h"
 #include "cli/ms_record.h"
 #include "cli/ms_report.h"
+#include "cli/ms_until.h"
 #include "ms_commands.h"
 #include "scene/ms_scene.h"
 
@@ -25,7 +26,7 @@ static const ms_flag FLAGS[] = {
     {"mean-tolerance", 0, "dice=VALUE", "mean D over all particles: the fewest spheres in the whole scene"},
     {"knee", 0, "PART", "each shape's number of spheres from which a further one takes away less than this part of D"},
     {"max-spheres", 0, "N", "spheres of the largest template (100)"},
-    {"min-radius", 0, "R", "no sphere smaller than this, for the sake of the time step"},
+    MS_MIN_RADIUS_FLAG,
     MS_RECIPE_FLAGS,
     {"output", 'o', "DIR", "write the templates into this folder, each by the name of its shape"},
     {"format", 0, "F", "format of the templates: csv, json or vtk (csv)"},
@@ -123,7 +124,7 @@ static ms_status take_scene_flag(void *context, const char *name, const char *va
         return ms_flags_whole(&a->max_spheres, name, value, 1, MS_SCENE_MAX_SPHERES, err);
     }
     if (strcmp(name, "min-radius") == 0) {
-        return ms_flags_number(&a->min_radius, name, value, 1e-300, 1e300, err);
+        return ms_until_min_radius(&a->min_radius, value, err);
     }
     if (strcmp(name, "output") == 0) {
         a->folder = value;

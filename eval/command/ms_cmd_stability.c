@@ -5,11 +5,11 @@
 #include <string.h>
 
 #include "base/ms_file.h"
-#include "base/ms_text.h"
 #include "chart/ms_csv.h"
 #include "cli/ms_methods.h"
 #include "cli/ms_outputs.h"
 #include "cli/ms_report.h"
+#include "cli/ms_until.h"
 #include "ms_commands.h"
 #include "stability/ms_hard_shapes.h"
 #include "stability/ms_stability_charts.h"
@@ -22,6 +22,7 @@ static const ms_flag FLAGS[] = {
     {"generator", 'g', "NAME[:OPTION=VALUE,...]", "a method, with options; may be repeated (all but the baselines)"},
     {"spheres", 'n', "N", "spheres asked for in every run (20)"},
     {"until-dice", 0, "V", "also seek the number of spheres with which the method meets D = V, up to 10 N"},
+    MS_MIN_RADIUS_FLAG,
     {"perturb", 0, "KIND",
      "axes, rotation, shift, resolution, noise, refine, decimate, seed, order or threads; may be repeated (all)"},
     {"runs", 0, "R", "runs of each perturbation (5)"},
@@ -71,6 +72,9 @@ static ms_status take_stability_flag(void *context, const char *name, const char
     if (strcmp(name, "until-dice") == 0) {
         return ms_flags_number(&a->plan.until_dice, name, value, 1e-9, 1, err);
     }
+    if (strcmp(name, "min-radius") == 0) {
+        return ms_until_min_radius(&a->plan.min_radius, value, err);
+    }
     if (strcmp(name, "perturb") == 0) {
         return take_change(a, value, err);
     }
@@ -93,11 +97,8 @@ static ms_status take_stability_flag(void *context, const char *name, const char
 static ms_input_text say_flags(const stability_arguments *a)
 {
     ms_input_text said = ms_input_flags_text(&a->input);
-    const size_t used = strlen(said.text);
-    if (a->plan.until_dice > 0) {
-        snprintf(said.text + used, sizeof said.text - used, "%suntil-dice=%s", used ? " " : "",
-                 ms_text_of_number(a->plan.until_dice).text);
-    }
+    ms_input_text_add(&said, "min-radius", a->plan.min_radius);
+    ms_input_text_add(&said, "until-dice", a->plan.until_dice);
     return said;
 }
 

@@ -9,6 +9,7 @@
 #include "shape/ms_shape.h"
 #include "stability/ms_change.h"
 #include "stability/ms_hard_shapes.h"
+#include "view/ms_view_formats.h"
 
 /* The place that is completed. */
 typedef struct place {
@@ -62,6 +63,9 @@ static void offer_generators(const place *p)
 static void offer_formats(const place *p)
 {
     for (const ms_format *f = ms_formats; f->name; f++) {
+        offer(p, f->name, "");
+    }
+    for (const ms_format *f = ms_view_formats; f->name; f++) {
         offer(p, f->name, "");
     }
 }

@@ -149,6 +149,7 @@ static ms_status make_trial(compare_walk *w, ms_trial *trial, const ms_compare_r
                               .beside = beside,
                               .asked = n,
                               .n_asked = run->count,
+                              .min_radius = w->a->min_radius,
                               .title = title};
     for (size_t k = 0; k < run->count; k++) {
         n[k] = (size_t)run->asked[k];

@@ -20,7 +20,8 @@ typedef struct ms_comparison {
     char **shape; /* paths */
     size_t n_shapes;
     ms_input_flags input; /* without its resolution */
-    ms_input_text flags;  /* the same as text */
+    double min_radius;    /* 0: none; of generators, not of clumps */
+    ms_input_text flags;  /* both as text */
     ms_methods methods;
     ms_numbers asked, cells; /* numbers of spheres; resolutions, which a volume does not take */
     char label[20];          /* as text; "" for none */

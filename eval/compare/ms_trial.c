@@ -72,7 +72,7 @@ static ms_status run_once(ms_trial *trial, double *seconds, const ms_trial_run *
 {
     trial_watch w = {.run = run, .seconds = seconds};
     ms_run one = {.target = target, .settings = run->settings, .seed = run->seed};
-    one.stop.spheres = run->asked[run->n_asked - 1];
+    one.stop = (ms_stop){.spheres = run->asked[run->n_asked - 1], .radius = run->min_radius};
     ms_clump_free(&trial->clump);
     if (!run->beside) {
         const ms_progress_line line = {.name = run->title, .goal = run->generator->nested ? one.stop.spheres : 0};

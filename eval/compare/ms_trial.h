@@ -15,6 +15,7 @@ typedef struct ms_trial_run {
     int beside;          /* other runs at the same time, which share the memory that can be measured */
     const size_t *asked; /* numbers of spheres, ascending; more than one of a nested generator only */
     size_t n_asked;
+    double min_radius; /* 0: none */
     const char *title; /* begins the line of progress on a terminal */
 } ms_trial_run;
 

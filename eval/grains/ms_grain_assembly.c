@@ -93,7 +93,7 @@ static char *make_stem(const char *file, const ms_grains *g)
 /* Spheres of a file in the frame of the source become those of the template. */
 static void carry_spheres(ms_placed *placed, const ms_grain_place *place, double scale)
 {
-    for (size_t s = 0; s < placed->clump.n_spheres; s++) {
+    for (size_t s = 0; s < ms_clump_count_masses(&placed->clump); s++) {
         ms_sphere *sphere = &placed->clump.sphere[s];
         double from_centre[3];
         for (int k = 0; k < 3; k++) {

@@ -18,7 +18,7 @@ enum { MOST_COLUMNS = 64 + MS_MEASURES, RUN_LENGTH = 16 };
 
 /* A table of a part. */
 typedef struct merge_part {
-    const char *folder; /* in front of its files; "" where that is the folder of the whole */
+    size_t word; /* of which it is, in `folder` of all */
     char *path;
     size_t part, parts;
     ms_csv csv;
@@ -26,7 +26,7 @@ typedef struct merge_part {
 
 typedef struct merge_parts {
     const char *header;
-    char **folder; /* of the words, from the folder of the whole */
+    char **folder; /* of the words, from the folder of the whole; "" where they are one */
     merge_part *part;
     size_t count;
     char **row; /* by number of the grain; borrowed from the tables */
@@ -75,9 +75,9 @@ static ms_status resolve_folder(char *out, const char *folder, ms_error *err)
 }
 
 /* Reads the table and closes it, since there may be more parts than files may be open. */
-static ms_status add_part(merge_parts *m, const char *folder, const char *name, const char *way, ms_error *err)
+static ms_status add_part(merge_parts *m, const char *folder, const char *name, size_t word, ms_error *err)
 {
-    merge_part part = {.folder = way, .csv = {.fd = -1}};
+    merge_part part = {.word = word, .csv = {.fd = -1}};
     if (!read_name(&part.part, &part.parts, name)) {
         return MS_OK;
     }
@@ -94,13 +94,13 @@ static ms_status add_part(merge_parts *m, const char *folder, const char *name, 
     return status;
 }
 
-static ms_status add_parts(merge_parts *m, const char *folder, const char *way, ms_error *err)
+static ms_status add_parts(merge_parts *m, const char *folder, size_t word, ms_error *err)
 {
     struct dirent **entry;
     const int found = scandir(folder, &entry, NULL, alphasort);
     ms_status status = found < 0 ? ms_fail(err, MS_ERR_IO, "%s: %s", folder, strerror(errno)) : MS_OK;
     for (int e = 0; e < found; e++) {
-        status = status == MS_OK ? add_part(m, folder, entry[e]->d_name, way, err) : status;
+        status = status == MS_OK ? add_part(m, folder, entry[e]->d_name, word, err) : status;
         free(entry[e]);
     }
     if (found >= 0) {
@@ -109,8 +109,8 @@ static ms_status add_parts(merge_parts *m, const char *folder, const char *way, 
     return status;
 }
 
-/* The tables of all folders. */
-static ms_status find_parts(merge_parts *m, const char *whole, char *const *folders, size_t count, ms_error *err)
+/* The ways to all folders from that of the whole, which is there. */
+static ms_status find_ways(merge_parts *m, const char *whole, char *const *folders, size_t count, ms_error *err)
 {
     char from[PATH_MAX], to[PATH_MAX];
     ms_status status = resolve_folder(from, whole, err);
@@ -120,7 +120,6 @@ static ms_status find_parts(merge_parts *m, const char *whole, char *const *fold
         if (status == MS_OK && (!m->folder || !(m->folder[f] = find_way(from, to)))) {
             status = ms_fail(err, MS_ERR_NOMEM, "no memory for the parts");
         }
-        status = status == MS_OK ? add_parts(m, folders[f], m->folder[f], err) : status;
     }
     return status;
 }
@@ -288,8 +287,9 @@ static ms_status write_rows(const merge_parts *m, const char *path, ms_error *er
         const size_t file_column = find_file_column(copy);
         fprintf(output.stream, "%s\n", m->header);
         for (size_t g = 0; g < m->grains; g++) {
-            if (m->of[g]->folder[0]) {
-                write_row(output.stream, m->row[g], m->of[g]->folder, file_column);
+            const char *folder = m->folder[m->of[g]->word];
+            if (folder[0]) {
+                write_row(output.stream, m->row[g], folder, file_column);
             } else {
                 fprintf(output.stream, "%s\n", m->row[g]);
             }
@@ -320,10 +320,9 @@ ms_status ms_grain_merge(const char *folder, char *const *parts, size_t count, m
     char path[PATH_MAX];
     char *header = ms_grain_row_line(NULL);
     merge_parts m = {.header = header};
-    ms_status status =
-        header ? ms_outputs_make_folder(folder, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the header");
-    if (status == MS_OK) {
-        status = find_parts(&m, folder, parts, count, err);
+    ms_status status = header ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for the header");
+    for (size_t f = 0; f < count && status == MS_OK; f++) {
+        status = add_parts(&m, parts[f], f, err);
     }
     if (status == MS_OK) {
         status = check_parts(&m, err);
@@ -334,6 +333,12 @@ ms_status ms_grain_merge(const char *folder, char *const *parts, size_t count, m
     if (status == MS_OK) {
         snprintf(path, sizeof path, "%s/grains.csv", folder);
         status = check_whole(&m, path, err);
+    }
+    if (status == MS_OK) { /* not before: what is refused leaves none behind */
+        status = ms_outputs_make_folder(folder, err);
+    }
+    if (status == MS_OK) {
+        status = find_ways(&m, folder, parts, count, err);
     }
     if (status == MS_OK) {
         status = write_rows(&m, path, err);

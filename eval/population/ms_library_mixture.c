@@ -105,6 +105,9 @@ static ms_status add_kind(ms_packing *mixture, const template_of *t, const ms_gr
     for (size_t s = 0; s < t->clump.n_spheres && status == MS_OK; s++) {
         status = ms_clump_add(&kind->clump, &t->clump.sphere[s], err);
     }
+    for (size_t c = 0; c < t->clump.n_carriers && status == MS_OK; c++) {
+        status = ms_clump_add_carrier(&kind->clump, &t->clump.sphere[t->clump.n_spheres + c], err);
+    }
     kind->particle = (ms_particle){.scale = 1, .density = t->density, .mass = place->mass * pow(scale, 3)};
     for (int m = 0; m < 3; m++) {
         kind->particle.inertia[m][m] = place->moment[m] * pow(scale, 5);

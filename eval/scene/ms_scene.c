@@ -249,7 +249,6 @@ static ms_status make_all_templates(ms_scene_shape *shape, ms_run *run, const ms
     ms_stop_reason reason;
     ms_clump clump;
     ms_status status = ms_generator_run(&clump, &reason, generator, run, err);
-    run->remark = NULL; /* once for a shape */
     if (!beside) {
         ms_progress_show(run);
     }

@@ -63,7 +63,7 @@ static ms_status seek_number(ms_stability_run *run, ms_run job, ms_error *err)
 {
     ms_clump clump;
     ms_stop_reason reason;
-    job.stop = (ms_stop){0};
+    job.stop = (ms_stop){.radius = run->min_radius};
     job.stop.spheres =
         run->asked < MS_CLUMP_MAX_SPHERES / UNTIL_FACTOR ? run->asked * UNTIL_FACTOR : MS_CLUMP_MAX_SPHERES;
     job.stop.dice = run->until_dice;
@@ -78,7 +78,7 @@ static ms_status run_method(ms_stability_run *run, const ms_target *target, cons
 {
     ms_clump clump;
     ms_run job = {.target = target, .settings = &run->method->settings, .seed = run->seed};
-    job.stop.spheres = run->asked;
+    job.stop = (ms_stop){.spheres = run->asked, .radius = run->min_radius};
     const double start = omp_get_wtime();
     ms_status status = ms_generator_run(&clump, &run->reason, run->method->generator, &job, err);
     run->seconds = omp_get_wtime() - start;
@@ -271,7 +271,8 @@ static void take_field(ms_stability_run *run, const char *column, const char *te
                                                 ms_measures[MS_MEASURE_INERTIA].in_stability)) == 0) {
         run->metrics.inertia.weighted = ms_csv_number(text);
     } else if (strcmp(column, "n_until") == 0) {
-        run->spheres_until = text[0] ? (size_t)ms_csv_number(text) : 0;
+        const double n = ms_csv_number(text); /* NAN where there is none */
+        run->spheres_until = n >= 1 && n <= MS_CLUMP_MAX_SPHERES ? (size_t)n : 0;
     } else if (strcmp(column, "spheres_fnv1a") == 0) {
         run->checksum = strtoull(text, NULL, 16);
     } else if (strcmp(column, "cause") == 0) {

@@ -44,7 +44,7 @@ typedef struct ms_stability_run {
     double misfit;       /* of the changed shape and its voxels: ms_target_misfit */
     int threads, beside; /* of this run; other runs at the same time */
     size_t asked;
-    double until_dice; /* 0: not asked for */
+    double min_radius, until_dice; /* 0: not asked for */
     ms_outcome outcome;
     ms_stop_reason reason;
     ms_metrics metrics;   /* against the unchanged shape, of the spheres moved back */

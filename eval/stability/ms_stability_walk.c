@@ -117,6 +117,7 @@ static ms_status plan_shape(stability_walk *w, size_t s, ms_error *err)
                             .flags = plan->said.text,
                             .seed = plan->seed,
                             .asked = plan->spheres,
+                            .min_radius = plan->min_radius,
                             .until_dice = plan->until_dice};
     ms_status status = MS_OK;
     ms_shared_input_begin(&w->shared[s], plan->shape[s], read_shape, plan->flags, 0);

@@ -12,11 +12,11 @@ typedef struct ms_stability_plan {
     const ms_methods *methods;
     int wanted[MS_CHANGE_MOST]; /* of ms_changes; the first one is */
     size_t spheres;
-    double until_dice; /* 0: not asked for */
+    double min_radius, until_dice; /* 0: not asked for */
     uint64_t seed;
     int runs; /* of each change */
     const ms_input_flags *flags;
-    ms_input_text said; /* these and until_dice, as text */
+    ms_input_text said; /* these and the two above, as text */
 } ms_stability_plan;
 
 /** Where the rows go. */

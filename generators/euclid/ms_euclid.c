@@ -65,7 +65,6 @@ static ms_status choose_largest(void *context, ms_ball *ball, ms_stop_reason *re
 {
     euclid *e = context;
     const ms_grid *grid = &e->run->target->grid;
-    const size_t nx = (size_t)grid->n[0], ny = (size_t)grid->n[1];
     if (placed->n_balls > 0) {
         const ms_status status = ms_distance(e->distance, e->left, grid->n, err);
         if (status != MS_OK) {
@@ -74,8 +73,9 @@ static ms_status choose_largest(void *context, ms_ball *ball, ms_stop_reason *re
     }
     const size_t v = find_deepest(e->distance, ms_grid_voxels(grid));
     const double depth = (double)e->distance[v];
-    *ball = (ms_ball){{(double)(v % nx), (double)(v / nx % ny), (double)(v / nx / ny)},
-                      depth + e->run->settings->value[OFFSET]};
+    int at[3];
+    ms_grid_voxel(at, grid->n, v);
+    *ball = (ms_ball){{at[0], at[1], at[2]}, depth + e->run->settings->value[OFFSET]};
     if (!(depth > 0 && ball->radius > 0)) {
         *reason = MS_STOP_EXHAUSTED;
     } else if (ball->radius * grid->h < e->run->stop.radius) {

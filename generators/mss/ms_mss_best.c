@@ -45,8 +45,9 @@ static double count_in_ball(double radius, double margin)
 static double bound_gain(const ms_mss_run *m, const ms_mss_candidate *c, const ms_mss_candidate *before)
 {
     const ms_grid *grid = &m->run->target->grid;
-    const size_t nx = (size_t)grid->n[0], ny = (size_t)grid->n[1];
-    const double voxel[3] = {(double)(c->voxel % nx), (double)(c->voxel / nx % ny), (double)(c->voxel / nx / ny)};
+    int at[3];
+    ms_grid_voxel(at, grid->n, c->voxel);
+    const double voxel[3] = {at[0], at[1], at[2]};
     const double covered = (double)m->field.within[c->voxel] - sqrt(ms_squared_distance(voxel, c->ball.centre));
     const double most = c->e + MS_MSS_FIT_MOST * ms_mss_fit_unit(m), r = most + HALF_DIAGONAL;
     const double ring = count_in_ball(most, HALF_DIAGONAL) - count_in_ball(covered, -HALF_DIAGONAL);

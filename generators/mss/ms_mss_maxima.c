@@ -27,9 +27,8 @@ static int holds_voxel(const ms_mss_box *box, const int at[3])
 /* Is a voxel in one of the first boxes? */
 static int is_in_boxes(const ms_mss_field *field, size_t boxes, size_t voxel)
 {
-    const int *n = field->target->grid.n;
-    const int at[3] = {(int)(voxel % (size_t)n[0]), (int)(voxel / (size_t)n[0] % (size_t)n[1]),
-                       (int)(voxel / (size_t)n[0] / (size_t)n[1])};
+    int at[3];
+    ms_grid_voxel(at, field->target->grid.n, voxel);
     for (size_t b = 0; b < boxes; b++) {
         if (holds_voxel(&field->changed[b], at)) {
             return 1;

@@ -149,17 +149,10 @@ static void refine_axis(double *shift, double *value, const double e[5])
     }
 }
 
-static void split_index(int at[3], size_t voxel, const int n[3])
-{
-    at[0] = (int)(voxel % (size_t)n[0]);
-    at[1] = (int)(voxel / (size_t)n[0] % (size_t)n[1]);
-    at[2] = (int)(voxel / (size_t)n[0] / (size_t)n[1]);
-}
-
 void ms_peaks_refine(ms_peak *peak, const float *field, const int n[3], size_t voxel)
 {
     const size_t stride[3] = {1, (size_t)n[0], (size_t)n[0] * (size_t)n[1]};
-    split_index(peak->voxel, voxel, n);
+    ms_grid_voxel(peak->voxel, n, voxel);
     peak->value = 0;
     for (int a = 0; a < 3; a++) {
         double e[5], value;

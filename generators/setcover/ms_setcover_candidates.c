@@ -59,11 +59,11 @@ static void to_frame(double q[3], const frame *f, const double p[3])
 /* The centre of a voxel of the skeleton's grid, in voxels of the target's. */
 static void to_target(double out[3], const ms_grid *skeleton, const frame *f, size_t voxel, const ms_grid *grid)
 {
-    const size_t nx = (size_t)skeleton->n[0], ny = (size_t)skeleton->n[1];
-    const size_t at[3] = {voxel % nx, voxel / nx % ny, voxel / nx / ny};
+    int at[3];
+    ms_grid_voxel(at, skeleton->n, voxel);
     double p[3] = {f->origin[0], f->origin[1], f->origin[2]};
     for (int a = 0; a < 3; a++) {
-        const double q = skeleton->origin[a] + skeleton->h * (double)at[a];
+        const double q = skeleton->origin[a] + skeleton->h * at[a];
         for (int c = 0; c < 3; c++) {
             p[c] += q * f->axis[a][c];
         }

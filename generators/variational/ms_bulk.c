@@ -13,8 +13,13 @@
 /* Voxels that stand for the volume, at most about, and rounds of Lloyd's algorithm: more change little. */
 enum { MOST_PLACES = 10000, ROUNDS = 12 };
 
-/* Of the fit with one D, and how often D is looked at again. */
-enum { STEPS = 20, TURNS = 5 };
+/* Of the fit with one D, how often D is looked at again, and after how many times only the better start goes on. */
+enum { STEPS = 20, TURNS = 5, RACE = 2 };
+
+/* D from which surfaces are so far apart that coarser nodes will do: until it is known which start goes on, those at
+ * so many voxels; then every second one. */
+static const double ROUGH = 0.2;
+enum { RACE_STEP = 4 };
 
 /* The places that stand for a volume; each belongs to the nearest centre. */
 typedef struct places {
@@ -44,8 +49,8 @@ static ms_status list_places(places *out, const ms_coarse_view *view, ms_error *
     size_t passed = 0;
     for (size_t v = 0; v < ms_grid_voxels(grid); v++) {
         if (grid->inside[v] && passed++ % each == 0) {
-            const size_t nx = (size_t)grid->n[0], ny = (size_t)grid->n[1];
-            const double at[3] = {(double)(v % nx), (double)(v / nx % ny), (double)(v / nx / ny)};
+            int at[3];
+            ms_grid_voxel(at, grid->n, v);
             for (int c = 0; c < 3; c++) {
                 out->at[out->count][c] = view->step * at[c];
             }
@@ -146,67 +151,99 @@ typedef struct spheres {
     double dice, cost;
 } spheres;
 
-/* Replaces the best ones so far by better ones. */
-static ms_status keep_better(spheres *best, const ms_ball *ball, size_t count, const ms_surface_fit *fit, ms_error *err)
+static ms_status measure_spheres(spheres *s, const ms_surface_fit *fit, ms_error *err)
 {
-    double dice;
-    const ms_status status = ms_bulk_dice(&dice, ball, count, fit, err);
-    const double excess = status == MS_OK && fit->gap ? ms_gap_excess(fit->gap, ball, count) : 0;
-    const double cost = dice + MS_GAP_PRICE * excess / (double)fit->field->target->voxels;
-    if (status == MS_OK && cost < best->cost) {
-        best->dice = dice;
-        best->cost = cost;
-        best->count = count;
-        memcpy(best->ball, ball, count * sizeof *ball);
-    }
+    const ms_status status = ms_bulk_dice(&s->dice, s->ball, s->count, fit, err);
+    const double excess = status == MS_OK && fit->gap ? ms_gap_excess(fit->gap, s->ball, s->count) : 0;
+    s->cost = s->dice + MS_GAP_PRICE * excess / (double)fit->field->target->voxels;
     return status;
+}
+
+static void copy_spheres(spheres *to, const spheres *from)
+{
+    const spheres copy = {to->ball, from->count, from->dice, from->cost};
+    memcpy(to->ball, from->ball, from->count * sizeof *from->ball);
+    *to = copy;
+}
+
+static void keep_better(spheres *best, const spheres *s)
+{
+    if (s->cost < best->cost) {
+        copy_spheres(best, s);
+    }
 }
 
 /* Has spheres keep to what they are bound to; one that cannot be joined to the others is dropped. */
-static ms_status settle_within_bounds(ms_ball *ball, size_t *count, ms_surface_fit *fit, ms_error *err)
+static ms_status settle_within_bounds(spheres *s, ms_surface_fit *fit, ms_error *err)
 {
-    double dice;
-    ms_bounds_confine(&fit->bounds, fit->field, ball, *count);
-    ms_status status = ms_bulk_dice(&dice, ball, *count, fit, err);
-    fit->slant = dice;
+    ms_bounds_confine(&fit->bounds, fit->field, s->ball, s->count);
+    ms_status status = ms_bulk_dice(&fit->slant, s->ball, s->count, fit, err);
     if (status == MS_OK && fit->connected) {
-        status = ms_connect_fit(ball, *count, fit, err);
+        status = ms_connect_fit(s->ball, s->count, fit, err);
     }
     if (status == MS_OK && fit->gap) {
-        status = ms_gap_hold(ball, *count, fit, err);
+        status = ms_gap_hold(s->ball, s->count, fit, err);
     }
     if (status == MS_OK && fit->connected) {
-        status = ms_connect_hold(ball, count, fit, err);
+        status = ms_connect_hold(s->ball, &s->count, fit, err);
     }
     fit->slant = 0;
+    return status == MS_OK ? measure_spheres(s, fit, err) : status;
+}
+
+/* Nothing is to be held that a fit may lose. */
+static int is_free(const ms_surface_fit *fit)
+{
+    return !ms_bounds_are_set(&fit->bounds) && !fit->bounds.equal && !fit->gap && !fit->connected;
+}
+
+/* Fits for the least D in the turns from..to-1, by a field that is coarse while the surfaces are far apart. */
+static ms_status fit_turns(spheres *best, spheres *s, int from, int to, ms_surface_fit *fit, ms_error *err)
+{
+    static const double DAMPING[TURNS][2] = {{0.8, 0.4}, {0.8, 0.4}, {0.6, 0.3}, {0.5, 0.2}, {0.3, 0.05}};
+    const ms_signed_distance *fine = fit->field;
+    ms_signed_distance rough = *fine;
+    ms_status status = MS_OK;
+    if (is_free(fit) && s->dice >= ROUGH && ms_signed_distance_is_exact(fine)) {
+        status = ms_signed_distance_open(&rough, fine->target, from == 0 ? RACE_STEP : 2 * fine->step, err);
+    }
+    fit->field = &rough;
+    for (int turn = from; turn < to && status == MS_OK; turn++) {
+        fit->slant = fmin(s->dice, best->dice);
+        status = ms_surface_fit_steps(fit, s->ball, s->count, STEPS, DAMPING[turn], err);
+        fit->slant = 0;
+        if (status == MS_OK) {
+            status = measure_spheres(s, fit, err);
+        }
+        if (status == MS_OK && is_free(fit)) {
+            keep_better(best, s);
+        }
+    }
+    fit->field = fine;
     return status;
 }
 
-/* Fits for the least D, and keeps what is better than all before, with and without the last fits. */
-static ms_status fit_bulk(spheres *best, ms_ball *ball, size_t count, ms_surface_fit *fit, ms_error *err)
+/* The first turns, after which it is known which start is better. */
+static ms_status begin_start(spheres *best, spheres *s, ms_surface_fit *fit, ms_error *err)
 {
-    static const double DAMPING[TURNS][2] = {{0.8, 0.4}, {0.8, 0.4}, {0.6, 0.3}, {0.5, 0.2}, {0.3, 0.05}};
-    const int is_free = !ms_bounds_are_set(&fit->bounds) && !fit->bounds.equal && !fit->gap && !fit->connected;
-    ms_status status = MS_OK;
-    for (size_t b = 0; b < count; b++) {
-        ball[b].radius = fmax(ball[b].radius, fit->bounds.least);
+    for (size_t b = 0; b < s->count; b++) {
+        s->ball[b].radius = fmax(s->ball[b].radius, fit->bounds.least);
     }
-    for (int turn = 0; turn <= TURNS && status == MS_OK; turn++) {
-        if (turn > 0) {
-            double dice;
-            status = ms_bulk_dice(&dice, ball, count, fit, err);
-            fit->slant = fmin(dice, best->dice);
-        }
-        if (turn > 0 && status == MS_OK) {
-            status = ms_surface_fit_steps(fit, ball, count, STEPS, DAMPING[turn - 1], err);
-            fit->slant = 0;
-        }
-        if (status == MS_OK && turn == TURNS) {
-            status = settle_within_bounds(ball, &count, fit, err);
-        }
-        if (status == MS_OK && (is_free || turn == TURNS)) {
-            status = keep_better(best, ball, count, fit, err);
-        }
+    const ms_status status = measure_spheres(s, fit, err);
+    if (status == MS_OK && is_free(fit)) {
+        keep_better(best, s);
+    }
+    return status == MS_OK ? fit_turns(best, s, 0, RACE, fit, err) : status;
+}
+
+static ms_status finish_start(spheres *best, spheres *s, ms_surface_fit *fit, ms_error *err)
+{
+    ms_status status = fit_turns(best, s, RACE, TURNS, fit, err);
+    if (status == MS_OK && !is_free(fit)) {
+        status = settle_within_bounds(s, fit, err);
+    }
+    if (status == MS_OK) {
+        keep_better(best, s);
     }
     return status;
 }
@@ -233,51 +270,67 @@ static ms_status take_given(ms_ball *ball, size_t *count, const ms_bulk_other *o
 }
 
 /* The spheres that there are, within their bounds: pieces as they are, since fits may pull spheres from where they may
- * be; pieces that are fitted to one; and all fitted for D. */
-static ms_status try_first(spheres *best, ms_ball *tried, const ms_ball *first, size_t count, ms_surface_fit *fit,
-                           ms_error *err)
+ * be; and pieces that are fitted to one. */
+static ms_status settle_first(spheres *best, spheres *s, const spheres *first, ms_surface_fit *fit, ms_error *err)
 {
-    size_t n = count;
-    memcpy(tried, first, n * sizeof *tried);
-    ms_status status = ms_bulk_dice(&best->dice, tried, n, fit, err);
-    if (status == MS_OK && fit->connected) {
-        status = ms_connect_hold(tried, &n, fit, err);
-        status = status == MS_OK ? keep_better(best, tried, n, fit, err) : status;
-        n = count;
-        memcpy(tried, first, n * sizeof *tried);
+    ms_status status = MS_OK;
+    if (fit->connected) {
+        copy_spheres(s, first);
+        status = ms_connect_hold(s->ball, &s->count, fit, err);
+        status = status == MS_OK ? measure_spheres(s, fit, err) : status;
+        if (status == MS_OK) {
+            keep_better(best, s);
+        }
+    }
+    copy_spheres(s, first);
+    if (status == MS_OK) {
+        status = settle_within_bounds(s, fit, err);
     }
     if (status == MS_OK) {
-        status = settle_within_bounds(tried, &n, fit, err);
+        keep_better(best, s);
+    }
+    return status;
+}
+
+/* All of it. @param one, another  room for the spheres of both starts */
+static ms_status race_starts(spheres *best, spheres *one, spheres *another, const ms_bulk_other *other,
+                             ms_surface_fit *fit, ms_error *err)
+{
+    const int *across = fit->mirror.across;
+    const size_t images = (size_t)1 << (across[0] + across[1] + across[2]);
+    ms_status status = measure_spheres(best, fit, err);
+    copy_spheres(another, best);
+    best->cost = HUGE_VAL; /* not within bounds as yet */
+    if (status == MS_OK) {
+        status = settle_first(best, one, another, fit, err);
     }
     if (status == MS_OK) {
-        status = keep_better(best, tried, n, fit, err);
+        status = begin_start(best, one, fit, err);
     }
-    return status == MS_OK ? fit_bulk(best, tried, n, fit, err) : status;
+    if (status == MS_OK && !is_free(fit)) { /* what the bounds cost is known in the end alone */
+        status = finish_start(best, one, fit, err);
+        one->cost = HUGE_VAL;
+    }
+    if (status == MS_OK) {
+        status = other->given ? take_given(another->ball, &another->count, other, fit, err)
+                              : ms_bulk_cluster(another->ball, &another->count, other->volume,
+                                                other->wanted > images ? other->wanted / images : 1, err);
+    }
+    if (status == MS_OK) {
+        status = begin_start(best, another, fit, err);
+    }
+    return status == MS_OK ? finish_start(best, another->cost < one->cost ? another : one, fit, err) : status;
 }
 
 ms_status ms_bulk_improve(ms_ball *ball, size_t *count, size_t room, const ms_bulk_other *other, ms_surface_fit *fit,
                           ms_error *err)
 {
-    const int *across = fit->mirror.across;
-    const size_t images = (size_t)1 << (across[0] + across[1] + across[2]);
-    const size_t clusters = other->wanted > images ? other->wanted / images : 1;
-    ms_ball *tried = malloc((room + 1) * sizeof *tried), *first = malloc((room + 1) * sizeof *first);
-    spheres best = {ball, *count, 1, HUGE_VAL};
-    ms_status status = tried && first ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", room);
-    if (status == MS_OK) {
-        memcpy(first, ball, *count * sizeof *first);
-        status = try_first(&best, tried, first, *count, fit, err);
-    }
-    if (status == MS_OK) {
-        size_t n;
-        status = other->given ? take_given(tried, &n, other, fit, err)
-                              : ms_bulk_cluster(tried, &n, other->volume, clusters, err);
-        if (status == MS_OK) {
-            status = fit_bulk(&best, tried, n, fit, err);
-        }
-    }
+    spheres best = {.ball = ball, .count = *count}, one = {.ball = malloc((room + 1) * sizeof *ball)},
+            another = {.ball = malloc((room + 1) * sizeof *ball)};
+    const ms_status status = one.ball && another.ball ? race_starts(&best, &one, &another, other, fit, err)
+                                                      : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", room);
     *count = best.count;
-    free(first);
-    free(tried);
+    free(one.ball);
+    free(another.ball);
     return status;
 }

@@ -24,11 +24,11 @@ ms_status ms_coarse_view_make(ms_coarse_view *view, const ms_target *target, con
 void ms_coarse_view_keep_upper(ms_coarse_view *view, const ms_mirror *m)
 {
     ms_grid *coarse = &view->grid;
-    const size_t nx = (size_t)coarse->n[0], stride[3] = {1, nx, nx * (size_t)coarse->n[1]};
-    for (int a = 0; a < 3; a++) {
-        for (size_t v = 0; m->across[a] && v < ms_grid_voxels(coarse); v++) {
-            const double at = view->step * (double)(v / stride[a] % (size_t)coarse->n[a]);
-            coarse->inside[v] = coarse->inside[v] && at >= m->at[a];
+    for (size_t v = 0; v < ms_grid_voxels(coarse); v++) {
+        int at[3];
+        ms_grid_voxel(at, coarse->n, v);
+        for (int a = 0; a < 3; a++) {
+            coarse->inside[v] = coarse->inside[v] && (!m->across[a] || view->step * at[a] >= m->at[a]);
         }
     }
 }

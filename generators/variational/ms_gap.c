@@ -56,14 +56,6 @@ int ms_gap_is_border(const ms_grid *grid, size_t v)
                                 grid->inside[v + nx] && grid->inside[v - nxy] && grid->inside[v + nxy]);
 }
 
-void ms_gap_voxel(double at[3], const ms_grid *grid, size_t v)
-{
-    const size_t nx = (size_t)grid->n[0], ny = (size_t)grid->n[1];
-    at[0] = (double)(v % nx);
-    at[1] = (double)(v / nx % ny);
-    at[2] = (double)(v / nx / ny);
-}
-
 static ms_status add_border(ms_gap *gap, const ms_grid *grid, const ms_mirror *mirror, ms_error *err)
 {
     const size_t voxels = ms_grid_voxels(grid);
@@ -76,19 +68,13 @@ static ms_status add_border(ms_gap *gap, const ms_grid *grid, const ms_mirror *m
     gap->area = (double)each;
     for (size_t v = 0; v < voxels && status == MS_OK; v++) {
         if (ms_gap_is_border(grid, v) && passed++ % each == 0) {
-            double at[3];
-            ms_gap_voxel(at, grid, v);
+            int voxel[3];
+            ms_grid_voxel(voxel, grid->n, v);
+            const double at[3] = {voxel[0], voxel[1], voxel[2]};
             status = ms_gap_add(gap, at, mirror, err);
         }
     }
     return status;
-}
-
-static void find_corners(double corner[3][3], const ms_target *target, size_t triangle)
-{
-    for (int c = 0; c < 3; c++) {
-        ms_grid_at(corner[c], &target->grid, target->mesh->vertex[target->mesh->triangle[triangle][c]]);
-    }
 }
 
 /* By the R2 sequence, folded from the square; a place for each `area` of all triangles so far. */
@@ -98,7 +84,7 @@ static ms_status spread_over_triangles(ms_gap *gap, const ms_target *target, con
     ms_status status = MS_OK;
     for (size_t t = 0; t < target->mesh->n_triangles && status == MS_OK; t++) {
         double corner[3][3], u[3], v[3];
-        find_corners(corner, target, t);
+        ms_grid_corners(corner, &target->grid, target->mesh, t);
         for (int a = 0; a < 3; a++) {
             u[a] = corner[1][a] - corner[0][a];
             v[a] = corner[2][a] - corner[0][a];

@@ -56,9 +56,8 @@ double ms_gap_excess(ms_gap *gap, const ms_ball *ball, size_t count);
 /** By how much the excess grows without each sphere. @param[out] loss `count` values. Cost: places x spheres. */
 void ms_gap_losses(double *loss, ms_gap *gap, const ms_ball *ball, size_t count);
 
-/** Of a volume: does the voxel belong to the surface: inside, with one of its six neighbours outside? And its place. */
+/** Of a volume: does the voxel belong to the surface: inside, with one of its six neighbours outside? */
 int ms_gap_is_border(const ms_grid *grid, size_t voxel);
-void ms_gap_voxel(double at[3], const ms_grid *grid, size_t voxel);
 
 void ms_gap_close(ms_gap *gap);
 

@@ -82,17 +82,16 @@ static void search_face(farthest *out, const ms_target *target, size_t triangle,
                         double bound)
 {
     double corner[3][3];
-    for (int c = 0; c < 3; c++) {
-        ms_grid_at(corner[c], &target->grid, target->mesh->vertex[target->mesh->triangle[triangle][c]]);
-    }
+    ms_grid_corners(corner, &target->grid, target->mesh, triangle);
     search_part(out, (const double(*)[3])corner, all, count, bound);
 }
 
 static void search_voxel(farthest *out, const ms_grid *grid, size_t v, const ms_ball *all, size_t count, double bound)
 {
     if (ms_gap_is_border(grid, v)) {
-        double at[3];
-        ms_gap_voxel(at, grid, v);
+        int voxel[3];
+        ms_grid_voxel(voxel, grid->n, v);
+        const double at[3] = {voxel[0], voxel[1], voxel[2]};
         look_at(out, at, all, count, bound);
     }
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "ms_coverage_count.h"
+#include "ms_inscribed.h"
 
 /* In voxels. What is counted is voxels, so that steps much finer than one gain little. */
 static const double FIRST_STEP = 2, LAST_STEP = 0.1;
@@ -82,6 +83,9 @@ ms_status ms_pattern_search(ms_ball *ball, size_t count, const ms_grid *grid, co
 {
     ms_coverage_count o;
     double step = FIRST_STEP;
+    if (ms_inscribed_applies(fit)) {
+        return ms_inscribed_improve(ball, count, fit, err);
+    }
     ms_ball *all = malloc((8 * count + 1) * sizeof *all);
     if (!all) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", count);

@@ -10,7 +10,8 @@
  * step when no sphere moves any more.
  *
  * A sphere whose protrusion is bounded takes the largest radius that is allowed where it would be, if
- * that is less than it has or if its own could not be larger; equal radii stay.
+ * that is less than it has or if its own could not be larger; equal radii stay. Inscribed spheres, if they are bound by
+ * nothing else, are left to ms_inscribed_improve.
  *
  * @param ball   `count` spheres, in voxels of the grid, within the fit's bounds
  * @param rounds over all spheres, at most

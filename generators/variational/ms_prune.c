@@ -104,22 +104,39 @@ static ms_status add_gap_losses(double *loss, const ms_ball *ball, size_t count,
     return MS_OK;
 }
 
+/* By the exposed surface instead, where a loss is less than that: elsewhere voxels say enough. All, where D is fitted. */
+static ms_status sharpen_losses(double *loss, double than, const ms_ball *ball, size_t count, const ms_surface_fit *fit,
+                                ms_error *err)
+{
+    ms_surface_worth *fine = malloc((count + 1) * sizeof *fine);
+    uint8_t *few = malloc(count + 1);
+    ms_status status = fine && few ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", count);
+    for (size_t b = 0; b < count && status == MS_OK; b++) {
+        few[b] = fit->slant > 0 || fabs(loss[b]) < than;
+    }
+    if (status == MS_OK) {
+        status = ms_surface_tally(fine, NULL, few, fit, ball, count, err);
+    }
+    for (size_t b = 0; b < count && status == MS_OK; b++) {
+        loss[b] = few[b] ? fine[b].loss : loss[b];
+    }
+    free(few);
+    free(fine);
+    return status;
+}
+
 /* The same in voxels of the target; where few are counted, by the exposed surface. */
 static ms_status find_losses(double *loss, const ms_ball *ball, size_t count, const ms_coarse_view *view,
                              const ms_surface_fit *fit, ms_error *err)
 {
     const double cell = (double)view->step * view->step * view->step;
-    ms_surface_worth *fine = malloc((count + 1) * sizeof *fine);
-    ms_status status = fine ? count_losses(loss, ball, count, view, &fit->mirror, err)
-                            : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", count);
-    const int exact = is_surface_sharper(fit);
-    if (status == MS_OK && exact) {
-        status = ms_surface_tally(fine, NULL, fit, ball, count, err);
-    }
+    ms_status status = count_losses(loss, ball, count, view, &fit->mirror, err);
     for (size_t b = 0; b < count && status == MS_OK; b++) {
-        loss[b] = exact && (fit->slant > 0 || fabs(loss[b]) < FEW) ? fine[b].loss : loss[b] * cell;
+        loss[b] *= cell;
     }
-    free(fine);
+    if (status == MS_OK && is_surface_sharper(fit)) {
+        status = sharpen_losses(loss, FEW * cell, ball, count, fit, err);
+    }
     return status == MS_OK && fit->gap ? add_gap_losses(loss, ball, count, fit, err) : status;
 }
 
@@ -221,7 +238,7 @@ ms_status ms_prune_idle(ms_ball *ball, size_t *count, const ms_surface_fit *fit,
                                     : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", *count);
     while (status == MS_OK && gone > 0) {
         if (is_surface_sharper(fit)) {
-            status = ms_surface_tally(worth, &mismatch, fit, ball, *count, err);
+            status = ms_surface_tally(worth, &mismatch, NULL, fit, ball, *count, err);
         }
         const double least = IDLE * mismatch / (double)*count;
         memset(far, 0, *count * sizeof *far);

@@ -70,7 +70,7 @@ ms_status ms_split_worst(ms_ball *ball, size_t *count, size_t more, const ms_sur
 {
     const size_t before = *count;
     ms_surface_worth *worth = malloc((before + 1) * sizeof *worth);
-    const ms_status status = worth ? ms_surface_tally(worth, NULL, fit, ball, before, err)
+    const ms_status status = worth ? ms_surface_tally(worth, NULL, NULL, fit, ball, before, err)
                                    : ms_fail(err, MS_ERR_NOMEM, "no memory to choose among %zu spheres", before);
     for (size_t a = 0; status == MS_OK && a < more && a < before; a++) {
         const size_t worst = find_worst(worth, before);

@@ -35,8 +35,8 @@ static ms_surface_worth tally_sphere(const ms_surface_fit *fit, const ms_caps_wi
     return (ms_surface_worth){.loss = part * r * sum.loss, .mismatch = part * sum.mismatch};
 }
 
-ms_status ms_surface_tally(ms_surface_worth *each, double *mismatch, const ms_surface_fit *fit, const ms_ball *ball,
-                           size_t count, ms_error *err)
+ms_status ms_surface_tally(ms_surface_worth *each, double *mismatch, const uint8_t *which, const ms_surface_fit *fit,
+                           const ms_ball *ball, size_t count, ms_error *err)
 {
     const int *across = fit->mirror.across;
     const size_t images = (count << (across[0] + across[1] + across[2])) + 1;
@@ -52,7 +52,7 @@ ms_status ms_surface_tally(ms_surface_worth *each, double *mismatch, const ms_su
             enough = ms_exposed_alloc(&exposed, fit->lattice, window.count);
 #pragma omp for schedule(dynamic, 4)
             for (size_t s = 0; s < count; s++) {
-                if (exposed.normal) {
+                if (exposed.normal && (!which || which[s])) {
                     worth[s] = tally_sphere(fit, &window, &exposed, (uint32_t)s);
                 }
             }
@@ -60,7 +60,7 @@ ms_status ms_surface_tally(ms_surface_worth *each, double *mismatch, const ms_su
         }
     }
     double sum = 0;
-    for (size_t s = 0; enough && s < count; s++) {
+    for (size_t s = 0; enough && mismatch && s < count; s++) {
         sum += (double)ms_mirror_images(&fit->mirror, &ball[s]) * worth[s].mismatch;
     }
     if (mismatch) {

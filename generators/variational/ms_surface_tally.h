@@ -8,8 +8,6 @@
 typedef struct ms_surface_worth {
     double loss; /* by how much |S xor U| grows without it, voxels; what lies below the surface of others is not seen */
     double mismatch; /* that at its exposed surface, voxels */
-    double
-        along[3]; /* the direction in which its exposed surface is narrowest, as long as that is wide (RMS), voxels */
 } ms_surface_worth;
 
 /**
@@ -20,12 +18,14 @@ typedef struct ms_surface_worth {
  *
  * @param[out] each     of each sphere; may be NULL
  * @param[out] mismatch |S xor U|, voxels, where no part of S is far from the spheres; may be NULL
+ * @param      which    for each sphere: 0: it is not looked at, and nothing is written of it; NULL: all are, as they
+ *                      have to be for the mismatch
  * @param      fit      its lattice is not turned
  * @return MS_OK; MS_ERR_NOMEM
  *
  * Cost: that of a step of the fit, about four times over; all cores, the same bits at any number of threads.
  */
-ms_status ms_surface_tally(ms_surface_worth *each, double *mismatch, const ms_surface_fit *fit, const ms_ball *ball,
-                           size_t count, ms_error *err);
+ms_status ms_surface_tally(ms_surface_worth *each, double *mismatch, const uint8_t *which, const ms_surface_fit *fit,
+                           const ms_ball *ball, size_t count, ms_error *err);
 
 #endif

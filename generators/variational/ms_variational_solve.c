@@ -60,73 +60,66 @@ static ms_status fit_spheres(ms_variational_solver *s, int steps, double from, d
     return ms_surface_fit_steps(&s->fit, s->ball, s->count, steps, damping, err);
 }
 
-/* |S xor U| in voxels, by their count and by the exposed surface, and the price of what of the surface is too far. */
+/* |S xor U| in voxels, by their count and, where that is chance, by the exposed surface; both with the price of what of
+ * the surface is too far. */
 typedef struct mismatch {
     double count, surface;
+    int is_fine; /* nonzero: so small that the count is chance. Else `surface` is not known */
 } mismatch;
+
+static int is_fine(const ms_variational_solver *s, double count)
+{
+    const ms_target *target = s->run->target;
+    const double h = target->grid.h;
+    return ms_signed_distance_is_exact(&s->field) && count < FINE * ms_mesh_area(target->mesh) / (h * h);
+}
 
 static ms_status find_mismatch(mismatch *out, ms_variational_solver *s, ms_error *err)
 {
     ms_coverage_count o;
     ms_status status = ms_coverage_count_open(&o, &s->run->target->grid, s->all, ms_variational_solver_expand(s), err);
-    *out = (mismatch){.count = (double)o.mismatch};
-    ms_coverage_count_close(&o);
-    if (status == MS_OK && ms_signed_distance_is_exact(&s->field)) {
-        status = ms_surface_tally(NULL, &out->surface, &s->fit, s->ball, s->count, err);
-    }
     const double excess = s->fit.gap ? MS_GAP_PRICE * ms_gap_excess(s->fit.gap, s->ball, s->count) : 0;
-    out->count += excess;
-    out->surface += excess;
+    *out = (mismatch){.count = (double)o.mismatch + excess};
+    ms_coverage_count_close(&o);
+    out->is_fine = is_fine(s, out->count);
+    if (status == MS_OK && out->is_fine) {
+        status = ms_surface_tally(NULL, &out->surface, NULL, &s->fit, s->ball, s->count, err);
+        out->surface += excess;
+    }
     return status;
 }
 
-/* Is it so small that the count of voxels is chance? */
-static int is_fine(const ms_variational_solver *s, const mismatch *m)
+static int is_improved(const mismatch *after, const mismatch *before)
 {
-    const ms_target *target = s->run->target;
-    const double h = target->grid.h;
-    return ms_signed_distance_is_exact(&s->field) && m->count < FINE * ms_mesh_area(target->mesh) / (h * h);
+    return before->is_fine ? after->is_fine && after->surface < before->surface : after->count < before->count;
 }
 
-static int is_improved(const ms_variational_solver *s, const mismatch *after, const mismatch *before)
+/* A fit that is taken back where it makes the mismatch, known before and after, larger. Of spheres that may not stick
+ * out, the mismatch says nothing before they are confined. */
+static ms_status improve_fit(ms_variational_solver *s, mismatch *now, int steps, double from, double to, ms_error *err)
 {
-    return is_fine(s, before) ? is_fine(s, after) && after->surface < before->surface : after->count < before->count;
-}
-
-/* A fit that is taken back where it makes the mismatch larger. Of spheres that may not stick out, the
- * mismatch says nothing before they are confined. */
-static ms_status improve_fit(ms_variational_solver *s, int steps, double from, double to, ms_error *err)
-{
-    mismatch before = {0}, after = {0};
-    if (ms_bounds_are_set(&s->fit.bounds)) {
-        return fit_spheres(s, steps, from, to, err);
-    }
+    mismatch after = {0};
     memcpy(s->best, s->ball, s->count * sizeof *s->ball);
-    ms_status status = find_mismatch(&before, s, err);
-    if (status == MS_OK) {
-        status = fit_spheres(s, steps, from, to, err);
-    }
+    ms_status status = fit_spheres(s, steps, from, to, err);
     if (status == MS_OK) {
         status = find_mismatch(&after, s, err);
     }
-    if (status == MS_OK && !is_improved(s, &after, &before)) {
+    if (status == MS_OK && (ms_bounds_are_set(&s->fit.bounds) || is_improved(&after, now))) {
+        *now = after;
+    } else {
         memcpy(s->ball, s->best, s->count * sizeof *s->ball);
     }
     return status;
 }
 
-/* For spheres that fit so well that the error of a linear look-up would show. */
-static ms_status sharpen_field(ms_variational_solver *s, ms_error *err)
+/* For spheres that fit so well that the error of a linear look-up would show: the mismatch is looked at anew. */
+static ms_status sharpen_field(ms_variational_solver *s, mismatch *now, ms_error *err)
 {
-    mismatch left = {0};
-    if (s->field.cubic || !ms_signed_distance_is_exact(&s->field)) {
+    if (s->field.cubic || !now->is_fine) {
         return MS_OK;
     }
-    ms_status status = find_mismatch(&left, s, err);
-    if (status == MS_OK && is_fine(s, &left)) {
-        s->field.cubic = 1;
-    }
-    return status;
+    s->field.cubic = 1;
+    return find_mismatch(now, s, err);
 }
 
 /* Makes the spheres keep to their bounds, and moves them within. */
@@ -212,7 +205,7 @@ static ms_status try_change(ms_variational_solver *s, ms_status (*change)(ms_var
     if (status == MS_OK) {
         status = find_mismatch(&after, s, err);
     }
-    if (status == MS_OK && !is_improved(s, &after, &before)) {
+    if (status == MS_OK && !is_improved(&after, &before)) {
         memcpy(s->ball, kept, count * sizeof *kept);
         s->count = count;
     }
@@ -237,9 +230,24 @@ static ms_status replace_idle(ms_variational_solver *s, ms_error *err)
     return status;
 }
 
+/* The last fits, all of them with as many spheres as are wanted. */
+static ms_status settle_spheres(ms_variational_solver *s, ms_error *err)
+{
+    mismatch now = {0};
+    ms_status status = find_mismatch(&now, s, err);
+    if (status == MS_OK) {
+        status = improve_fit(s, &now, LONG_STEPS, 0.8, 0.2, err);
+    }
+    if (status == MS_OK) {
+        status = sharpen_field(s, &now, err);
+    }
+    return status == MS_OK ? improve_fit(s, &now, LAST_STEPS, 0.5, 0.05, err) : status;
+}
+
 /* All stages. */
 static ms_status run_stages(ms_variational_solver *s, ms_error *err)
 {
+    mismatch now = {0};
     ms_status status = MS_OK;
     const double surplus = (double)ms_variational_solver_count(s) - (double)s->wanted;
     s->planned = count_steps(s, surplus);
@@ -247,19 +255,16 @@ static ms_status run_stages(ms_variational_solver *s, ms_error *err)
         status = fit_spheres(s, START_STEPS, 0.8, 0.2, err);
     }
     if (status == MS_OK) {
-        status = sharpen_field(s, err);
+        status = find_mismatch(&now, s, err);
+    }
+    if (status == MS_OK) {
+        status = sharpen_field(s, &now, err);
     }
     if (status == MS_OK) {
         status = prune_surplus(s, err);
     }
     if (status == MS_OK) {
-        status = improve_fit(s, LONG_STEPS, 0.8, 0.2, err);
-    }
-    if (status == MS_OK) {
-        status = sharpen_field(s, err);
-    }
-    if (status == MS_OK) {
-        status = improve_fit(s, LAST_STEPS, 0.5, 0.05, err);
+        status = settle_spheres(s, err);
     }
     if (status == MS_OK) {
         status = search_within_bounds(s, err);

@@ -51,6 +51,29 @@ static void test_bytes_that_are_no_utf8(void **state)
     check_written(ms_escape_name, "\xff\x80z", "__z");
 }
 
+static void test_html(void **state)
+{
+    (void)state;
+    check_written(ms_escape_html, "grain 1.stl", "grain 1.stl");
+    check_written(ms_escape_html, "</script><b a=\"x\" b='y' c=`z`>&amp;",
+                  "&#60;/script&#62;&#60;b a=&#34;x&#34; b=&#39;y&#39; c=&#96;z&#96;&#62;&#38;amp;");
+    check_written(ms_escape_html, "k\u00f6rn\n\u202e\xff", "k\u00f6rn???");
+    check_written(ms_escape_html_json, "{\"a\":\"</script><!--&\\\"\"}",
+                  "{\"a\":\"\\u003c/script\\u003e\\u003c!--\\u0026\\\"\"}");
+}
+
+/* A shell would read these words back; the test of the program lets one do so. */
+static void test_shell(void **state)
+{
+    (void)state;
+    check_written(ms_escape_shell, "generate", "generate");
+    check_written(ms_escape_shell, "a=1.5,b", "a=1.5,b");
+    check_written(ms_escape_shell, "", "''");
+    check_written(ms_escape_shell, "O'Brien $(x) `y`", "'O'\\''Brien $(x) `y`'");
+    check_written(ms_escape_shell, "k\u00f6rn", "'k\u00f6rn'");
+    check_written(ms_escape_shell, "a\nb", "'a?b'");
+}
+
 static void test_gnuplot(void **state)
 {
     (void)state;
@@ -135,6 +158,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_comment), cmocka_unit_test(test_bytes_that_are_no_utf8),
+        cmocka_unit_test(test_html),    cmocka_unit_test(test_shell),
         cmocka_unit_test(test_gnuplot), cmocka_unit_test(test_python),
         cmocka_unit_test(test_lammps),  cmocka_unit_test(test_csv),
         cmocka_unit_test(test_json),    cmocka_unit_test(test_file_name),

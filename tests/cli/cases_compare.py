@@ -137,6 +137,36 @@ class Rows(Compare):
         self.assert_close(float(row["dice"]), 1 - 2 * volume / (6 + volume), 0.01)
         self.mskit("score", "two.csv", "--target", "box.obj", "--cells", "60")
 
+    def test_min_radius_binds_methods_and_not_clumps(self):
+        """Each method but the one of another tool keeps to it, and generate's clump is that of the row."""
+        self.write("two.csv", "1,1,0.5,0.5\n2,1,0.5,0.25\n")
+        args = ("box.obj", "--clump", "mine=two.csv", "-g", "mss", "-g", "variational", "-n", "24", "--cells", "12")
+        free = self.compare(*args, "-o", "compare.csv")
+        words = self.mskit("compare", *args, "--min-radius", "0.4", "-o", "bound.csv")
+        bound = self.rows("bound.csv")
+        self.assert_says(words, "mine: 1 of its 2 spheres are below --min-radius 0.4")
+        self.assertEqual([r["flags"] for r in bound], ["min-radius=0.4"] * 3)
+        self.assertEqual(free[0]["dice"], bound[0]["dice"], "it is judged as it is")
+        r_eq = math.cbrt(3 * 6 / (4 * math.pi))
+        for row, before in zip(bound[1:], free[1:]):
+            self.assertLess(float(before["smallest_radius_ratio"]) * r_eq, 0.4)
+            self.assertGreaterEqual(float(row["smallest_radius_ratio"]) * r_eq, 0.4 - 1e-9)
+            made = self.generate("box.obj", "-g", row["generator"], "-n", "24", "--cells", "12", "--min-radius", "0.4",
+                                 "-o", "own.csv")
+            self.assertEqual(float(row["dice"]), made["scores"]["dice"])
+        result = self.mskit("compare", *args, "--resume", "-o", "bound.csv", code=1)
+        self.assert_says(result, "another comparison", "flags")
+
+    def test_rule_is_that_of_generate(self):
+        self.shape("cube", name="cube.stl")
+        args = ("cube.stl", "-g", "mss", "-n", "4", "--cells", "7", "--rule", "centre")
+        self.mskit("compare", *args, "-o", "centre.csv")
+        self.mskit("compare", *args[:-2], "-o", "half.csv")
+        centre, half = self.rows("centre.csv")[0], self.rows("half.csv")[0]
+        self.assertNotEqual(centre["dice"], half["dice"])
+        self.assertEqual(float(centre["dice"]), self.generate(*args, "-o", "own.csv")["scores"]["dice"])
+        self.assertEqual((centre["flags"], half["flags"]), ("rule=centre", ""))
+
     def test_volume(self):
         self.write("scan.npy", npy([3] * 500 + [4] * 500, (10, 10, 10)))
         rows = self.compare("scan.npy", "-g", "mss", "-n", "2", "--label", "4", "--cells", "20,40")

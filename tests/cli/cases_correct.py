@@ -66,6 +66,44 @@ class Correct(Case):
             epsilon = (0.1 + 2) / (10 / 12) - 1 - tolerance * math.sqrt(14 / 12) / (10 / 12)
             self.assertLessEqual(abs(masses["epsilon"] - epsilon), 1e-10)
 
+    def test_carriers(self):
+        """Two balls do not fill a box of 4 x 3 x 2: their masses alone do not, with carriers all ten sums are met, and
+        the spheres that touch are as they were."""
+        self.write("balls.csv", "".join(f"{x},{y},{z},1\n" for x in (2, 3, 4) for y in (2, 2.5) for z in (2,)))
+        self.write("long.obj", box_obj((1, 1, 1), (5, 3.5, 3)))
+        flags = ("balls.csv", "--target", "long.obj", "--density", DENSITY, "--unit", "mm")
+        self.assertGreater(self.mskit("correct", *flags, "--json").json["masses"]["epsilon"], 0.01)
+        run = self.mskit("correct", *flags, "--carriers", "-o", "c.csv", "-o", "c.json", "-o", "c.lammps")
+        lines = self.read("c.csv").decode().split()
+        self.assertEqual(lines[0], "x,y,z,r,mass,density,carrier")
+        rows = [[float(word) for word in line.split(",")] for line in lines[1:]]
+        carriers = [row for row in rows if row[6] == 1]
+        self.assertEqual([row[6] for row in rows], [0] * 6 + [1] * len(carriers))
+        self.assertIn(f"carriers                           {len(carriers)}\n", run.out)
+        self.assertLessEqual(len(carriers), 8)
+        mass, centre, inertia = sums(rows, 1e-3)
+        self.assert_close(mass, 20e-9 * DENSITY, 1e-12)
+        for i, middle in enumerate((3, 2.25, 2)):
+            self.assert_close(centre[i], middle, 1e-9)
+            moment = mass * (16 + 6.25 + 4 - (16, 6.25, 4)[i]) * 1e-6 / 12
+            for j in range(3):
+                self.assertLess(abs(inertia[i][j] - (moment if i == j else 0)), 1e-9 * moment)
+        self.assertEqual(len(json.loads(self.read("c.json"))["carriers"]), len(carriers))
+        score = [self.mskit("score", name, "--target", "long.obj", *GRID).out.split("\n", 1)[1]
+                 for name in ("balls.csv", "c.csv")]
+        self.assertEqual(*score)
+        self.mskit("convert", "c.json", "-o", "again.lammps")
+        self.assertEqual(self.read("again.lammps"), self.read("c.lammps"))
+
+    def test_carriers_refused(self):
+        self.write("two.csv", "2.5,2,1.5,0.5\n2.6,2,1.5,0.5\n")
+        flags = ("--target", "box.obj", "--density", "1", "-o", "d.csv")
+        self.assert_refused("correct", "two.csv", *flags, "--carriers", code=1, says=("no carriers do",))
+        self.assert_refused("correct", "two.csv", *flags, "--carrier-depth", "0.1", code=2, says=("takes --carriers",))
+        self.assert_refused("correct", "two.csv", *flags, "--carriers", "--carrier-depth", "0", code=2, says=("carrier-depth",))
+        self.write("mixed.csv", "x,y,z,r,mass,density,carrier\n0,0,0,1,1,1,0\n0,0,0,0.1,1,1,1\n0,0,1,1,1,1,0\n")
+        self.assert_refused("convert", "mixed.csv", "-o", "e.json", code=1, says=("behind all spheres",))
+
     def test_units(self):
         mass = {}
         for flags in (("--unit", "um"), ("--scale", "1e-6"), ("--unit", "m"), ()):

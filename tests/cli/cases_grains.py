@@ -358,7 +358,7 @@ class Parts(Grains):
             self.assert_says(self.mskit(*merge, code=1), "out/", says)
             self.assertEqual(self.read("out/grains-2-of-2.csv").decode(), broken)
         self.assert_says(self.mskit("grains", "--merge", "nowhere", "-o", "out", code=1), "nowhere")
-        self.assert_says(self.mskit("grains", "--merge", "stones", "-o", "out", code=1), "no table of a part")
+        self.assert_refused("grains", "--merge", "stones", "-o", "new", code=1, says=("no table of a part",))
         self.assertFalse(os.path.exists(self.path("out/grains.csv")))
 
     def test_parts_by_other_flags(self):

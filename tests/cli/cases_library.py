@@ -104,5 +104,15 @@ class Library(Case):
         for args, word in ((["--choose", "3", "--by", "numbre", "all"], "number"),
                            (["--by", "mass", "all"], "--choose"), (["--choose", "3", "--merge", "all"], "--merge"),
                            (["--choose", "3", "--with-size", "--classes", "4", "all"], "--with-size"),
-                           (["--choose", "3", "all", "all"], "one folder")):
+                           (["--choose", "3", "all", "all"], "one folder"),
+                           (["--choose", "3", "-g", "mss", "all"], "--generator has no effect"),
+                           (["--choose", "3", "-n", "9", "all"], "--spheres has no effect"),
+                           (["--choose", "3", "--polish", "all"], "--polish has no effect"),
+                           (["--choose", "3", "--cells", "9", "all"], "--cells has no effect"),
+                           (["--choose", "3", "--format", "vtk", "all"], "--format has no effect"),
+                           (["--merge", "-g", "mss", "all"], "--generator has no effect"),
+                           (["--merge", "-n", "9", "all"], "--spheres has no effect"),
+                           (["--merge", "--json", "all"], "--json has no effect"),
+                           (["--merge", "--dry-run", "all"], "--dry-run has no effect"),
+                           (["--dry-run", "--json", "all"], "--json")):
             self.assert_refused("grains", *args, "-o", "few", code=2, says=[word])

@@ -128,6 +128,14 @@ class Stability(Case):
                          "seed", "--runs", "1")
         self.assertEqual({row["n_until"] for row in rows}, {""})
 
+    def test_min_radius_holds_in_every_run(self):
+        args = ("cube", "-g", "mss", "-n", "30", "--cells", "10", "--perturb", "seed", "--runs", "1")
+        free, bound = self.rows(*args), self.rows(*args, "--min-radius", "0.2")
+        self.assertEqual({row["stopped_by"] for row in free}, {"spheres"})
+        for row in bound:
+            self.assertEqual((row["stopped_by"], row["flags"].split()[-1]), ("radius", "min-radius=0.2"))
+            self.assertLess(int(row["n"]), 30)
+
     def test_a_failure_is_a_row_with_its_cause(self):
         """fcm that may draw 10 centres cannot touch the nodes: named, counted, and the others go on."""
         result = self.mskit("stability", "speck", "-g", "fcm:tries=10", "-g", "mss", "-n", "3", "--perturb", "seed",

@@ -250,6 +250,65 @@ static void what_the_other_engines_are_told(void **state)
     ms_clump_free(&clump);
 }
 
+/* The clump with two carriers and masses of all eight. */
+static void make_clump_with_carriers(ms_clump *clump, ms_particle *particle)
+{
+    make_clump(clump, particle);
+    for (int c = 0; c < 2; c++) {
+        ms_sphere carrier = clump->sphere[c];
+        carrier.centre[c] += 0.3 * carrier.radius;
+        carrier.radius /= 20;
+        assert_int_equal(ms_clump_add_carrier(clump, &carrier, NULL), MS_OK);
+    }
+    assert_int_equal(ms_clump_alloc_masses(clump, NULL), MS_OK);
+    for (int s = 0; s < 8; s++) {
+        clump->mass[s] = particle->mass / 36 * (s + 1);
+    }
+}
+
+static void carriers_go_with_masses(void **state)
+{
+    static const struct {
+        const char *format;
+        int is_template, masses;
+    } FORMATS[] = {{"csv", 0, 1}, {"json", 0, 1}, {"lammps", 1, 1}, {"liggghts", 1, 0}, {"yade", 1, 0}, {"deme", 1, 0}};
+    char folder[64];
+    double v[400];
+    ms_clump clump, got;
+    ms_particle particle, known;
+    ms_template made;
+    (void)state;
+    make_folder(folder);
+    make_clump_with_carriers(&clump, &particle);
+    assert_int_equal(ms_template_make(&made, &clump, &particle, NULL), MS_OK);
+    assert_int_equal(made.clump.n_carriers, 2);
+    for (size_t f = 0; f < 6; f++) {
+        const ms_clump *expected = FORMATS[f].is_template ? &made.clump : &clump;
+        read_again(&got, &known, folder, FORMATS[f].format, &clump, &particle);
+        expect_equal_clumps(&got, expected, FORMATS[f].masses);
+        assert_int_equal(got.n_carriers, FORMATS[f].masses ? 2 : 0);
+        assert_memory_equal(got.sphere + 6, expected->sphere + 6, got.n_carriers * sizeof *got.sphere);
+        assert_true(!got.mass || memcmp(got.mass + 6, clump.mass + 6, 2 * sizeof *got.mass) == 0);
+        ms_clump_free(&got);
+    }
+    /* Engines that take mass and inertia as given, and MFiX, which takes no masses, get what touches alone. */
+    const struct {
+        const char *format;
+        size_t numbers;
+    } CONTACTS[] = {{"kratos", 24 + 4 + 1 + 1 + 3}, {"mfix", 1 + 6 * 18}, {"pfc", 1 + 24 + 1 + 6}};
+    const ms_content content = {.clump = &clump, .particle = &particle};
+    for (size_t f = 0; f < 3; f++) {
+        char path[128], name[16];
+        snprintf(name, sizeof name, "c.%s", CONTACTS[f].format);
+        snprintf(path, sizeof path, "%s/%s", folder, name);
+        assert_int_equal(ms_write_clump(&content, path, ms_write_format_find(CONTACTS[f].format, NULL), NULL), MS_OK);
+        assert_int_equal(numbers_of(v, 400, folder, name), CONTACTS[f].numbers);
+    }
+    clean(folder);
+    ms_template_free(&made);
+    ms_clump_free(&clump);
+}
+
 static void vtk_has_masses_and_densities(void **state)
 {
     char folder[64], path[128];
@@ -407,6 +466,7 @@ int main(void)
         cmocka_unit_test(round_trips),
         cmocka_unit_test(what_the_other_engines_are_told),
         cmocka_unit_test(vtk_has_masses_and_densities),
+        cmocka_unit_test(carriers_go_with_masses),
         cmocka_unit_test(templates_need_a_particle),
         cmocka_unit_test(a_decimal_comma_changes_nothing),
         cmocka_unit_test(bad_files_are_refused),

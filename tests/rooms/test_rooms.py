@@ -35,11 +35,11 @@ ROOMS = {
     "eval": ["common/base", "eval/cli", "eval/command"],
     "eval/chart": ["common/base", "common/clump", "common/mesh", "common/voxel"],
     "eval/cli": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure",
-                 "common/mesh", "common/mesh/formats", "common/volume", "common/voxel", "generators"],
+                 "common/mesh", "common/mesh/formats", "common/volume", "common/voxel", "generators", "eval/view"],
     "eval/command": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
                      "common/mesh/formats", "common/shape", "common/voxel", "generators",
                      "eval/chart", "eval/cli", "eval/compare", "eval/grains", "eval/population", "eval/scene",
-                     "eval/stability"],
+                     "eval/stability", "eval/view"],
     "eval/compare": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure",
                      "common/mesh",
                      "common/volume", "common/voxel", "generators", "eval/chart", "eval/cli", "eval/queue"],
@@ -50,6 +50,8 @@ ROOMS = {
     "eval/scene": ["common/base", "common/clump", "common/expect", "common/measure", "generators", "eval/cli", "eval/queue"],
     "eval/stability": ["common/base", "common/clump", "common/measure", "common/mesh", "common/shape", "common/voxel",
                        "generators", "eval/chart", "eval/cli", "eval/queue"],
+    "eval/view": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
+                  "common/mesh/formats", "common/voxel", "eval/chart"],
 }
 METHOD = ["common/base", "common/clump", "common/measure", "common/mesh", "common/voxel", "generators",
           "generators/shared"]

@@ -269,7 +269,7 @@ static void worst_sphere_is_split(void **state)
         size_t count = 7, worst = 0, near = 7;
         place_at_random(ball, 7, &field);
         memcpy(before, ball, sizeof ball);
-        assert_int_equal(ms_surface_tally(worth, NULL, &fit, ball, 7, &err), MS_OK);
+        assert_int_equal(ms_surface_tally(worth, NULL, NULL, &fit, ball, 7, &err), MS_OK);
         for (size_t b = 1; b < 7; b++) {
             worst = worth[b].mismatch > worth[worst].mismatch ? b : worst;
         }
@@ -418,12 +418,12 @@ static void tally_is_the_volume(void **state)
     double mismatch;
     const ms_sphere smaller = {.radius = 0.99}, beside = {.centre = {0.05, 0, 0}, .radius = 0.99};
     ms_ball ball[2] = {ms_grid_ball(&target.grid, &smaller), ms_grid_ball(&target.grid, &beside)};
-    assert_int_equal(ms_surface_tally(worth, &mismatch, &fit, ball, 1, &err), MS_OK);
+    assert_int_equal(ms_surface_tally(worth, &mismatch, NULL, &fit, ball, 1, &err), MS_OK);
     assert_true(fabs(mismatch * cell / (4 * pi * 0.99 * 0.99 * 0.01) - 1) < 0.03);
     assert_true(fabs(worth[0].loss * cell / (4 * pi / 3 * 0.99 * 0.99 * 0.99) - 1) < 0.01);
     /* Moved by d, a lune of pi r^2 d - pi d^3 / 12 is added: what lies outside of the shape, all but the shell between,
      * counts against it. */
-    assert_int_equal(ms_surface_tally(worth, &mismatch, &fit, ball, 2, &err), MS_OK);
+    assert_int_equal(ms_surface_tally(worth, &mismatch, NULL, &fit, ball, 2, &err), MS_OK);
     const double lune = pi * (0.99 * 0.99 * 0.05 - 0.05 * 0.05 * 0.05 / 12);
     assert_true(-worth[1].loss * cell < lune && -worth[1].loss * cell > lune - 2 * 2 * pi * 0.01);
     assert_true(worth[0].loss * cell > 0.95 * lune && worth[0].loss * cell < 1.01 * lune);

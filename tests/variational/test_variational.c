@@ -71,7 +71,7 @@ static void find_worth(ms_surface_worth *worth, const ms_target *target, const m
     assert_int_equal(ms_lattice_alloc(&lattice, 1024, &err), MS_OK);
     field.cubic = 1;
     const ms_surface_fit fit = {.field = &field, .lattice = &lattice};
-    assert_int_equal(ms_surface_tally(worth, NULL, &fit, ball, clump->n_spheres, &err), MS_OK);
+    assert_int_equal(ms_surface_tally(worth, NULL, NULL, &fit, ball, clump->n_spheres, &err), MS_OK);
     ms_lattice_free(&lattice);
 }
 

@@ -34,7 +34,11 @@ static void a_grid_begins_empty_with_x_fastest(void **state)
     assert_int_equal(ms_grid_voxels(&grid), 60);
     assert_int_equal(ms_grid_count(&grid), 0);
     for (size_t v = 0; v < 60; v++) {
-        assert_int_equal(ms_grid_index(&grid, (int)v % 3, (int)v / 3 % 4, (int)v / 12), v);
+        const int x = (int)v % 3, y = (int)v / 3 % 4, z = (int)v / 12;
+        int voxel[3];
+        assert_int_equal(ms_grid_index(&grid, x, y, z), v);
+        ms_grid_voxel(voxel, grid.n, v);
+        assert_true(voxel[0] == x && voxel[1] == y && voxel[2] == z);
         grid.inside[v] = v % 7 == 0;
     }
     assert_int_equal(ms_grid_count(&grid), 9);
@@ -42,6 +46,21 @@ static void a_grid_begins_empty_with_x_fastest(void **state)
     assert_null(grid.inside);
     ms_grid_free(&grid);
     ms_grid_free(NULL);
+}
+
+static void corners_of_triangles_are_in_voxels(void **state)
+{
+    (void)state;
+    ms_grid grid = empty_grid(3, 4, 5, 0.5);
+    double vertex[4][3] = {{0, 0, 0}, {1, 1.5, -2}, {4, 4, 4}, {0.25, 8, 1}}, corner[3][3];
+    uint32_t triangle[2][3] = {{0, 1, 2}, {3, 0, 1}};
+    const ms_mesh mesh = {4, 2, vertex, triangle};
+    grid.origin[1] = 1;
+    ms_grid_corners(corner, &grid, &mesh, 1);
+    assert_true(corner[0][0] == 0.5 && corner[0][1] == 14 && corner[0][2] == 2);
+    assert_true(corner[1][0] == 0 && corner[1][1] == -2 && corner[1][2] == 0);
+    assert_true(corner[2][0] == 2 && corner[2][1] == 1 && corner[2][2] == -4);
+    ms_grid_free(&grid);
 }
 
 /* The larger grid holds the box with a voxel to spare, and each old voxel at its old place. */
@@ -188,9 +207,13 @@ static void a_corner_joins_and_a_gap_does_not(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_extents_are_refused),         cmocka_unit_test(a_grid_begins_empty_with_x_fastest),
-        cmocka_unit_test(a_larger_grid_keeps_what_it_had), cmocka_unit_test(what_is_far_away_is_refused),
-        cmocka_unit_test(pieces_agree_with_brute_force),   cmocka_unit_test(a_corner_joins_and_a_gap_does_not),
+        cmocka_unit_test(bad_extents_are_refused),
+        cmocka_unit_test(a_grid_begins_empty_with_x_fastest),
+        cmocka_unit_test(corners_of_triangles_are_in_voxels),
+        cmocka_unit_test(a_larger_grid_keeps_what_it_had),
+        cmocka_unit_test(what_is_far_away_is_refused),
+        cmocka_unit_test(pieces_agree_with_brute_force),
+        cmocka_unit_test(a_corner_joins_and_a_gap_does_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -87,6 +87,7 @@ ms_status ms_columns_read(ms_columns *columns, const ms_word *name, size_t n, ms
                        ms_text_quote(&name[3]).text);
     }
     columns->mass |= n > 4 && ms_text_word_is(&name[4], "mass");
+    columns->carrier |= n > 6 && columns->mass && ms_text_word_is(&name[6], "carrier");
     columns->clump |= n > 4 && ms_text_word_is(&name[4], "clumpid");
     return MS_OK;
 }

@@ -8,8 +8,9 @@ enum { MS_COLUMNS_MOST = 32 }; /* that are looked at */
 
 /** What stands behind x, y, z, r. */
 typedef struct ms_columns {
-    int mass;  /* the fifth column is the mass */
-    int clump; /* the fifth column, where a line has one, is the id of the sphere's clump */
+    int mass;    /* the fifth column is the mass */
+    int carrier; /* the seventh, behind mass and density, is 1 for a carrier, else 0 */
+    int clump;   /* the fifth column, where a line has one, is the id of the sphere's clump */
 } ms_columns;
 
 /**

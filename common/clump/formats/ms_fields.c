@@ -38,13 +38,13 @@ int ms_fields_has_masses(const ms_content *content)
     return content->clump->mass && content->particle;
 }
 
-ms_status ms_fields_add_sphere(ms_clump *clump, const double v[4], const char *name, ms_error *err)
+ms_status ms_fields_add_sphere(ms_clump *clump, int is_carrier, const double v[4], const char *name, ms_error *err)
 {
     const ms_sphere sphere = {.centre = {v[0], v[1], v[2]}, .radius = v[3]};
     if (!isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]) || !isfinite(v[3]) || !(v[3] > 0)) {
         return ms_fail(err, MS_ERR_FORMAT,
                        "%s: sphere %zu is (%g, %g, %g) with radius %g; centres must be finite and radii above 0", name,
-                       clump->n_spheres + 1, v[0], v[1], v[2], v[3]);
+                       ms_clump_count_masses(clump) + 1, v[0], v[1], v[2], v[3]);
     }
-    return ms_clump_add(clump, &sphere, err);
+    return is_carrier ? ms_clump_add_carrier(clump, &sphere, err) : ms_clump_add(clump, &sphere, err);
 }

@@ -8,7 +8,8 @@
 /** Writes numbers with marks between them and none behind. */
 void ms_fields_numbers(FILE *stream, const double *value, size_t count, const char *mark);
 
-/** Writes a line for each sphere: x, y, z, r with marks between them, and an end. */
+/** Writes a line for each sphere that touches, which leaves out carriers: x, y, z, r with marks between them, and an
+ * end. */
 void ms_fields_spheres(FILE *stream, const ms_clump *clump, const char *mark, const char *end);
 
 /** Writes the three moments of a template, divided by `over`. */
@@ -20,7 +21,7 @@ int ms_fields_has_masses(const ms_content *content);
 /** Density of a sphere of the clump, kg/m^3. */
 double ms_fields_density(const ms_content *content, size_t sphere);
 
-/** Adds a sphere if its numbers x, y, z, r can be one. @return MS_OK; MS_ERR_FORMAT; as ms_clump_add */
-ms_status ms_fields_add_sphere(ms_clump *clump, const double v[4], const char *name, ms_error *err);
+/** Adds a sphere, or a carrier, if its numbers x, y, z, r can be one. @return MS_OK; MS_ERR_FORMAT; as ms_clump_add */
+ms_status ms_fields_add_sphere(ms_clump *clump, int is_carrier, const double v[4], const char *name, ms_error *err);
 
 #endif

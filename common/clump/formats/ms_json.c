@@ -92,25 +92,42 @@ static ms_status take_columns(ms_columns *columns, const json_t *root, const cha
     return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: 'columns': %s", name, cause.text);
 }
 
+static ms_status take_list(ms_clump *clump, const json_t *list, int are_carriers, size_t columns, const char *name,
+                           ms_error *err)
+{
+    ms_status status = MS_OK;
+    double v[5];
+    for (size_t s = 0; s < json_array_size(list) && status == MS_OK; s++) {
+        status = take_number_list(v, columns, json_array_get(list, s))
+                     ? ms_fields_add_sphere(clump, are_carriers, v, name, err)
+                     : ms_fail(err, MS_ERR_FORMAT, "%s: %s %zu is no list of %zu numbers", name,
+                               are_carriers ? "carrier" : "sphere", s + 1, columns);
+    }
+    return status;
+}
+
+/* Carriers are nothing without masses. */
 static ms_status take_spheres(ms_clump *clump, const json_t *root, const char *name, ms_error *err)
 {
-    const json_t *list = json_object_get(root, "spheres");
+    const json_t *list = json_object_get(root, "spheres"), *carriers = json_object_get(root, "carriers");
     ms_columns named = {0};
     double v[5];
     ms_status status = take_columns(&named, root, name, err);
-    const size_t n = json_array_size(list), columns = named.mass ? 5 : 4;
-    if (status == MS_OK && n == 0) {
+    const size_t columns = named.mass ? 5 : 4;
+    if (status == MS_OK && json_array_size(list) == 0) {
         status = ms_fail(err, MS_ERR_FORMAT, "%s: holds no list 'spheres'", name);
     }
-    for (size_t s = 0; s < n && status == MS_OK; s++) {
-        status = take_number_list(v, columns, json_array_get(list, s))
-                     ? ms_fields_add_sphere(clump, v, name, err)
-                     : ms_fail(err, MS_ERR_FORMAT, "%s: sphere %zu is no list of %zu numbers", name, s + 1, columns);
+    if (status == MS_OK) {
+        status = take_list(clump, list, 0, columns, name, err);
+    }
+    if (status == MS_OK && columns == 5) {
+        status = take_list(clump, carriers, 1, columns, name, err);
     }
     if (status == MS_OK && columns == 5) {
         status = ms_clump_alloc_masses(clump, err);
-        for (size_t s = 0; s < n && status == MS_OK; s++) {
-            take_number_list(v, 5, json_array_get(list, s));
+        for (size_t s = 0; s < ms_clump_count_masses(clump) && status == MS_OK; s++) {
+            const int is_carrier = s >= clump->n_spheres;
+            take_number_list(v, 5, json_array_get(is_carrier ? carriers : list, s - is_carrier * clump->n_spheres));
             clump->mass[s] = v[4];
         }
     }
@@ -181,11 +198,12 @@ static json_t *sphere_to_json(const ms_content *content, size_t s, int masses)
                   : json_pack("[f,f,f,f]", c[0], c[1], c[2], b->radius);
 }
 
-/* {"mskit": version, <the record>, "particle": {...}, "columns": [...], "spheres": [[x, y, z, r], ...]} */
+/* {"mskit": version, <the record>, "particle": {...}, "columns": [...], "spheres": [[x, y, z, r], ...]}, and "carriers"
+ * likewise where there are any */
 ms_status ms_json_write(FILE *stream, const ms_content *content, ms_error *err)
 {
     const int masses = ms_fields_has_masses(content);
-    json_t *root = json_pack("{s:s}", "mskit", MS_VERSION), *spheres = json_array();
+    json_t *root = json_pack("{s:s}", "mskit", MS_VERSION), *spheres = json_array(), *carriers = json_array();
     json_error_t where;
     json_t *how = content->record ? parse_text(content->record, strlen(content->record), &where) : json_object();
     int failed = !root || !how || json_object_update(root, how) != 0;
@@ -193,10 +211,15 @@ ms_status ms_json_write(FILE *stream, const ms_content *content, ms_error *err)
         failed |= json_object_set_new(root, "particle", ms_json_from_particle(content->particle)) != 0;
     }
     failed |= json_object_set_new(root, "columns", columns_to_json(masses)) != 0;
-    for (size_t s = 0; s < content->clump->n_spheres; s++) {
-        failed |= json_array_append_new(spheres, sphere_to_json(content, s, masses)) != 0;
+    for (size_t s = 0; s < ms_clump_count_masses(content->clump); s++) {
+        json_t *list = s < content->clump->n_spheres ? spheres : carriers;
+        failed |= json_array_append_new(list, sphere_to_json(content, s, masses)) != 0;
     }
     failed |= json_object_set_new(root, "spheres", spheres) != 0;
+    if (content->clump->n_carriers > 0) {
+        failed |= json_object_set(root, "carriers", carriers) != 0;
+    }
+    json_decref(carriers);
     failed = failed || json_dumpf(root, stream, JSON_INDENT(2)) != 0 || fputc('\n', stream) == EOF;
     json_decref(how);
     json_decref(root);

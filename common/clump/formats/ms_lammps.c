@@ -19,6 +19,7 @@ typedef struct molecule {
     size_t n;
     double (*row)[5]; /* x, y, z, diameter, mass */
     int seen[3];      /* sections: Coords, Diameters, Masses */
+    size_t carriers;  /* the last ones */
 } molecule;
 
 static const struct {
@@ -128,16 +129,36 @@ static ms_status finish_particle(ms_particle *particle, const char *name, ms_err
     return MS_OK;
 }
 
+static const char LAST[] = "; the last ", CARRIERS[] = " are carriers of mass";
+
+/* What the title says of carriers, if mskit wrote it. */
+static size_t carriers_of_title(ms_text text)
+{
+    char title[256];
+    const ms_word line = ms_text_rest(&text);
+    snprintf(title, sizeof title, "%.*s", (int)(line.length < sizeof title ? line.length : 0), line.start);
+    const char *at = strstr(title, LAST);
+    char *end = NULL;
+    const unsigned long count = at ? strtoul(at + strlen(LAST), &end, 10) : 0;
+    return end && strncmp(end, CARRIERS, strlen(CARRIERS)) == 0 ? count : 0;
+}
+
 static ms_status fill_clump(ms_clump *clump, ms_particle *particle, const molecule *t, const char *name, ms_error *err)
 {
     if (t->n == 0 || !t->seen[0] || !t->seen[1]) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: a molecule of spheres has the number of atoms, Coords and Diameters",
                        name);
     }
+    if (t->carriers >= t->n || (t->carriers > 0 && !t->seen[2])) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: its title tells of %zu carriers, for which it has no spheres or masses",
+                       name, t->carriers);
+    }
     ms_status status = MS_OK;
     for (size_t s = 0; s < t->n && status == MS_OK; s++) {
         const double *row = t->row[s];
-        status = ms_fields_add_sphere(clump, (const double[]){row[0], row[1], row[2], row[3] / 2}, name, err);
+        const int is_carrier = s >= t->n - t->carriers;
+        status =
+            ms_fields_add_sphere(clump, is_carrier, (const double[]){row[0], row[1], row[2], row[3] / 2}, name, err);
     }
     if (status == MS_OK && t->seen[2]) {
         status = ms_clump_alloc_masses(clump, err);
@@ -155,7 +176,8 @@ ms_status ms_lammps_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes
     ms_status status = MS_OK;
     ms_text_start(&text, bytes, name);
     text.comment = '#';
-    ms_text_skip_line(&text); /* the first line is a title */
+    t.carriers = carriers_of_title(text); /* the first line is a title */
+    ms_text_skip_line(&text);
     while (status == MS_OK && ms_text_seek(&text)) {
         status = read_line(&t, particle, &text, err);
         ms_text_skip_line(&text);
@@ -170,14 +192,14 @@ ms_status ms_lammps_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes
 static void write_section(FILE *stream, const char *name, const ms_clump *clump)
 {
     fprintf(stream, "\n%s\n\n", name);
-    for (size_t s = 0; s < clump->n_spheres; s++) {
+    for (size_t s = 0; s < ms_clump_count_masses(clump); s++) {
         fprintf(stream, "%zu ", s + 1);
         switch (name[0]) {
         case 'C':
             ms_fields_numbers(stream, clump->sphere[s].centre, 3, " ");
             break;
         case 'T':
-            fputc('1', stream);
+            fputc(s < clump->n_spheres ? '1' : '2', stream);
             break;
         case 'D':
             ms_fields_numbers(stream, (const double[]){2 * clump->sphere[s].radius}, 1, " ");
@@ -194,8 +216,11 @@ ms_status ms_lammps_write(FILE *stream, const ms_content *content, ms_error *err
 {
     static const char *const WRITTEN[] = {"Coords", "Types", "Diameters", "Masses"};
     (void)err;
-    fputs("clump by mskit " MS_VERSION ", SI, from the centre of mass along the principal axes\n\n", stream);
-    fprintf(stream, "%zu atoms\n", content->clump->n_spheres);
+    fputs("clump by mskit " MS_VERSION ", SI, from the centre of mass along the principal axes", stream);
+    if (content->clump->n_carriers > 0) {
+        fprintf(stream, "%s%zu%s", LAST, content->clump->n_carriers, CARRIERS);
+    }
+    fprintf(stream, "\n\n%zu atoms\n", ms_clump_count_masses(content->clump));
     fprintf(stream, "%s mass\n0 0 0 com\n", ms_text_of_number(content->particle->mass).text);
     ms_fields_moments(stream, content->particle, 1, " ");
     fputs(" 0 0 0 inertia\n", stream);
@@ -231,30 +256,36 @@ static void write_lammps_walls(FILE *stream, double floor, const double lo[2], c
 }
 
 /* Where particles are inserted: above the floor, within the walls, the higher the more there are. */
-static void write_lammps_places(FILE *stream, const ms_script_drop *drop)
+static void write_lammps_places(FILE *stream, const ms_script_drop *drop, int carriers)
 {
     ms_number reach, width, low;
     fprintf(stream, "variable top equal %s*(2+v_n)\nvariable roof equal v_top+%s\n",
             ms_script_number(drop->reach, &reach), reach.text);
     fprintf(stream, "region box block -%s %s -%s %s", ms_script_number(1.25 * drop->side, &width), width.text,
             width.text, width.text);
-    fprintf(stream, " -%s ${roof}\ncreate_box 1 box\n", reach.text);
+    fprintf(stream, " -%s ${roof}\ncreate_box %d box\n", reach.text, carriers ? 2 : 1);
     fprintf(stream, "region above block -%s %s -%s %s", ms_script_number(drop->side - drop->reach, &width), width.text,
             width.text, width.text);
     fprintf(stream, " %s ${top}\n", ms_script_number(1.5 * drop->reach, &low));
 }
 
-/* Up to the templates. */
-static void start_lammps_drop(FILE *stream, const ms_script_drop *d)
+/* Up to the templates. @param carriers some have them: atoms of type 2, which meet no other; a wall alone would, if it
+ * came deeper than they lie */
+static void start_lammps_drop(FILE *stream, const ms_script_drop *d, int carriers)
 {
     ms_number a, b;
     fputs("units si\natom_style sphere\natom_modify map array\nboundary f f f\nnewton off\n", stream);
-    write_lammps_places(stream, d);
+    write_lammps_places(stream, d, carriers);
     fprintf(stream, "comm_modify vel yes cutoff %s\n", ms_script_number(2 * d->reach, &a));
     fprintf(stream, "neighbor %s bin\n\n", ms_script_number(0.2 * d->reach, &a));
     fputs("fix molecules all property/atom mol ghost yes\n"
           "neigh_modify delay 0 exclude molecule/intra all\n",
           stream);
+    if (carriers) {
+        fputs("# Carriers of mass, which meet no other sphere. The step is that of the spheres alone.\n"
+              "neigh_modify exclude type 1 2\nneigh_modify exclude type 2 2\n",
+              stream);
+    }
     write_lammps_law(stream, d->young);
     write_lammps_walls(stream, 0, (const double[]){-d->side, -d->side}, (const double[]){d->side, d->side});
     fprintf(stream, "timestep %s\n", ms_script_number(d->step, &b));
@@ -282,7 +313,7 @@ ms_status ms_lammps_script(FILE *stream, const ms_content *content, ms_error *er
     (void)err;
     ms_script_title(stream, content->name, "lmp -in", ".in", "-var n 50");
     fputs("variable n index 1\n\n", stream);
-    start_lammps_drop(stream, &d);
+    start_lammps_drop(stream, &d, content->clump->n_carriers > 0);
     fputs("# The template: its mass and inertia are kept (reinit no) and gravity acts on the body.\n", stream);
     fputs("molecule clump ", stream);
     ms_escape_lammps(stream, content->name);
@@ -423,10 +454,14 @@ ms_status ms_lammps_mixture(FILE *stream, const ms_packing *mixture, const char 
 {
     const ms_script_drop d = ms_script_drop_of_mixture(mixture);
     ms_number a;
+    int carriers = 0;
     (void)err;
+    for (size_t k = 0; k < mixture->count; k++) {
+        carriers |= mixture->placed[k].clump.n_carriers > 0;
+    }
     ms_script_mixture_title(stream, name, "lmp -in", ".in", "-var n 500");
     fputs("variable n index 100\n\n", stream);
-    start_lammps_drop(stream, &d);
+    start_lammps_drop(stream, &d, carriers);
     fputs("# A template of each kind and size: mass and inertia are kept (reinit no) and gravity acts on the body.\n"
           "molecule clump",
           stream);

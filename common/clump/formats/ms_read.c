@@ -62,7 +62,7 @@ static ms_status read_file(ms_clump *clump, ms_particle *particle, const char *p
 
 static ms_status check_masses(const ms_clump *clump, const char *name, ms_error *err)
 {
-    for (size_t s = 0; clump->mass && s < clump->n_spheres; s++) {
+    for (size_t s = 0; clump->mass && s < ms_clump_count_masses(clump); s++) {
         if (!isfinite(clump->mass[s]) || !(clump->mass[s] > 0)) {
             return ms_fail(err, MS_ERR_FORMAT, "%s: sphere %zu has the mass %g; masses must be finite and above 0",
                            name, s + 1, clump->mass[s]);

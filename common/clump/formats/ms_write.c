@@ -131,7 +131,7 @@ static ms_status write_template(const ms_content *content, const char *path, con
     const int alone = strcmp(path, "-") == 0;
     ms_template made;
     ms_status status = ms_template_make(&made, content->clump, content->particle, err);
-    const ms_content inner = {&made.clump, &made.particle, content->record, content->name};
+    const ms_content inner = {&made.clump, &made.particle, content->record, content->more, content->name};
     for (const ms_part *part = format->part; status == MS_OK && part->suffix; part++) {
         status = write_part(&inner, path, strlen(path), part, err);
         if (alone) {

@@ -13,6 +13,7 @@ typedef struct ms_content {
     const ms_clump *clump;       /* masses are written where there are any; they need the particle */
     const ms_particle *particle; /* what the clump stands for; NULL where that is not known */
     const char *record;          /* a JSON object in text that says how the clump came about; NULL without */
+    const void *more;            /* what formats of the caller's own take beside; NULL without */
     const char *name;            /* of the first file without its folder; ms_write_clump sets it */
 } ms_content;
 

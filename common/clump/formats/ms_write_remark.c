@@ -10,6 +10,7 @@ static const double WORTH = 1e-3;
 /* Each sphere solid, of the particle's density, whatever overlaps. */
 static ms_status fill_by_volume(ms_clump *clump, double density, ms_error *err)
 {
+    ms_clump_drop_masses(clump); /* the file has no carriers */
     ms_status status = ms_clump_alloc_masses(clump, err);
     for (size_t s = 0; s < clump->n_spheres && status == MS_OK; s++) {
         const double r = clump->sphere[s].radius;

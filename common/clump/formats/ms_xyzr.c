@@ -96,15 +96,16 @@ typedef struct table {
 
 static ms_status add_mass(table *t, const ms_clump *clump, double mass, ms_error *err)
 {
-    if (clump->n_spheres > t->capacity) {
+    const size_t n = ms_clump_count_masses(clump);
+    if (n > t->capacity) {
         double *grown = realloc(t->mass, clump->capacity * sizeof *grown);
         if (!grown) {
-            return ms_fail(err, MS_ERR_NOMEM, "no memory for the masses of %zu spheres", clump->n_spheres);
+            return ms_fail(err, MS_ERR_NOMEM, "no memory for the masses of %zu spheres", n);
         }
         t->mass = grown;
         t->capacity = clump->capacity;
     }
-    t->mass[clump->n_spheres - 1] = mass;
+    t->mass[n - 1] = mass;
     return MS_OK;
 }
 
@@ -125,10 +126,17 @@ static ms_status check_clump_id(table *t, ms_text *text, ms_error *err)
 
 static ms_status read_sphere(ms_clump *clump, table *t, ms_text *text, ms_error *err)
 {
-    double v[5];
-    const int mass = t->columns.mass;
-    ms_status status =
-        ms_text_doubles(v, mass ? 5 : 4, text, mass ? "a sphere (x y z r mass)" : "a sphere (x y z r)", err);
+    double v[7] = {0};
+    const int mass = t->columns.mass, carrier = t->columns.carrier;
+    ms_status status = ms_text_doubles(v,
+                                       carrier ? 7
+                                       : mass  ? 5
+                                               : 4,
+                                       text,
+                                       carrier ? "a sphere (x y z r mass density carrier)"
+                                       : mass  ? "a sphere (x y z r mass)"
+                                               : "a sphere (x y z r)",
+                                       err);
     if (status != MS_OK) {
         return status;
     }
@@ -137,7 +145,10 @@ static ms_status read_sphere(ms_clump *clump, table *t, ms_text *text, ms_error 
                             v[0], v[1], v[2], v[3]);
     }
     const ms_sphere sphere = {.centre = {v[0], v[1], v[2]}, .radius = v[3]};
-    status = ms_clump_add(clump, &sphere, err);
+    if ((v[6] != 0 && v[6] != 1) || (v[6] == 0 && clump->n_carriers > 0)) {
+        return ms_text_fail(err, text, "the column 'carrier' is 0 for spheres, and 1 for carriers, behind all spheres");
+    }
+    status = v[6] == 1 ? ms_clump_add_carrier(clump, &sphere, err) : ms_clump_add(clump, &sphere, err);
     if (status == MS_OK && t->columns.clump) {
         status = check_clump_id(t, text, err);
     }
@@ -259,15 +270,17 @@ ms_status ms_xyzr_write(FILE *stream, const ms_content *content, ms_error *err)
 {
     const ms_clump *clump = content->clump;
     (void)err;
-    fputs(ms_fields_has_masses(content) ? "x,y,z,r,mass,density\n" : "x,y,z,r\n", stream);
-    for (size_t s = 0; s < clump->n_spheres; s++) {
+    fputs("x,y,z,r", stream);
+    fputs(ms_fields_has_masses(content) ? ",mass,density" : "", stream);
+    fputs(clump->n_carriers ? ",carrier\n" : "\n", stream);
+    for (size_t s = 0; s < ms_clump_count_masses(clump); s++) {
         const ms_sphere *b = &clump->sphere[s];
         ms_fields_numbers(stream, (const double[]){b->centre[0], b->centre[1], b->centre[2], b->radius}, 4, ",");
         if (ms_fields_has_masses(content)) {
             fputc(',', stream);
             ms_fields_numbers(stream, (const double[]){clump->mass[s], ms_fields_density(content, s)}, 2, ",");
         }
-        fputc('\n', stream);
+        fputs(clump->n_carriers == 0 ? "\n" : s < clump->n_spheres ? ",0\n" : ",1\n", stream);
     }
     return MS_OK;
 }

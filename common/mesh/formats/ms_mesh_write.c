@@ -147,10 +147,8 @@ typedef struct mesh_writer {
 
 static const mesh_writer formats[] = {{"stl", write_stl}, {"obj", write_obj}, {"ply", write_ply}, {"off", write_off}};
 
-static const mesh_writer *find_mesh_writer(const char *path)
+static const mesh_writer *find_mesh_writer(const char *ending)
 {
-    char ending[16];
-    ms_file_ending(ending, strcmp(path, "-") == 0 ? "-.off" : path);
     for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
         if (strcmp(ending, formats[k].ending) == 0) {
             return &formats[k];
@@ -159,9 +157,17 @@ static const mesh_writer *find_mesh_writer(const char *path)
     return NULL;
 }
 
+ms_status ms_mesh_write_stream(const ms_mesh *mesh, FILE *stream, const char *ending, ms_error *err)
+{
+    const mesh_writer *found = find_mesh_writer(ending);
+    return found ? found->write(mesh, stream, err) : ms_fail(err, MS_ERR_ARG, "there is no mesh format '%s'", ending);
+}
+
 ms_status ms_mesh_write(const ms_mesh *mesh, const char *path, ms_error *err)
 {
-    const mesh_writer *found = find_mesh_writer(path);
+    char ending[16];
+    ms_file_ending(ending, strcmp(path, "-") == 0 ? "-.off" : path);
+    const mesh_writer *found = find_mesh_writer(ending);
     if (!found) {
         return ms_fail(err, MS_ERR_ARG, "%s: a mesh is written as .stl, .obj, .ply or .off; give one of these endings",
                        path);

@@ -1,0 +1,171 @@
+#!/usr/bin/env python3
+"""The pages in a real browser: Debian's chromium, without a screen; skipped where it or its driver is not installed.
+
+    MSKIT=build/eval/mskit /usr/bin/python3 tests/view/test_browser.py [-v] [-k PATTERN]
+"""
+import csv
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MSKIT = os.environ.get("MSKIT", "mskit")
+LACKING = [name for name in ("chromium", "chromedriver") if not shutil.which(name)]
+try:
+    from selenium import webdriver
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.chrome.service import Service
+except ImportError:
+    LACKING.append("selenium")
+
+# Draws once more and looks at the pixels in the same frame: those not white of the left and the right half, and those
+# that differ from the call before.
+LOOK = """
+const done = arguments[0], canvas = document.getElementById('canvas'), gl = canvas.getContext('webgl2');
+const w = canvas.width, h = canvas.height, pixels = new Uint8Array(4 * w * h), start = performance.now();
+document.getElementById('first').dispatchEvent(new Event('input'));
+requestAnimationFrame(() => {
+  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  const milliseconds = performance.now() - start, seen = [0, 0];
+  let changed = 0;
+  for (let p = 0; p < w * h; p++) {
+    const at = 4 * p, is = (k) => window.before && window.before[at + k] !== pixels[at + k];
+    seen[p % w < w / 2 ? 0 : 1] += pixels[at] + pixels[at + 1] + pixels[at + 2] < 720;
+    changed += is(0) || is(1) || is(2) ? 1 : 0;
+  }
+  window.before = pixels;
+  done({left: 2 * seen[0] / (w * h), right: 2 * seen[1] / (w * h), changed: changed / (w * h), milliseconds});
+});
+"""
+
+
+@unittest.skipIf(LACKING, "not installed: " + ", ".join(LACKING))
+class Browser(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="mskit-view-")
+        self.addCleanup(folder.cleanup)
+        self.dir = folder.name
+
+    def mskit(self, *args):
+        return subprocess.run([MSKIT] + [str(a) for a in args], cwd=self.dir, check=True, capture_output=True, text=True)
+
+    def open(self, name, *flags):
+        options = webdriver.ChromeOptions()
+        options.binary_location = shutil.which("chromium")
+        for flag in ("--headless", "--no-sandbox", "--enable-unsafe-swiftshader", "--disable-quic",
+                     "--user-data-dir=" + os.path.join(self.dir, "profile")) + flags:
+            options.add_argument(flag)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        self.browser = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
+        self.addCleanup(self.browser.quit)
+        self.browser.set_window_size(1100, 800)
+        self.browser.set_script_timeout(60)
+        self.browser.get("file://" + os.path.join(self.dir, name))
+
+    def look(self):
+        return self.browser.execute_async_script(LOOK)
+
+    def text(self, name):
+        return self.browser.execute_script(f"return document.getElementById('{name}').textContent")
+
+    def choose(self, name, value, event="change"):
+        self.browser.execute_script("const e = document.getElementById(arguments[0]); e.value = arguments[1];"
+                                    "e.dispatchEvent(new Event(arguments[2]))", name, value, event)
+
+    def expect_no_error(self):
+        """Driver's words on speed are no errors; a breach of the policy is one."""
+        self.assertEqual([e["message"] for e in self.browser.get_log("browser") if e["level"] == "SEVERE"], [])
+
+    def test_clump_and_shape(self):
+        self.mskit("shape", "grain", "-o", "grain.ply")
+        self.mskit("generate", "grain.ply", "-g", "mss", "-n", 20, "--cells", 30, "--correct", "--density", 2650,
+                   "-o", "c.html", "-o", "c.csv")
+        with open(os.path.join(self.dir, "c.csv"), newline="", encoding="utf-8") as stream:
+            spheres = len(list(csv.reader(stream))) - 1
+        self.open("c.html")
+        both = self.look()
+        self.assertGreater(min(both["left"], both["right"]), 0.05, "spheres on the left, the shape on the right")
+        self.assertLess(abs(both["left"] / both["right"] - 1), 0.2, "the clump is about as large as the shape")
+        self.assertEqual(self.look()["changed"], 0, "a picture that nobody touches stays")
+        self.assertTrue(self.text("count").startswith(f"{spheres} spheres, "), self.text("count"))
+        self.assertIn("mss", self.text("command"))
+        self.expect_drag()
+        for value in ("radius", "mass", "protrusion", "surface", "index"):
+            self.choose("colour", value)
+            self.assertGreater(self.look()["changed"], 0.02, value)
+        for value in ("over", "clump", "shape"):
+            self.choose("layout", value)
+            seen = self.look()
+            self.assertGreater(seen["changed"], 0.01, value)
+            self.assertGreater(seen["left"] + seen["right"], 0.2, value)
+        self.choose("layout", "clump")
+        whole = self.look()
+        self.choose("first", 3, "input")
+        part = self.look()
+        self.assertEqual(self.text("count").split(",")[0], f"3 of {spheres} spheres")
+        self.assertGreater(whole["left"] + whole["right"], 1.05 * (part["left"] + part["right"]))
+        self.expect_no_error()
+
+    def expect_drag(self):
+        canvas = self.browser.find_element("id", "canvas")
+        ActionChains(self.browser).drag_and_drop_by_offset(canvas, 90, 40).perform()
+        self.assertGreater(self.look()["changed"], 0.03, "a drag turns them")
+        ActionChains(self.browser).double_click(canvas).perform()
+        self.look()
+
+    def test_clump_alone(self):
+        with open(os.path.join(self.dir, "two.csv"), "w", encoding="utf-8") as stream:
+            stream.writelines(f"{0.02 * k},0,0,1\n" for k in range(150))
+        self.mskit("convert", "two.csv", "-o", "two.html")
+        self.open("two.html")
+        seen = self.look()
+        self.assertGreater(min(seen["left"], seen["right"]), 0.2, "the clump fills the picture")
+        self.assertEqual(self.text("count"), "150 spheres", "more than a slider has by itself")
+        self.expect_no_error()
+
+    def test_volume(self):
+        """A ball of voxels: seen as large as its spheres."""
+        n, r = 24, 9.3
+        voxels = bytes((i - 12) ** 2 + (j - 12) ** 2 + (k - 12) ** 2 < r * r
+                       for k in range(n) for j in range(n) for i in range(n))
+        head = f"{{'descr': '|u1', 'fortran_order': False, 'shape': ({n}, {n}, {n}), }}\n".encode()
+        with open(os.path.join(self.dir, "v.npy"), "wb") as stream:
+            stream.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head + voxels)
+        self.mskit("generate", "v.npy", "-n", 1, "-o", "v.html")
+        self.open("v.html")
+        seen = self.look()
+        self.assertGreater(seen["left"], 0.2)
+        self.assertLess(abs(seen["left"] / seen["right"] - 1), 0.1)
+        self.expect_no_error()
+
+    def test_without_webgl(self):
+        self.mskit("shape", "ball", "-o", "ball.stl")
+        self.mskit("generate", "ball.stl", "-n", 1, "--cells", 10, "-o", "c.html")
+        self.open("c.html", "--disable-3d-apis")
+        message = self.browser.find_element("id", "message")
+        self.assertTrue(message.is_displayed())
+        self.assertIn("no WebGL 2", message.text)
+        self.assertFalse(self.browser.find_element("id", "canvas").is_displayed())
+        self.assertTrue(self.browser.find_element("id", "measures").is_displayed())
+
+    def test_names_are_text(self):
+        """The path of the shape ends a script, opens a comment and sets an attribute, if it is let."""
+        folder = "a<"
+        name = "script><!--<script><b id=bad>\"' onload=x&lt;.stl"
+        os.mkdir(os.path.join(self.dir, folder))
+        self.mskit("shape", "ball", "-o", f"{folder}/{name}")
+        self.mskit("generate", f"{folder}/{name}", "-n", 2, "--cells", 10, "-o", "<b id=bad>.html")
+        self.open("<b id=bad>.html".replace("<", "%3C").replace(">", "%3E"))
+        self.assertEqual(self.browser.find_elements("id", "bad"), [])
+        self.assertEqual(self.text("name"), f"{folder}/{name}")
+        self.assertEqual(self.browser.title, "<b id=bad>.html")
+        self.assertGreater(self.look()["right"], 0.05)
+        self.expect_no_error()
+
+
+if __name__ == "__main__":
+    sys.dont_write_bytecode = True
+    unittest.main()
