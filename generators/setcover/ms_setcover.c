@@ -113,6 +113,13 @@ static ms_status start_by_cells(setcover_choice *choice, const ms_run *run, ms_e
                            : status;
 }
 
+/* Whether spheres are chosen from coarse to fine, and moved on the medial surface, if there is a closed mesh. */
+static int is_coarse_to_fine(const ms_run *run)
+{
+    return setcover_option(run, COUNT) == COUNT_VOXELS && setcover_option(run, CONNECTED) == 0 &&
+           setcover_option(run, CANDIDATES) == SETCOVER_MEDIAL && setcover_option(run, SKELETON) == MS_SKELETON_SURFACE;
+}
+
 static ms_status generate_by_setcover(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
 {
     const int by_voxels = setcover_option(run, COUNT) == COUNT_VOXELS;
@@ -120,8 +127,7 @@ static ms_status generate_by_setcover(ms_clump *clump, ms_stop_reason *reason, c
                                          .centres = (ms_setcover_centres)setcover_option(run, CANDIDATES),
                                          .kind = (ms_skeleton)setcover_option(run, SKELETON),
                                          .align = setcover_option(run, ALIGN) != 0,
-                                         .later = by_voxels && setcover_option(run, CANDIDATES) == SETCOVER_MEDIAL &&
-                                                  setcover_option(run, CONNECTED) == 0};
+                                         .later = is_coarse_to_fine(run)};
     setcover_choice choice = {0};
     ms_generator_stage(run, "candidate spheres", (double)NAN);
     ms_status status = ms_setcover_candidates(&choice.pool, run->target, &lattice, err);

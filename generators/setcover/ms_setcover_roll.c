@@ -113,13 +113,14 @@ static int compare_rolled(const void *one, const void *other)
     return a->index < b->index ? -1 : 1;
 }
 
-/* The cell of a place; cells have this side, in voxels of the lattice. */
+/* The cell of a place; cells have this side, in voxels of the lattice. Their borders lie on no point of the lattice,
+ * where spheres may end: rounding would tell on which side. */
 static uint64_t find_end_cell(const ms_setcover_field *f, const double centre[3], double side)
 {
     uint64_t cell = 0;
     const double from[3] = {centre[0] - f->origin[0], centre[1] - f->origin[1], centre[2] - f->origin[2]};
     for (int a = 0; a < 3; a++) {
-        const double at = floor(ms_dot(from, f->axis[a]) / (f->h * side) + 0.5);
+        const double at = floor((ms_dot(from, f->axis[a]) / f->h + CELL / 2) / side);
         cell = cell << 21 | (uint64_t)fmin(fmax(at, 0), 0x1fffff);
     }
     return cell;
