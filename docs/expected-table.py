@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """What is expected against the least D known: the tables of docs/expected.md.
 
-    MSKIT=build/eval/mskit MSKIT_SHARED=../shared docs/expected-table.py RUNS.csv [--effort E...] [--body NAME...]
-                                                                          [--most N] [--timeout S]
+    MSKIT=build/eval/mskit MSKIT_SHARED=../shared docs/expected-table.py RUNS.csv [--effort E...] [--start NAME...]
+                                                                          [--body NAME...] [--most N] [--timeout S]
 
 For each body and number of spheres up to N it runs `mskit generate -g variational` with these efforts (0 and 1 by
-default; none with `--effort`), judges the clump by MSKIT_SHARED/tools/score.c at 200 cells or more, and adds a row to RUNS.csv;
-rows that are there are not run again. A run of more than S seconds is left out. The least D known is the least of all
-rows. Then it prints the tables. Takes cc; some 30 CPU minutes, and as much again for `--effort 2 3 --most 60`.
+default; none with `--effort`) from these starts: `own`, the default; a method's name, for `--refine` from what that
+method gives for as many spheres; `included`, for `--refine` from the clump that another generator published with the
+mesh, where there is one. MSKIT_SHARED/tools/score.c judges the clump at 200 cells or more, and a row is added to
+RUNS.csv; rows that are there are not run again. A run of more than S seconds is left out. The least D known is the
+least of all rows. Then it prints the tables, and which runs the least came from. Takes cc; some 30 CPU minutes by
+default.
 """
 import argparse
 import csv
@@ -17,14 +20,17 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 
 MSKIT = os.path.abspath(os.environ.get("MSKIT", "build/eval/mskit"))
 SHARED = os.path.abspath(os.environ.get("MSKIT_SHARED", "../shared"))
-FIELDS = "shape n effort cells delivered seconds D".split()
+FIELDS = "shape n effort start cells delivered seconds D".split()
 ANALYTIC = {"torus": ("torus",), "prolate": ("ellipsoid", "a=2", "b=1", "c=1", "fineness=150"),
             "needle": ("needle",), "oblate": ("ellipsoid", "a=2", "b=2", "c=1", "fineness=100"),
             "grain5": ("grain", "seed=5"), "grain11": ("grain", "seed=11"), "tablet": ("tablet",),
-            "cylinder": ("cylinder",)}
+            "cylinder": ("cylinder",), "oblate331": ("ellipsoid", "a=3", "b=3", "c=1", "fineness=100"),
+            "oblate332": ("ellipsoid", "a=1.5", "b=1.5", "c=1", "fineness=100"),
+            "triaxial": ("ellipsoid", "a=3", "b=2", "c=1.5", "fineness=100")}
 # Bodies, numbers of spheres, cells along the shortest side for the method and along the longest for the judge: more where
 # the body stands along the grid's own planes, so that 200 err by 15 %. The constants of the model (CHEAPER, TOLERANCE,
 # the points of a level) were chosen on the first list.
@@ -43,6 +49,7 @@ HELD_OUT = [
     *((f"grains402/ma165-{number}.ply", (10, 30, 100), 60, 200) for number in (
         "00463", "01576", "02694", "03830", "04989", "06136")),
     *((name, (10, 30, 100), 60, 200) for name in ("grain5", "grain11", "tablet", "cylinder")),
+    *((name, (30, 100), 100, 400) for name in ("oblate331", "oblate332", "triaxial")),
 ]
 
 
@@ -76,17 +83,32 @@ class Judge:
             run(sys.executable, os.path.join(SHARED, "tools", "tostl.py"), source, path)
         return path
 
-    def try_method(self, body, n, effort, cells, judged, timeout):
-        """The row of a run; None for one that takes too long."""
+    def clump_of(self, start, body, n, cells, timeout):
+        """Options that make variational begin there; None where the body has no such clump."""
+        if start == "own":
+            return ()
+        path = os.path.join(self.folder, "start.csv")
+        if start == "included":
+            path = os.path.join(SHARED, "data", os.path.splitext(body)[0] + ".spheres.csv")
+            return ("--refine", path) if os.path.exists(path) else None
+        run(MSKIT, "generate", self.mesh(body), "-g", start, "-n", str(n), "--cells", str(cells), "-o", path,
+            timeout=timeout)
+        return ("--refine", path)
+
+    def try_method(self, body, n, effort, start, cells, judged, timeout):
+        """The row of a run; None for one that takes too long, or has nothing to begin with."""
         clump = os.path.join(self.folder, "clump.csv")
         try:
+            begin = self.clump_of(start, body, n, cells, timeout)
+            if begin is None:
+                return None
             text = run(MSKIT, "generate", self.mesh(body), "-g", "variational", "-n", str(n), "--set",
-                       f"effort={effort}", "--cells", str(cells), "-o", clump, "--json", timeout=timeout)
+                       f"effort={effort}", *begin, "--cells", str(cells), "-o", clump, "--json", timeout=timeout)
         except subprocess.TimeoutExpired:
             return None
         score = json.loads(run(self.program, self.mesh(body), clump, str(judged)))
         dice = score["eta"] / (1 + score["coverage"] + score["overshoot"])  # more digits than its own
-        return dict(zip(FIELDS, (name_of(body), n, effort, cells, score["n"], json.loads(text)["seconds"]["cpu"],
+        return dict(zip(FIELDS, (name_of(body), n, effort, start, cells, score["n"], json.loads(text)["seconds"]["cpu"],
                                  f"{dice:.4g}")))
 
 
@@ -102,19 +124,20 @@ def planned(arguments):
         for body, numbers, *cells in FITTED + HELD_OUT:
             for n in numbers:
                 if n <= arguments.most and (not arguments.body or name_of(body) in arguments.body):
-                    yield body, n, effort, *cells
+                    for start in arguments.start:
+                        yield body, n, effort, start, *cells
 
 
 def add_runs(judge, arguments):
-    there = {(row["shape"], int(row["n"]), int(row["effort"])) for row in read_runs(arguments.runs)}
+    there = {(row["shape"], int(row["n"]), int(row["effort"]), row["start"]) for row in read_runs(arguments.runs)}
     new = not os.path.exists(arguments.runs)
     with open(arguments.runs, "a", newline="", encoding="utf-8") as stream:
         writer = csv.DictWriter(stream, FIELDS, lineterminator="\n")
         if new:
             writer.writeheader()
-        for body, n, effort, cells, judged in planned(arguments):
-            row = (name_of(body), n, effort) not in there and judge.try_method(body, n, effort, cells,
-                                                                               judged, arguments.timeout)
+        for body, *what, cells, judged in planned(arguments):
+            row = (name_of(body), *what) not in there and judge.try_method(body, *what, cells, judged,
+                                                                           arguments.timeout)
             if row:
                 writer.writerow(row)
                 stream.flush()
@@ -147,6 +170,22 @@ def print_table(judge, runs, bodies):
     return ratios
 
 
+def print_winners(runs):
+    """How often each start and effort gave the least D, and what starts other than variational's own brought."""
+    best, own = {}, {}
+    for row in runs:
+        key = row["shape"], row["n"]
+        best[key] = min(best.get(key, row), row, key=lambda r: float(r["D"]))
+        if row["start"] == "own":
+            own[key] = min(own.get(key, row), row, key=lambda r: float(r["D"]))
+    print("\nthe least came from:")
+    for what, count in Counter((row["start"], row["effort"]) for row in best.values()).most_common():
+        print(f"  {what[0]}, effort {what[1]}: {count}")
+    gains = [(float(own[key]["D"]) / float(row["D"]), *key, row["start"]) for key, row in best.items() if key in own]
+    for gain, body, n, start in sorted(gains, reverse=True)[:10]:
+        print(f"  {body} {n}: {gain:.3f} times as much from its own start as from {start}")
+
+
 def print_range(role, ratios):
     for n in sorted(ratios):
         values = sorted(ratios[n])
@@ -177,6 +216,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("runs")
     parser.add_argument("--effort", nargs="*", type=int, default=[0, 1])
+    parser.add_argument("--start", nargs="*", default=["own"])
     parser.add_argument("--body", nargs="*")
     parser.add_argument("--most", type=int, default=1000)
     parser.add_argument("--timeout", type=float, default=600)
@@ -188,6 +228,7 @@ def main():
             print(f"\n{role}:\n")
             print_range(role, print_table(judge, read_runs(arguments.runs), bodies))
         print_vessels(judge, read_runs(arguments.runs))
+        print_winners(read_runs(arguments.runs))
 
 
 if __name__ == "__main__":

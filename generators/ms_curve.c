@@ -47,8 +47,8 @@ static ms_run copy_for_one(const ms_run *run, const ms_settings *settings)
  * A run for each number of spheres, from the largest down. Where a generator gives fewer spheres than asked for, their
  * score stands for both numbers. Without `each` a clump is freed when the next has started from it.
  */
-static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_generator *generator,
-                          const ms_run *run, size_t max_voxels, ms_error *err)
+static ms_status run_each(ms_score *curve, ms_clump *each, ms_error *remarks, const ms_clump *clump,
+                          const ms_generator *generator, const ms_run *run, size_t max_voxels, ms_error *err)
 {
     ms_settings defaults = {0}, settings;
     ms_run one = copy_for_one(run, &settings);
@@ -71,6 +71,9 @@ static ms_status run_each(ms_score *curve, ms_clump *each, const ms_clump *clump
             break;
         }
         one.stop.spheres = n - 1;
+        if (remarks) {
+            ms_generator_keep_remarks(&one, &remarks[n - 2]);
+        }
         ms_generator_stage(run, "curve", (double)(clump->n_spheres - n) / (double)clump->n_spheres);
         if (takes_clump(generator)) {
             settings.clump = *larger;
@@ -99,8 +102,8 @@ static ms_status take_prefixes(ms_score *curve, ms_clump *each, const ms_clump *
     return status;
 }
 
-ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_generator *generator,
-                          const ms_run *run, size_t max_voxels, ms_error *err)
+ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, ms_error *remarks, const ms_clump *clump,
+                          const ms_generator *generator, const ms_run *run, size_t max_voxels, ms_error *err)
 {
     ms_run all = *run;
     ms_target cut = *run->target;
@@ -117,7 +120,7 @@ ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, const ms_clump *clump
     if (status == MS_OK) {
         status = ms_generator_is_nested(generator, run->settings)
                      ? take_prefixes(curve, each, clump, &all, max_voxels, err)
-                     : run_each(curve, each, clump, generator, &all, max_voxels, err);
+                     : run_each(curve, each, remarks, clump, generator, &all, max_voxels, err);
     }
     ms_cut_cells_free(cells);
     if (each && status != MS_OK) {
@@ -129,5 +132,5 @@ ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, const ms_clump *clump
 ms_status ms_curve_compute(ms_score *curve, const ms_clump *clump, const ms_generator *generator, const ms_run *run,
                            size_t max_voxels, ms_error *err)
 {
-    return ms_curve_clumps(curve, NULL, clump, generator, run, max_voxels, err);
+    return ms_curve_clumps(curve, NULL, NULL, clump, generator, run, max_voxels, err);
 }

@@ -28,13 +28,15 @@ MS_API ms_status ms_curve_compute(ms_score *curve, const ms_clump *clump, const 
 /**
  * The same, and the clumps themselves.
  *
- * @param[out] each clumps of 1, 2, ... spheres, clump->n_spheres of them, or NULL; of fewer spheres where the
- *                  generator gave fewer than it was asked for. The caller frees each; empty on failure
+ * @param[out]    each    clumps of 1, 2, ... spheres, clump->n_spheres of them, or NULL; of fewer spheres where the
+ *                        generator gave fewer than it was asked for. The caller frees each; empty on failure
+ * @param[in,out] remarks as many texts, to which is added what the generator remarks on each but the last, which is
+ *                        given (ms_generator_keep_remarks); NULL: they go where those of run go
  *
  * Memory: 32 n^2 bytes at the most for n spheres.
  */
-MS_API ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, const ms_clump *clump, const ms_generator *generator,
-                                 const ms_run *run, size_t max_voxels, ms_error *err);
+MS_API ms_status ms_curve_clumps(ms_score *curve, ms_clump *each, ms_error *remarks, const ms_clump *clump,
+                                 const ms_generator *generator, const ms_run *run, size_t max_voxels, ms_error *err);
 
 MS_C_END
 

@@ -28,6 +28,19 @@ void ms_generator_remark(const ms_run *run, const char *format, ...)
     run->remark(run->remark_context, sentence);
 }
 
+static void keep_remark(void *context, const char *sentence)
+{
+    ms_error *kept = context;
+    const size_t length = strlen(kept->text);
+    snprintf(kept->text + length, sizeof kept->text - length, "%s%s", length > 0 ? "; " : "", sentence);
+}
+
+void ms_generator_keep_remarks(ms_run *run, ms_error *kept)
+{
+    run->remark = keep_remark;
+    run->remark_context = kept;
+}
+
 /* Spheres of less than half a voxel may hold its centre, by which methods choose, and yet be nothing by the rule that
  * scores them. Ends at the first sphere that covers a voxel of the shape. */
 static ms_status check_coverage(const ms_clump *clump, const char *name, const ms_run *run, ms_error *err)

@@ -105,6 +105,10 @@ MS_API const ms_generator *ms_generator_find(const char *name, ms_error *err);
 MS_API ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
                                   const ms_run *run, ms_error *err);
 
+/** Has what a run remarks added to a text, sentences with "; " between; what it has no room for is cut. @param kept
+ * borrowed while the run lasts */
+MS_API void ms_generator_keep_remarks(ms_run *run, ms_error *kept);
+
 /** For generators: tells the run's listener, if there is one, what the run is at. */
 MS_API void ms_generator_stage(const ms_run *run, const char *stage, double share);
 

@@ -20,6 +20,7 @@
 #include "clump/ms_carriers.h"
 #include "clump/ms_clump.h"
 #include "clump/ms_density.h"
+#include "clump/ms_equal_volume.h"
 #include "clump/ms_particle.h"
 #include "clump/ms_template.h"
 #include "clump/ms_union.h"

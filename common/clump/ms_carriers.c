@@ -61,13 +61,18 @@ static ms_status add_candidates(ms_clump *all, const ms_sphere *host, double dep
     return status;
 }
 
+typedef struct host_rank {
+    double radius;
+    size_t at;
+} host_rank;
+
 static int larger_first(const void *a, const void *b)
 {
-    const ms_sphere *const *p = a, *const *q = b;
-    if ((*p)->radius != (*q)->radius) {
-        return (*p)->radius > (*q)->radius ? -1 : 1;
+    const host_rank *p = a, *q = b;
+    if (p->radius != q->radius) {
+        return p->radius > q->radius ? -1 : 1;
     }
-    return *p < *q ? -1 : 1;
+    return p->at < q->at ? -1 : 1;
 }
 
 /* The spheres, and behind them all candidates. */
@@ -75,19 +80,20 @@ static ms_status list_candidates(ms_clump *all, const ms_clump *clump, double de
                                  ms_error *err)
 {
     const size_t n = clump->n_spheres;
-    const ms_sphere **host = malloc(n * sizeof *host);
-    ms_status status = host ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory to sort %zu spheres", n);
+    host_rank *rank = malloc(n * sizeof *rank);
+    ms_status status = rank ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory to sort %zu spheres", n);
     for (size_t s = 0; s < n && status == MS_OK; s++) {
-        host[s] = &clump->sphere[s];
+        rank[s] = (host_rank){clump->sphere[s].radius, s};
         status = ms_clump_add(all, &clump->sphere[s], err);
     }
     if (status == MS_OK) {
-        qsort(host, n, sizeof(const ms_sphere *), larger_first);
+        qsort(rank, n, sizeof *rank, larger_first);
     }
     for (size_t h = 0; h < n && h < HOSTS && status == MS_OK; h++) {
-        status = add_candidates(all, host[h], depth_in(host[h], depth, overlap), n <= FEW_HOSTS ? 2 : 1, axis, err);
+        const ms_sphere *host = &clump->sphere[rank[h].at];
+        status = add_candidates(all, host, depth_in(host, depth, overlap), n <= FEW_HOSTS ? 2 : 1, axis, err);
     }
-    free(host);
+    free(rank);
     return status;
 }
 
@@ -177,7 +183,7 @@ static ms_status explain(ms_clump *clump, const ms_density_report *alone, const 
 }
 
 /* Radius of the ball of the particle's volume, in the clump's unit. */
-static double radius_of(const ms_particle *p)
+static double equal_ball_radius(const ms_particle *p)
 {
     return cbrt(0.75 * p->mass / (acos(-1.0) * p->density)) / p->scale;
 }
@@ -186,7 +192,7 @@ static ms_status add_carriers(ms_clump *clump, ms_density_report *report, const 
                               const ms_carriers_options *options, ms_error *err)
 {
     const ms_density_report alone = *report;
-    const double overlap = MS_CARRIERS_OVERLAP * radius_of(particle);
+    const double overlap = MS_CARRIERS_OVERLAP * equal_ball_radius(particle);
     int found;
     ms_clump_drop_masses(clump);
     ms_status status = find_at_depth(clump, &found, particle, &options->masses, options->depth, overlap, err);

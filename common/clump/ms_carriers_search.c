@@ -12,7 +12,7 @@ enum { AFRESH = 6, STARTS = 24, ROUNDS = 6, REPAIRS = 4, MOST_PICKED = 3 * MS_MA
 static const double ROUNDING = 1e-10, NOTHING = 1e-9;
 static const double SOFT = 1e-3; /* of the weights: a share so small weighs half of what one of 0 does */
 
-typedef struct search {
+typedef struct carrier_search {
     const ms_mass_equations *e;
     size_t n; /* spheres; candidates are those behind them */
     const ms_density_options *options;
@@ -23,12 +23,12 @@ typedef struct search {
     size_t *pick, picked;         /* those tried, in ascending order */
     size_t *best, n_best;         /* the fewest */
     double margin;                /* of these: the greatest least share / the bound of it */
-} search;
+} carrier_search;
 
 /* A programme for the shares of the spheres and of some candidates beyond those given, NULL for none; the errors of the
  * equations are its one goal. */
-static ms_linear_program *make_programme(search *s, const size_t *some, size_t count, const double *given, double most,
-                                         ms_error *err)
+static ms_linear_program *make_choice(carrier_search *s, const size_t *some, size_t count, const double *given,
+                                      double most, ms_error *err)
 {
     ms_linear_program *p = ms_linear_program_new(s->n + count, 1, 0, most, err);
     ms_status status = p ? MS_OK : MS_ERR_NOMEM;
@@ -58,13 +58,13 @@ static ms_status none_for_limit(ms_status status, int *solved)
 }
 
 /* Can the spheres and these candidates do? The margin is above 1 if so. */
-static ms_status check(search *s, double *margin, const size_t *some, size_t count, ms_error *err)
+static ms_status check(carrier_search *s, double *margin, const size_t *some, size_t count, ms_error *err)
 {
     const double most = s->options->most > 0 ? s->options->most : 1;
     double error;
     int solved = 0;
     *margin = 0;
-    ms_linear_program *p = make_programme(s, some, count, NULL, most, err);
+    ms_linear_program *p = make_choice(s, some, count, NULL, most, err);
     ms_status status = p ? none_for_limit(ms_linear_program_minimise(p, 0, 0, &error, err), &solved) : MS_ERR_NOMEM;
     if (solved && error < ROUNDING) {
         status = none_for_limit(ms_linear_program_spread(p, err), &solved);
@@ -82,7 +82,7 @@ static ms_status check(search *s, double *margin, const size_t *some, size_t cou
 }
 
 /* Where the weights begin: all alike at first, then strewn about 1 without repeating. What is given costs nothing. */
-static void start_weights(search *s, int start)
+static void start_weights(carrier_search *s, int start)
 {
     static const double GOLDEN = 0.6180339887498949;
     for (size_t c = 0; c < s->e->n; c++) {
@@ -90,7 +90,7 @@ static void start_weights(search *s, int start)
     }
 }
 
-static void take_those_with_share(search *s)
+static void take_those_with_share(carrier_search *s)
 {
     s->picked = 0;
     for (size_t c = s->n; c < s->e->n; c++) {
@@ -101,11 +101,11 @@ static void take_those_with_share(search *s)
 }
 
 /* Few candidates by programmes whose weights follow from the shares of the one before; none where not even all do. */
-static ms_status choose(search *s, int start, ms_error *err)
+static ms_status choose_few(carrier_search *s, int start, ms_error *err)
 {
     double error;
     int solved = 0;
-    ms_linear_program *p = make_programme(s, s->all, s->e->n - s->n, s->given, s->most, err);
+    ms_linear_program *p = make_choice(s, s->all, s->e->n - s->n, s->given, s->most, err);
     ms_status status = p ? none_for_limit(ms_linear_program_minimise(p, 0, 0, &error, err), &solved) : MS_ERR_NOMEM;
     solved = solved && error < ROUNDING;
     s->picked = 0;
@@ -126,7 +126,7 @@ static ms_status choose(search *s, int start, ms_error *err)
 }
 
 /* Nothing at first; later on the best so far but for two, another pair each time. */
-static void start_given(search *s, int start)
+static void start_given(carrier_search *s, int start)
 {
     for (size_t c = 0; c < s->e->n; c++) {
         s->given[c] = c < s->n ? s->least : 0;
@@ -144,13 +144,13 @@ static void start_given(search *s, int start)
 }
 
 /* Chooses until all that are chosen can have the least share: they are given it, and others make up for that. */
-static ms_status choose_above_bound(search *s, double *margin, int start, ms_error *err)
+static ms_status choose_above_bound(carrier_search *s, double *margin, int start, ms_error *err)
 {
     ms_status status = MS_OK;
     *margin = 0;
     start_given(s, start);
     for (int repair = 0; repair <= REPAIRS && *margin < 1 && status == MS_OK; repair++) {
-        status = choose(s, start, err);
+        status = choose_few(s, start, err);
         if (status != MS_OK || s->picked == 0 || s->picked > MOST_PICKED) {
             return status;
         }
@@ -163,7 +163,7 @@ static ms_status choose_above_bound(search *s, double *margin, int start, ms_err
 }
 
 /* Leaves out one after the other, as long as the rest can do; notes what is left if it is the best so far. */
-static ms_status thin_out(search *s, double margin, ms_error *err)
+static ms_status thin_out(carrier_search *s, double margin, ms_error *err)
 {
     ms_status status = MS_OK;
     size_t rest[MOST_PICKED];
@@ -191,7 +191,7 @@ static ms_status thin_out(search *s, double margin, ms_error *err)
 
 static ms_status run_starts(void *context, ms_error *err)
 {
-    search *s = context;
+    carrier_search *s = context;
     ms_status status = MS_OK;
     for (int start = 0; start < STARTS && status == MS_OK; start++) {
         double margin;
@@ -206,7 +206,7 @@ static ms_status run_starts(void *context, ms_error *err)
     return status;
 }
 
-static ms_status allocate(search *s, ms_error *err)
+static ms_status allocate(carrier_search *s, ms_error *err)
 {
     const size_t n = s->e->n;
     s->row = malloc(n * sizeof *s->row);
@@ -228,7 +228,7 @@ static ms_status allocate(search *s, ms_error *err)
 ms_status ms_carriers_search(size_t **pick, size_t *picked, const ms_mass_equations *e, size_t n_spheres,
                              const ms_density_options *options, ms_error *err)
 {
-    search s = {.e = e, .n = n_spheres, .options = options};
+    carrier_search s = {.e = e, .n = n_spheres, .options = options};
     s.least = ms_density_least(options, n_spheres + MS_MASS_EQUATIONS_COUNT);
     s.most = options->most > 0 ? fmax(options->most - s.least, 0) : 1;
     ms_status status = allocate(&s, err);

@@ -10,26 +10,26 @@
 enum { BLOCK = 8, MOST = 1 << 15 };
 
 /* The lattice, and which spheres reach into which block of it or one edge beyond. */
-typedef struct lattice {
+typedef struct ball_lattice {
     const ms_clump *clump;
     ms_isosurface field;
     int blocks[3];
     size_t *start;  /* one for each block and one more: where its spheres begin in `near` */
     uint32_t *near; /* ascending in each block */
     uint8_t *inside;
-} lattice;
+} ball_lattice;
 
-static size_t block_of(const lattice *l, int i, int j, int k)
+static size_t block_of(const ball_lattice *l, int i, int j, int k)
 {
     return (size_t)i + (size_t)l->blocks[0] * ((size_t)j + (size_t)l->blocks[1] * (size_t)k);
 }
 
-static size_t count_blocks(const lattice *l)
+static size_t count_ball_blocks(const ball_lattice *l)
 {
     return (size_t)l->blocks[0] * (size_t)l->blocks[1] * (size_t)l->blocks[2];
 }
 
-static void place(double out[3], const lattice *l, const int at[3])
+static void place_point(double out[3], const ball_lattice *l, const int at[3])
 {
     for (int k = 0; k < 3; k++) {
         out[k] = l->field.origin[k] + l->field.h * at[k];
@@ -37,7 +37,7 @@ static void place(double out[3], const lattice *l, const int at[3])
 }
 
 /* The blocks that the box of a sphere and an edge around it meets. */
-static void find_blocks(int lo[3], int hi[3], const lattice *l, const ms_sphere *sphere)
+static void find_ball_blocks(int lo[3], int hi[3], const ball_lattice *l, const ms_sphere *sphere)
 {
     for (int k = 0; k < 3; k++) {
         const double at = (sphere->centre[k] - l->field.origin[k]) / l->field.h, r = sphere->radius / l->field.h;
@@ -47,11 +47,11 @@ static void find_blocks(int lo[3], int hi[3], const lattice *l, const ms_sphere 
 }
 
 /* Passes over all pairs of a block and a sphere. @param fill zero: counts them into start, one block on */
-static void pass_pairs(lattice *l, size_t *next, int fill)
+static void pass_pairs(ball_lattice *l, size_t *next, int fill)
 {
     for (size_t s = 0; s < l->clump->n_spheres; s++) {
         int lo[3], hi[3];
-        find_blocks(lo, hi, l, &l->clump->sphere[s]);
+        find_ball_blocks(lo, hi, l, &l->clump->sphere[s]);
         for (int k = lo[2]; k <= hi[2]; k++) {
             for (int j = lo[1]; j <= hi[1]; j++) {
                 for (int i = lo[0]; i <= hi[0]; i++) {
@@ -67,9 +67,9 @@ static void pass_pairs(lattice *l, size_t *next, int fill)
     }
 }
 
-static ms_status list_spheres(lattice *l, ms_error *err)
+static ms_status list_spheres(ball_lattice *l, ms_error *err)
 {
-    const size_t count = count_blocks(l);
+    const size_t count = count_ball_blocks(l);
     size_t *next = malloc((count + 1) * sizeof *next);
     l->start = calloc(count + 1, sizeof *l->start);
     if (next && l->start) {
@@ -88,11 +88,11 @@ static ms_status list_spheres(lattice *l, ms_error *err)
                    : ms_fail(err, MS_ERR_NOMEM, "no memory for the surface of %zu spheres", l->clump->n_spheres);
 }
 
-static int is_inside(const lattice *l, const int at[3])
+static int is_in_balls(const ball_lattice *l, const int at[3])
 {
     double point[3];
     const size_t block = block_of(l, at[0] / BLOCK, at[1] / BLOCK, at[2] / BLOCK);
-    place(point, l, at);
+    place_point(point, l, at);
     for (size_t s = l->start[block]; s < l->start[block + 1]; s++) {
         const ms_sphere *sphere = &l->clump->sphere[l->near[s]];
         if (ms_squared_distance(point, sphere->centre) < sphere->radius * sphere->radius) {
@@ -102,7 +102,7 @@ static int is_inside(const lattice *l, const int at[3])
     return 0;
 }
 
-static void find_inside(const lattice *l)
+static void find_inside(const ball_lattice *l)
 {
     const int *n = l->field.n;
 #pragma omp parallel for schedule(dynamic, 1)
@@ -110,7 +110,7 @@ static void find_inside(const lattice *l)
         for (int j = 0; j < n[1]; j++) {
             uint8_t *row = l->inside + (size_t)n[0] * ((size_t)j + (size_t)n[1] * (size_t)k);
             for (int i = 0; i < n[0]; i++) {
-                row[i] = (uint8_t)is_inside(l, (int[3]){i, j, k});
+                row[i] = (uint8_t)is_in_balls(l, (int[3]){i, j, k});
             }
         }
     }
@@ -132,11 +132,11 @@ static double leave_sphere(const ms_sphere *sphere, const double a[3], const dou
 /* Goes on from sphere to sphere until none holds the place. */
 static double leave_union(const void *context, const int from[3], const int to[3])
 {
-    const lattice *l = context;
+    const ball_lattice *l = context;
     double a[3], b[3], t = 0, before;
     const size_t block = block_of(l, from[0] / BLOCK, from[1] / BLOCK, from[2] / BLOCK);
-    place(a, l, from);
-    place(b, l, to);
+    place_point(a, l, from);
+    place_point(b, l, to);
     const double way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     do {
         before = t;
@@ -148,7 +148,7 @@ static double leave_union(const void *context, const int from[3], const int to[3
 }
 
 /* Points from an edge and a half outside the box on, which no plane of symmetry meets. */
-static ms_status lay_out(lattice *l, double h, size_t max_points, ms_error *err)
+static ms_status lay_out(ball_lattice *l, double h, size_t max_points, ms_error *err)
 {
     double lo[3], hi[3], points = 1;
     ms_clump_box(lo, hi, l->clump);
@@ -171,7 +171,7 @@ static ms_status lay_out(lattice *l, double h, size_t max_points, ms_error *err)
 
 ms_status ms_clump_surface(ms_mesh *mesh, const ms_clump *clump, double h, size_t max_points, ms_error *err)
 {
-    lattice l = {.clump = clump};
+    ball_lattice l = {.clump = clump};
     *mesh = (ms_mesh){0};
     if (clump->n_spheres == 0) {
         return ms_fail(err, MS_ERR_ARG, "no spheres have no surface");

@@ -299,7 +299,7 @@ ms_status ms_expect_price_curves(ms_expect *expect, const ms_expect_points *poin
 static ms_status add_near(ms_expect_curve *curve, level l, const ms_expect_points *points, double volume,
                           double spheres, ms_error *err)
 {
-    static const double SHARES = 3; /* of the points that a sphere serves in the mean: no ball serves many more */
+    static const double SHARES = 2; /* of the points that a sphere serves in the mean: no ball serves many more */
     store r;
     const int beyond = l.wall > 0 && spheres > l.last / STEP; /* the slope of the last quarter is wanted, too */
     l.most = beyond ? l.most : (int)fmin(l.most, SHARES * MS_EXPECT_POINTS / (l.step * spheres));

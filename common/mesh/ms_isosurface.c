@@ -24,7 +24,7 @@ static size_t index_of(const ms_isosurface *f, const int at[3])
 }
 
 /* Doubles the room of an array; it stays as it is without memory. */
-static ms_status grow(void **array, size_t *room, size_t size, ms_error *err)
+static ms_status double_room(void **array, size_t *room, size_t size, ms_error *err)
 {
     const size_t more = 2 * *room + 1024;
     void *grown = more < UINT32_MAX ? realloc(*array, more * size) : NULL;
@@ -38,7 +38,7 @@ static ms_status grow(void **array, size_t *room, size_t size, ms_error *err)
 }
 
 /* Where the surface cuts an edge, if it does. */
-static ms_status add_vertex(growth *g, const int low[3], int direction, ms_error *err)
+static ms_status cut_edge(growth *g, const int low[3], int direction, ms_error *err)
 {
     const ms_isosurface *f = g->field;
     const int high[3] = {low[0] + (direction & 1), low[1] + (direction >> 1 & 1), low[2] + (direction >> 2)};
@@ -51,7 +51,7 @@ static ms_status add_vertex(growth *g, const int low[3], int direction, ms_error
     }
     if (g->mesh.n_vertices == g->vertices) {
         void *array = g->mesh.vertex;
-        const ms_status status = grow(&array, &g->vertices, sizeof *g->mesh.vertex, err);
+        const ms_status status = double_room(&array, &g->vertices, sizeof *g->mesh.vertex, err);
         g->mesh.vertex = array;
         if (status != MS_OK) {
             return status;
@@ -75,7 +75,7 @@ static ms_status add_layer(growth *g, int k, ms_error *err)
     for (int j = 0; j < g->field->n[1]; j++) {
         for (int i = 0; i < g->field->n[0]; i++) {
             for (int direction = 1; direction <= DIRECTIONS && status == MS_OK; direction++) {
-                status = add_vertex(g, (int[3]){i, j, k}, direction, err);
+                status = cut_edge(g, (int[3]){i, j, k}, direction, err);
             }
         }
     }
@@ -91,11 +91,11 @@ static uint32_t find_vertex(const growth *g, const int cube[3], int a, int b)
     return g->corner[(cube[2] + (low >> 2)) % 2][at * DIRECTIONS + (size_t)direction - 1];
 }
 
-static ms_status add_triangle(growth *g, uint32_t a, uint32_t b, uint32_t c, int turned, ms_error *err)
+static ms_status put_cut_triangle(growth *g, uint32_t a, uint32_t b, uint32_t c, int turned, ms_error *err)
 {
     if (g->mesh.n_triangles == g->triangles) {
         void *array = g->mesh.triangle;
-        const ms_status status = grow(&array, &g->triangles, sizeof *g->mesh.triangle, err);
+        const ms_status status = double_room(&array, &g->triangles, sizeof *g->mesh.triangle, err);
         g->mesh.triangle = array;
         if (status != MS_OK) {
             return status;
@@ -109,8 +109,8 @@ static ms_status add_triangle(growth *g, uint32_t a, uint32_t b, uint32_t c, int
 }
 
 /*
- * Even permutations of a tetrahedron's corners with those inside first (of three, the one outside first), by the mask of
- * those inside. In a right-handed one, the triangle across the edges from the first corner to the others then looks
+ * Even permutations of a tetrahedron's corners with those inside first (of three, the one outside first), by the mask
+ * of those inside. In a right-handed one, the triangle across the edges from the first corner to the others then looks
  * away from it, and so does the quadrangle ac, ad, bd, bc from a and b.
  */
 static const int ORDER[16][4] = {{0},          {0, 1, 2, 3}, {1, 0, 3, 2}, {0, 1, 2, 3}, {2, 3, 0, 1}, {0, 2, 3, 1},
@@ -126,13 +126,13 @@ static ms_status cut_tetrahedron(growth *g, const int cube[3], const int corner[
         return MS_OK;
     }
     if (count != 2) {
-        return add_triangle(g, find_vertex(g, cube, a, b), find_vertex(g, cube, a, c), find_vertex(g, cube, a, d),
-                            turned ^ (count == 3), err);
+        return put_cut_triangle(g, find_vertex(g, cube, a, b), find_vertex(g, cube, a, c), find_vertex(g, cube, a, d),
+                                turned ^ (count == 3), err);
     }
     const uint32_t ac = find_vertex(g, cube, a, c), ad = find_vertex(g, cube, a, d);
     const uint32_t bd = find_vertex(g, cube, b, d), bc = find_vertex(g, cube, b, c);
-    const ms_status status = add_triangle(g, ac, ad, bd, turned, err);
-    return status == MS_OK ? add_triangle(g, ac, bd, bc, turned, err) : status;
+    const ms_status status = put_cut_triangle(g, ac, ad, bd, turned, err);
+    return status == MS_OK ? put_cut_triangle(g, ac, bd, bc, turned, err) : status;
 }
 
 /* A tetrahedron goes from corner 0 to corner 7 along the three axes in one of their six orders. */

@@ -13,9 +13,20 @@
 
 const char *const MS_CHART_ENDINGS[] = {".dat", ".gp", ".svg", ".png", NULL};
 
+static double lift(const ms_chart *chart, double y)
+{
+    return y < chart->y_least ? chart->y_least : y;
+}
+
 static double height(const ms_chart *chart, const ms_chart_point *point)
 {
-    return point->y < chart->y_least ? chart->y_least : point->y;
+    return lift(chart, point->y);
+}
+
+/* The highest place of a point: of a band its upper edge. */
+static double find_top(const ms_chart *chart, const ms_chart_series *series, const ms_chart_point *point)
+{
+    return lift(chart, series->style == MS_CHART_BAND ? point->top : point->y);
 }
 
 static int has_place(const ms_chart *chart, const ms_chart_point *point)
@@ -59,7 +70,8 @@ static int find_ranges(axis_range *x, axis_range *y, const ms_chart *chart)
             const ms_chart_point *point = &chart->series[s].point[p];
             if (has_place(chart, point)) {
                 *x = (axis_range){fmin(x->lo, point->x), fmax(x->hi, point->x)};
-                *y = (axis_range){fmin(y->lo, height(chart, point)), fmax(y->hi, height(chart, point))};
+                *y = (axis_range){fmin(y->lo, height(chart, point)),
+                                  fmax(y->hi, find_top(chart, &chart->series[s], point))};
             }
         }
     }
@@ -98,6 +110,9 @@ static void put_data(FILE *stream, const ms_chart *chart)
         for (size_t p = 0; p < series->count; p++) {
             if (has_place(chart, &series->point[p])) {
                 fprintf(stream, "%.9g %.9g ", series->point[p].x, height(chart, &series->point[p]));
+                if (series->style == MS_CHART_BAND) {
+                    fprintf(stream, "%.9g ", find_top(chart, series, &series->point[p]));
+                }
                 ms_escape_gnuplot_data(stream, series->point[p].label);
                 putc('\n', stream);
             }
@@ -124,6 +139,12 @@ static void put_series(FILE *stream, const ms_chart_series *series, int index, i
     const int type = POINT[(size_t)look % (sizeof POINT / sizeof *POINT)];
     fputs("  ", stream);
     ms_escape_gnuplot_file(stream, name, ".dat");
+    if (series->style == MS_CHART_BAND) {
+        fprintf(stream,
+                " index %d using 1:2:3 with filledcurves fc rgb '%s' fs transparent solid 0.15 noborder notitle", index,
+                colour);
+        return;
+    }
     fprintf(stream, " index %d using 1:2 ", index);
     if (series->style == MS_CHART_FRONT) {
         fputs("with steps lw 6 lc rgb '#bbbbbb'", stream);
@@ -186,7 +207,7 @@ static void put_script(FILE *stream, const ms_chart *chart, const char *name, co
             fputs(index ? ", \\\n" : "", stream);
             put_series(stream, &chart->series[s], index++, look, name);
         }
-        look += chart->series[s].style != MS_CHART_FRONT && chart->series[s].style != MS_CHART_LINE;
+        look += chart->series[s].style == MS_CHART_CURVE || chart->series[s].style == MS_CHART_POINTS;
     }
     fputs("\nsmall = ',15'\n"
           "if (strstrt(GPVAL_TERMINALS, 'pngcairo') > 0) { set terminal pngcairo size 1200,900 font "

@@ -11,12 +11,14 @@ enum { MS_CHART_LABEL = 24 };
 typedef struct ms_chart_point {
     double x, y;
     char label[MS_CHART_LABEL]; /* stands beside the point; "" for none */
+    double top;                 /* of a band: it reaches from y to here */
 } ms_chart_point;
 
 typedef enum ms_chart_style {
     MS_CHART_CURVE,  /* points joined by a line; line and point types differ from series to series */
     MS_CHART_POINTS, /* points alone */
     MS_CHART_LINE,   /* a grey line without points */
+    MS_CHART_BAND,   /* pale, in the colour of the next curve and not in the legend */
     MS_CHART_FRONT   /* a broad grey staircase behind the rest: y falls at each x, and holds from there on */
 } ms_chart_style;
 

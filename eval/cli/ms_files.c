@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/ms_file.h"
 #include "volume/ms_volume.h"
@@ -119,6 +120,22 @@ ms_status ms_files_add(ms_files *files, const char *path, ms_file_use use, ms_er
     return file->path && file->key ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "%s: no memory for its name", path);
 }
 
+ms_status ms_files_make_folder(const char *path, ms_error *err)
+{
+    struct stat info;
+    return mkdir(path, 0777) == 0 || (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+               ? MS_OK
+               : ms_fail(err, MS_ERR_IO, "%s: this folder cannot be made; does the one above it exist?", path);
+}
+
+ms_status ms_files_add_folder(ms_files *files, const char *path, ms_error *err)
+{
+    struct stat info;
+    const int is_there = stat(path, &info) == 0;
+    const ms_status status = ms_files_make_folder(path, err);
+    return status == MS_OK && !is_there ? ms_files_add(files, path, MS_FILE_FOLDER, err) : status;
+}
+
 ms_status ms_files_add_charts(ms_files *files, const char *folder, const char *name, const char *const *endings,
                               ms_error *err)
 {
@@ -206,6 +223,9 @@ ms_status ms_files_check(ms_files *files, ms_error *err)
 void ms_files_free(ms_files *files)
 {
     for (size_t f = 0; f < files->count; f++) {
+        if (files->file[f].use == MS_FILE_FOLDER && files->file[f].path) {
+            rmdir(files->file[f].path); /* fails where something is in it */
+        }
         free(files->file[f].path);
         free(files->file[f].key);
     }

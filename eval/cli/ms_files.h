@@ -11,7 +11,8 @@ typedef enum ms_file_use {
     MS_FILE_READ,
     MS_FILE_WRITTEN, /* is tried: can it be made? */
     MS_FILE_LATER,   /* the same, not tried: its folder may be still to be made */
-    MS_FILE_FRAME    /* likewise: that beside templates of one clump, which may be written with each of them */
+    MS_FILE_FRAME,   /* likewise: that beside templates of one clump, which may be written with each of them */
+    MS_FILE_FOLDER   /* made for the check, and removed behind it */
 } ms_file_use;
 
 /** One of them. */
@@ -45,6 +46,18 @@ const char *ms_files_stem(size_t *length, const char *path);
 
 /** Adds a file; standard output, devices and pipes are passed over. @return MS_OK; MS_ERR_NOMEM */
 ms_status ms_files_add(ms_files *files, const char *path, ms_file_use use, ms_error *err);
+
+/**
+ * Makes a folder that outputs will stand in, if it is not there, so that those in it can be tried. ms_files_free
+ * removes it again if it is empty then: a command that is refused leaves no folder behind, and what is written makes
+ * its folder itself (ms_files_make_folder).
+ *
+ * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM
+ */
+ms_status ms_files_add_folder(ms_files *files, const char *path, ms_error *err);
+
+/** Makes a folder, if it is not there; the one above it exists. @return MS_OK; MS_ERR_IO */
+ms_status ms_files_make_folder(const char *path, ms_error *err);
 
 /** Adds FOLDER/NAMEENDING as MS_FILE_LATER for each of a NULL-ended list of endings. @return MS_OK; MS_ERR_NOMEM */
 ms_status ms_files_add_charts(ms_files *files, const char *folder, const char *name, const char *const *endings,

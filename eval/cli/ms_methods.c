@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "clump/formats/ms_read.h"
 #include "voxel/ms_target.h"
 
 /* Room for one more, with its two texts. */
@@ -83,13 +82,11 @@ ms_status ms_methods_add(ms_methods *methods, const char *text, ms_error *err)
 ms_status ms_methods_add_clump(ms_methods *methods, const char *text, ms_error *err)
 {
     ms_method *m = NULL;
-    ms_particle unused;
     const size_t length = strcspn(text, "=");
     if (length == 0 || !text[length] || !text[length + 1]) {
         return ms_fail(err, MS_ERR_ARG, "--clump '%.200s' is not of the form NAME=FILE", text);
     }
-    const ms_status status = begin_method(&m, methods, text, length, text + length + 1, err);
-    return status == MS_OK ? ms_read_clump(&m->clump, &unused, m->options, err) : status;
+    return begin_method(&m, methods, text, length, text + length + 1, err);
 }
 
 /* All but the baselines, by default options. */
@@ -107,8 +104,11 @@ ms_status ms_methods_list_files(ms_files *files, const ms_methods *methods, ms_e
     ms_status status = MS_OK;
     for (size_t m = 0; m < methods->count && status == MS_OK; m++) {
         const ms_method *method = &methods->method[m];
-        const char *file = method->generator ? method->settings.clump_file : method->options;
-        status = file ? ms_files_add(files, file, MS_FILE_READ, err) : MS_OK;
+        const char *start = method->generator ? method->settings.clump_file : NULL;
+        status = start ? ms_files_add(files, start, MS_FILE_READ, err) : MS_OK;
+        for (size_t k = 0; k < method->n_clumps && status == MS_OK; k++) {
+            status = ms_files_add(files, method->clump[k].file, MS_FILE_READ, err);
+        }
     }
     return status;
 }
@@ -172,7 +172,11 @@ void ms_methods_free(ms_methods *methods)
         free(methods->method[m].name);
         free(methods->method[m].options);
         ms_option_settings_free(&methods->method[m].settings);
-        ms_clump_free(&methods->method[m].clump);
+        for (size_t k = 0; k < methods->method[m].n_clumps; k++) {
+            ms_clump_free(&methods->method[m].clump[k].clump);
+            free(methods->method[m].clump[k].file);
+        }
+        free(methods->method[m].clump);
     }
     memset(methods, 0, sizeof *methods);
 }

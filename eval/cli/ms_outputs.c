@@ -2,7 +2,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
@@ -165,14 +164,6 @@ int ms_outputs_to_stdout(const ms_outputs *outputs)
     return found;
 }
 
-ms_status ms_outputs_make_folder(const char *path, ms_error *err)
-{
-    struct stat info;
-    return mkdir(path, 0777) == 0 || (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
-               ? MS_OK
-               : ms_fail(err, MS_ERR_IO, "%s: this folder cannot be made; does the one above it exist?", path);
-}
-
 /* Where the parts of a format go; its folders are made later. */
 typedef struct part_list {
     ms_files *files;
@@ -191,7 +182,7 @@ static ms_status add_part(void *context, const char *path, int is_frame, ms_erro
 
 ms_status ms_outputs_list(ms_files *files, const ms_outputs *outputs, ms_error *err)
 {
-    ms_status status = outputs->folder ? ms_outputs_make_folder(outputs->folder, err) : MS_OK;
+    ms_status status = outputs->folder ? ms_files_add_folder(files, outputs->folder, err) : MS_OK;
     for (size_t f = 0; f < outputs->n_files && status == MS_OK; f++) {
         const ms_output_file *file = &outputs->file[f];
         part_list list = {files, ms_write_format_is_folder(file->format)};
@@ -262,8 +253,11 @@ static ms_status write_spare(const ms_outputs *outputs, const ms_content *conten
 
 ms_status ms_outputs_write(const ms_outputs *outputs, const ms_content *content, FILE *words, ms_error *err)
 {
-    ms_status first = MS_OK;
+    ms_status first = outputs->folder ? ms_files_make_folder(outputs->folder, err) : MS_OK;
     size_t tried = 0;
+    if (first != MS_OK) {
+        return first;
+    }
     for (size_t f = 0; f < outputs->n_files; f++) {
         const ms_output_file *file = &outputs->file[f];
         ms_error cause;

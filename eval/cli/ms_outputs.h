@@ -54,9 +54,6 @@ int ms_outputs_shown(const ms_outputs *outputs);
 /** Number of files that go to standard output. */
 int ms_outputs_to_stdout(const ms_outputs *outputs);
 
-/** Makes a folder, if it is not there; the one above it exists. @return MS_OK; MS_ERR_IO */
-ms_status ms_outputs_make_folder(const char *path, ms_error *err);
-
 /** Adds all files to those that the command writes; makes the folder of --all-formats. @return MS_OK; MS_ERR_ARG for a
  * name that a script cannot hold; MS_ERR_IO; MS_ERR_NOMEM */
 ms_status ms_outputs_list(ms_files *files, const ms_outputs *outputs, ms_error *err);

@@ -59,6 +59,9 @@ json_t *ms_record_json(const ms_generator *generator, const ms_settings *setting
                              "stopped_by", ms_stop_name(r->reason), "input", ms_report_input_json(input), "scores",
                              ms_report_metrics_json(&r->metrics), "seconds", seconds, "threads", omp_get_max_threads(),
                              "peak_memory_kb", (json_int_t)usage.ru_maxrss);
+    if (r->volume.scale > 0) {
+        ms_json_object_set(&json, "equal_volume", ms_report_equal_volume_json(&r->volume));
+    }
     if (r->mass.particle.mass > 0) {
         ms_json_object_set(&json, "particle", ms_json_from_particle(&r->mass.particle));
     }

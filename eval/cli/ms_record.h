@@ -4,6 +4,7 @@
 
 #include <jansson.h>
 
+#include "clump/ms_equal_volume.h"
 #include "measure/ms_metrics.h"
 #include "ms_generator.h"
 #include "ms_input.h"
@@ -14,7 +15,8 @@ typedef struct ms_result {
     ms_clump clump;
     ms_stop_reason reason;
     ms_metrics metrics;
-    ms_mass mass; /* zeros without --correct */
+    ms_mass mass;           /* zeros without --correct */
+    ms_equal_volume volume; /* zeros without --equal-volume */
     double generate_seconds, score_seconds;
 } ms_result;
 

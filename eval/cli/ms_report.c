@@ -236,3 +236,19 @@ ms_status ms_report_print(FILE *stream, json_t *value, ms_error *err)
                ? ms_fail(err, MS_ERR_IO, "standard output cannot be written")
                : MS_OK;
 }
+
+void ms_report_equal_volume(FILE *stream, const ms_equal_volume *done)
+{
+    if (done->scale > 0) {
+        fprintf(stream, "  %-34s scaled by %.6g; volume of the union %.9g, off by %.1e\n", "equal volume", done->scale,
+                done->volume, done->error);
+        fprintf(stream, "  %-34s %.6g\n", "mean width of the clump", done->mean_width);
+    }
+}
+
+json_t *ms_report_equal_volume_json(const ms_equal_volume *done)
+{
+    return done->scale > 0 ? json_pack("{s:f,s:f,s:f,s:f}", "scale", done->scale, "volume", done->volume, "error",
+                                       done->error, "mean_width", done->mean_width)
+                           : NULL;
+}

@@ -5,11 +5,18 @@
 #include <jansson.h>
 #include <stdio.h>
 
+#include "clump/ms_equal_volume.h"
 #include "measure/ms_metrics.h"
 #include "ms_input.h"
 
 /** All measures of a clump, a line each. */
 void ms_report_metrics(FILE *stream, const ms_metrics *metrics, const ms_target *target);
+
+/** What --equal-volume did; nothing where it was not asked for. */
+void ms_report_equal_volume(FILE *stream, const ms_equal_volume *done);
+
+/** Likewise; NULL where it was not asked for. */
+json_t *ms_report_equal_volume_json(const ms_equal_volume *done);
 
 /** The same as a JSON object; the caller owns it. Measures that do not apply are null. */
 json_t *ms_report_metrics_json(const ms_metrics *metrics);

@@ -7,16 +7,19 @@
 
 #include "base/ms_file.h"
 #include "cli/ms_outputs.h"
+#include "cli/ms_paths.h"
 #include "cli/ms_report.h"
 #include "cli/ms_until.h"
 #include "compare/ms_compare.h"
+#include "compare/ms_compare_report.h"
 #include "compare/ms_compare_walk.h"
 #include "ms_commands.h"
 
 static const ms_flag FLAGS[] = {
     {"generator", 'g', "NAME[:OPTION=VALUE,...]",
      "a method with its options; may be repeated (all but the baselines, by default options)"},
-    {"clump", 0, "NAME=FILE", "spheres x,y,z,r of another tool; may be repeated; takes one shape"},
+    {"clump", 0, "NAME=FILE",
+     "spheres x,y,z,r of another tool; of several shapes a folder or pattern; may be repeated"},
     {"spheres", 'n', "N,N,...", "numbers of spheres (5,10,20,50,100)"},
     MS_MIN_RADIUS_FLAG,
     {"cells", 0, "N,N,...", "resolutions: cells along the shortest side of the shape's box (100)"},
@@ -27,7 +30,9 @@ static const ms_flag FLAGS[] = {
     {"output", 'o', "FILE", "the results, CSV (compare.csv)"},
     {"resume", 0, NULL, "go on with the results that are in FILE"},
     {"json", 0, NULL, "all rows of FILE as JSON on standard output, too"},
+    {"population", 0, "DIR", "mean and spread over all shapes, and who is best on how many: tables, charts"},
     {"charts", 0, "DIR", "draw charts of all results into this folder, by gnuplot"},
+    {"report", 0, "FILE", "a page of all results with their charts and clumps in 3-D (.html); takes --charts"},
     {"allow-open", 0, NULL, "take a mesh with holes: majority of the parities along three axes"},
     MS_INPUT_CUT_FLAG,
     MS_INPUT_MENDING_FLAGS,
@@ -39,8 +44,10 @@ static const ms_flag FLAGS[] = {
 
 typedef struct compare_arguments {
     ms_comparison comparison;
-    const char *output;
+    const char *output, *report;
     int resume, json;
+    int argc; /* as the command was typed */
+    char **argv;
 } compare_arguments;
 
 static void insert_number(ms_numbers *list, double value)
@@ -113,12 +120,16 @@ static ms_status take_compare_flag(void *context, const char *name, const char *
         *(name[0] == 'r' ? &a->resume : &a->json) = 1;
         return MS_OK;
     }
-    *(strcmp(name, "output") == 0 ? &a->output : &c->charts) = value;
+    const char **const file = strcmp(name, "output") == 0   ? &a->output
+                              : strcmp(name, "report") == 0 ? &a->report
+                              : strcmp(name, "charts") == 0 ? &c->charts
+                                                            : &c->population;
+    *file = value;
     return MS_OK;
 }
 
 /* What can be known before the work. */
-static ms_status check_files(const ms_comparison *c, const char *output, ms_error *err)
+static ms_status check_files(const ms_comparison *c, const char *output, const char *report, ms_error *err)
 {
     ms_files files = {0};
     for (size_t s = 0; s < c->n_shapes; s++) {
@@ -126,12 +137,18 @@ static ms_status check_files(const ms_comparison *c, const char *output, ms_erro
             return ms_file_fail_open(err, c->shape[s], errno);
         }
     }
-    ms_status status = ms_compare_list_files(&files, c, err);
-    if (status == MS_OK && c->charts) {
-        status = ms_outputs_make_folder(c->charts, err);
+    ms_status status = c->charts ? ms_files_add_folder(&files, c->charts, err) : MS_OK;
+    if (status == MS_OK) {
+        status = ms_compare_list_files(&files, c, err);
+    }
+    if (status == MS_OK && c->population) {
+        status = ms_files_add_folder(&files, c->population, err);
     }
     if (status == MS_OK) {
         status = ms_files_add(&files, output, MS_FILE_WRITTEN, err);
+    }
+    if (status == MS_OK && report) {
+        status = ms_files_add(&files, report, MS_FILE_WRITTEN, err);
     }
     if (status == MS_OK) {
         status = ms_files_check(&files, err);
@@ -148,6 +165,9 @@ static ms_status walk_and_report(ms_csv *csv, const compare_arguments *a, ms_err
     const ms_status told =
         a->json ? ms_report_print(stdout, ms_compare_json(csv->row, csv->n_rows), walked == MS_OK ? err : &cause)
                 : MS_OK;
+    if (a->report && walked == MS_OK && told == MS_OK) {
+        return ms_compare_report_write(a->report, csv, &a->comparison, a->argc, a->argv, err);
+    }
     return walked == MS_OK ? told : walked;
 }
 
@@ -156,13 +176,17 @@ static void say_small_clumps(const ms_comparison *c)
 {
     for (size_t m = 0; m < c->methods.count; m++) {
         const ms_method *method = &c->methods.method[m];
-        size_t small = 0;
-        for (size_t s = 0; !method->generator && s < method->clump.n_spheres; s++) {
-            small += method->clump.sphere[s].radius < c->min_radius;
+        size_t small = 0, all = 0;
+        for (size_t k = 0; k < method->n_clumps; k++) {
+            const ms_clump *clump = &method->clump[k].clump;
+            all += clump->n_spheres;
+            for (size_t s = 0; s < clump->n_spheres; s++) {
+                small += clump->sphere[s].radius < c->min_radius;
+            }
         }
         if (small > 0) {
             fprintf(stderr, "%s: %zu of its %zu spheres are below --min-radius %g; they are judged as they are\n",
-                    method->name, small, method->clump.n_spheres, c->min_radius);
+                    method->name, small, all, c->min_radius);
         }
     }
 }
@@ -172,8 +196,8 @@ static int execute_compare(const ms_command *command, const compare_arguments *a
     ms_error err;
     ms_csv csv;
     char *header = ms_compare_header();
-    ms_status status =
-        header ? check_files(&a->comparison, a->output, &err) : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
+    ms_status status = header ? check_files(&a->comparison, a->output, a->report, &err)
+                              : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
     if (status == MS_OK) {
         say_small_clumps(&a->comparison);
         status = ms_csv_open(&csv, a->output, header, a->resume, &err);
@@ -186,10 +210,15 @@ static int execute_compare(const ms_command *command, const compare_arguments *a
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
-/* A shape is read for each resolution. */
-static ms_status check_standard(const ms_comparison *c, ms_error *err)
+/* A shape is read for each resolution. One that is there twice, as by a folder and by itself, would count twice. */
+static ms_status check_shapes(const ms_comparison *c, ms_error *err)
 {
     for (size_t s = 0; s < c->n_shapes; s++) {
+        for (size_t before = 0; before < s; before++) {
+            if (strcmp(c->shape[before], c->shape[s]) == 0) {
+                return ms_fail(err, MS_ERR_ARG, "%s is there twice", c->shape[s]);
+            }
+        }
         if (ms_file_is_standard(c->shape[s])) {
             return ms_fail(err, MS_ERR_ARG,
                            "compare may read a shape several times, and - once; save it and name the file");
@@ -209,34 +238,57 @@ static ms_status resolve_compare(ms_comparison *c, ms_error *err)
     if (c->cells.count == 0) {
         insert_number(&c->cells, 100);
     }
-    if (ms_methods_clumps(&c->methods) > 0 && c->n_shapes > 1) {
-        return ms_fail(err, MS_ERR_ARG, "--clump belongs to one shape; compare the others by themselves");
+    if (c->population && c->n_shapes < 2) {
+        return ms_fail(err, MS_ERR_ARG, "--population takes several shapes, and %s is one", c->shape[0]);
     }
     if (c->input.label) {
         snprintf(c->label, sizeof c->label, "%lu", (unsigned long)c->input.label);
     }
     c->flags = ms_input_flags_text(&c->input);
     ms_input_text_add(&c->flags, "min-radius", c->min_radius);
-    const ms_status status = check_standard(c, err);
-    return status == MS_OK ? ms_methods_check(&c->methods, err) : status;
+    ms_status status = check_shapes(c, err);
+    if (status == MS_OK) {
+        status = ms_methods_check(&c->methods, err);
+    }
+    return status == MS_OK ? ms_methods_read_clumps(&c->methods, c->shape, c->n_shapes, err) : status;
+}
+
+/* Of the files that the words name. */
+static int compare_shapes(const ms_command *command, compare_arguments *a, char *const *words, size_t n_words)
+{
+    ms_error err;
+    ms_paths paths = {0};
+    ms_status status = MS_OK;
+    for (size_t w = 0; w < n_words && status == MS_OK; w++) {
+        status = ms_paths_add(&paths, words[w], ms_paths_is_shape, "mesh and no volume", &err);
+    }
+    if (status != MS_OK) {
+        ms_paths_free(&paths);
+        return ms_flags_fail(command, &err);
+    }
+    a->comparison.shape = paths.path;
+    a->comparison.n_shapes = paths.count;
+    a->comparison.words = a->json ? stderr : stdout;
+    status = a->report && !a->comparison.charts
+                 ? ms_fail(&err, MS_ERR_ARG, "--report takes --charts DIR, where the clumps are kept")
+                 : resolve_compare(&a->comparison, &err);
+    const int code = status == MS_OK ? execute_compare(command, a) : ms_flags_refuse(command, status, &err);
+    ms_paths_free(&paths);
+    return code;
 }
 
 static int run_compare(const ms_command *command, int argc, char **argv)
 {
-    compare_arguments a = {.comparison = {.repeats = 1, .seed = 1}, .output = "compare.csv"};
+    compare_arguments a = {
+        .comparison = {.repeats = 1, .seed = 1}, .output = "compare.csv", .argc = argc, .argv = argv};
     int first;
-    ms_error err;
     ms_input_defaults(&a.comparison.input);
     int code = ms_flags_parse(&first, command, 0, argc, argv, take_compare_flag, &a);
     if (code == MS_FLAGS_GO_ON && first >= argc) {
         code = ms_flags_wrong_usage(command, "takes one or more shapes");
     }
     if (code == MS_FLAGS_GO_ON) {
-        a.comparison.shape = argv + first;
-        a.comparison.n_shapes = (size_t)(argc - first);
-        a.comparison.words = a.json ? stderr : stdout;
-        const ms_status status = resolve_compare(&a.comparison, &err);
-        code = status == MS_OK ? execute_compare(command, &a) : ms_flags_refuse(command, status, &err);
+        code = compare_shapes(command, &a, argv + first, (size_t)(argc - first));
     }
     ms_methods_free(&a.comparison.methods);
     return code;
@@ -245,8 +297,8 @@ static int run_compare(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_compare = {
     .name = "compare",
     .summary = "methods x shapes x resolutions x numbers of spheres, as CSV and charts",
-    .usage =
-        "SHAPE... [-g NAME[:OPTION=VALUE,...]]... [-n N,N,...] [--cells N,N,...] [-o FILE] [--charts DIR] [--json]",
+    .usage = "SHAPE... [-g NAME[:OPTION=VALUE,...]]... [-n N,N,...] [--cells N,N,...] [-o FILE] [--charts DIR "
+             "[--report FILE]] [--json]",
     .example = "mskit compare grain.stl -g mss -g mss:variant=paper -g setcover -n 5,10,20,50 --charts charts",
     .flags = FLAGS,
     .run = run_compare,

@@ -14,6 +14,7 @@
 
 static const ms_flag FLAGS[] = {
     {"target", 't', "SHAPE", "the mesh or volume that the clump stands for; not with --properties union"},
+    {"equal-volume", 0, NULL, "scale the clump about the centroid of the shape until its union has the shape's volume"},
     MS_MASS_FLAGS,
     MS_OUTPUT_FLAGS,
     {"json", 0, NULL, "the particle and what the masses reach, as JSON on standard output"},
@@ -27,7 +28,7 @@ typedef struct correct_arguments {
     ms_outputs outputs;
     const char *clump, *target;
     const char *of_shape; /* a flag about the shape and its grid; NULL without */
-    int json;
+    int json, equal_volume;
 } correct_arguments;
 
 static ms_status take_correct_flag(void *context, const char *name, const char *value, ms_error *err)
@@ -48,6 +49,7 @@ static ms_status take_correct_flag(void *context, const char *name, const char *
         a->target = value;
     }
     a->json |= strcmp(name, "json") == 0;
+    a->equal_volume |= strcmp(name, "equal-volume") == 0;
     return status;
 }
 
@@ -70,10 +72,12 @@ static ms_status body_of_target(ms_body *body, const correct_arguments *a, ms_er
     return status;
 }
 
-static ms_status report_correct(const correct_arguments *a, const ms_clump *clump, const ms_mass *mass, ms_error *err)
+static ms_status report_correct(const correct_arguments *a, const ms_clump *clump, const ms_mass *mass,
+                                const ms_equal_volume *volume, ms_error *err)
 {
     FILE *words = a->json || ms_outputs_to_stdout(&a->outputs) ? stderr : stdout;
-    json_t *json = json_pack("{s:o}", "masses", ms_mass_json(mass));
+    json_t *json =
+        json_pack("{s:o,s:o*}", "masses", ms_mass_json(mass), "equal_volume", ms_report_equal_volume_json(volume));
     char *record = json ? json_dumps(json, JSON_COMPACT) : NULL;
     json_decref(json);
     if (!record) {
@@ -82,15 +86,17 @@ static ms_status report_correct(const correct_arguments *a, const ms_clump *clum
     if (!a->json) {
         fprintf(words, "%s, %zu spheres\n", ms_file_name(a->clump), clump->n_spheres);
         ms_mass_print(words, mass);
+        ms_report_equal_volume(words, volume);
     }
     const ms_content content = {.clump = clump, .particle = &mass->particle, .record = record};
     ms_status status = ms_outputs_write(&a->outputs, &content, words, err);
     free(record);
     if (status == MS_OK && a->json) {
-        status = ms_report_print(
-            stdout,
-            json_pack("{s:o,s:o}", "particle", ms_json_from_particle(&mass->particle), "masses", ms_mass_json(mass)),
-            err);
+        status =
+            ms_report_print(stdout,
+                            json_pack("{s:o,s:o,s:o*}", "particle", ms_json_from_particle(&mass->particle), "masses",
+                                      ms_mass_json(mass), "equal_volume", ms_report_equal_volume_json(volume)),
+                            err);
     }
     return status;
 }
@@ -118,6 +124,7 @@ static ms_status execute_correct(const correct_arguments *a, ms_error *err)
     ms_particle unused;
     ms_body body = {0};
     ms_mass mass;
+    ms_equal_volume volume = {0};
     if (a->input.threads) {
         omp_set_num_threads(a->input.threads);
     }
@@ -129,11 +136,14 @@ static ms_status execute_correct(const correct_arguments *a, ms_error *err)
     if (status == MS_OK && a->target) {
         status = body_of_target(&body, a, err);
     }
+    if (status == MS_OK && a->equal_volume) {
+        status = ms_equal_volume_scale(&clump, &volume, &body, err);
+    }
     if (status == MS_OK) {
         status = ms_mass_correct(&mass, &clump, &a->mass, &body, ms_input_max_voxels(&a->input), err);
     }
     if (status == MS_OK) {
-        status = report_correct(a, &clump, &mass, err);
+        status = report_correct(a, &clump, &mass, &volume, err);
     }
     ms_clump_free(&clump);
     return status;
@@ -144,6 +154,9 @@ static ms_status resolve_correct(correct_arguments *a, ms_error *err)
 {
     if (!a->target == !a->mass.of_union) {
         return ms_fail(err, MS_ERR_ARG, "takes either --target SHAPE or --properties union");
+    }
+    if (a->mass.of_union && a->equal_volume) {
+        return ms_fail(err, MS_ERR_ARG, "--equal-volume is to the shape, which --properties union takes none of");
     }
     if (a->mass.of_union && a->of_shape) {
         return ms_fail(err, MS_ERR_ARG, "--%s is of a shape, which --properties union takes none of; leave it out",

@@ -25,6 +25,7 @@ static const ms_flag FLAGS[] = {
     MS_UNTIL_FLAGS,
     MS_LEAST_WORK_FLAGS,
     MS_OUTPUT_FLAGS,
+    {"equal-volume", 0, NULL, "scale the clump about the centroid of the shape until its union has the shape's volume"},
     {"correct", 0, NULL, "give the spheres masses that sum to the true mass and inertia; takes --density"},
     MS_MASS_FLAGS,
     {"target-grid", 0, "FILE", "also write the voxels of the shape as VTK"},
@@ -48,7 +49,7 @@ typedef struct generate_arguments {
     ms_least_work_tries tries;
     ms_outputs outputs;
     ms_mass_flags mass;
-    int correct;
+    int correct, equal_volume;
     const char *target_grid, *curve;
     int json;
 } generate_arguments;
@@ -79,6 +80,10 @@ static ms_status take_generate_flag(void *context, const char *name, const char 
     }
     if (strcmp(name, "curve") == 0) {
         a->curve = value;
+        return MS_OK;
+    }
+    if (strcmp(name, "equal-volume") == 0) {
+        a->equal_volume = 1;
         return MS_OK;
     }
     if (strcmp(name, "json") == 0 || strcmp(name, "correct") == 0) {
@@ -317,6 +322,7 @@ static ms_status report_generate(const generate_arguments *a, const ms_input *in
                 ms_stop_name(r->reason), r->generate_seconds);
         ms_report_metrics(words, &r->metrics, &input->target);
         ms_expectation_say(words, expect, &r->metrics);
+        ms_report_equal_volume(words, &r->volume);
         if (r->mass.corrected) {
             ms_mass_print(words, &r->mass);
         }
@@ -398,6 +404,9 @@ static int execute_generate(const ms_command *command, generate_arguments *a)
     if (status == MS_OK) {
         status = a->work.dice > 0 ? try_clumps(&r, a, &input, &err) : make_clump(&r, a, &input, &err);
     }
+    if (status == MS_OK && a->equal_volume) {
+        status = ms_equal_volume_scale(&r.clump, &r.volume, &input.target.body, &err);
+    }
     if (status == MS_OK) {
         status = score_clump(&r, a, &input, &err);
     }
@@ -415,6 +424,12 @@ static ms_status resolve_generate(generate_arguments *a, ms_error *err)
     const ms_status refused = ms_least_work_resolve(&a->work, &a->stop, err);
     if (refused != MS_OK) {
         return refused;
+    }
+    if (a->equal_volume && (a->curve || a->work.dice > 0)) {
+        return ms_fail(
+            err, MS_ERR_ARG,
+            "--equal-volume scales the clump of the end: not with --curve or --least-work, which judge clumps "
+            "as they are made");
     }
     if (!(a->work.dice > 0)) {
         ms_until_resolve(&a->stop);

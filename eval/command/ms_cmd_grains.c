@@ -20,6 +20,7 @@ static const ms_flag FLAGS[] = {
     MS_UNTIL_FLAGS,
     {"output", 'o', "DIR", "the clumps, a folder for each thousand, and the table grains.csv"},
     {"format", 0, "F", "format of the clumps; may be repeated (csv)"},
+    {"equal-volume", 0, NULL, "scale the clump about the centroid of the shape until its union has the shape's volume"},
     MS_MASS_FLAGS,
     {"skip-border", 0, NULL, "leave out grains that the border of their volume cuts"},
     {"least-voxels", 0, "N", "leave out labels of fewer voxels"},
@@ -89,6 +90,7 @@ static int take_grains_word(grains_arguments *a, const char *name)
         const char *name;
         int *is_set;
     } words[] = {{"skip-border", &a->grains.skip_border},
+                 {"equal-volume", &a->grains.equal_volume},
                  {"largest-piece", &a->grains.largest_piece},
                  {"resume", &a->resume},
                  {"merge", &a->merge},
@@ -301,15 +303,19 @@ static ms_status report_sum(const ms_grains_sum *sum, const ms_grain_assembly *a
 {
     if (a->json) {
         return ms_report_print(stdout,
-                               json_pack("{s:o,s:I,s:I,s:I,s:I,s:f,s:o*}", "table", ms_report_text(table), "grains",
+                               json_pack("{s:o,s:I,s:I,s:I,s:I,s:I,s:f,s:o*}", "table", ms_report_text(table), "grains",
                                          (json_int_t)sum->grains, "ok", (json_int_t)sum->ok, "left_out",
-                                         (json_int_t)sum->left_out, "failed", (json_int_t)sum->failed, "spheres",
-                                         sum->spheres, "assembly", assembly ? assembly_json(assembly) : NULL),
+                                         (json_int_t)sum->left_out, "failed", (json_int_t)sum->failed, "remarked",
+                                         (json_int_t)sum->remarked, "spheres", sum->spheres, "assembly",
+                                         assembly ? assembly_json(assembly) : NULL),
                                err);
     }
     printf("wrote %s: %zu grains, %zu with a clump, %.0f spheres in all", table, sum->grains, sum->ok, sum->spheres);
-    printf("; %zu left out, %zu failed%s\n", sum->left_out, sum->failed,
-           sum->failed + sum->left_out ? ": see the column cause" : "");
+    printf("; %zu left out, %zu failed", sum->left_out, sum->failed);
+    if (sum->remarked) {
+        printf(", %zu with a remark of the method", sum->remarked);
+    }
+    puts(sum->failed + sum->left_out + sum->remarked ? ": see the column cause" : "");
     if (assembly) {
         print_assembly(assembly, a->folder);
     }
@@ -324,7 +330,7 @@ static ms_status make_all(const grains_arguments *a, ms_error *err)
     ms_grain_assembly assembly;
     char *header = ms_grain_row_line(NULL);
     ms_status status =
-        header ? ms_outputs_make_folder(a->folder, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the header");
+        header ? ms_files_make_folder(a->folder, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the header");
     ms_grains_table(table, sizeof table, &a->grains);
     if (status == MS_OK) {
         status = ms_csv_open(&csv, table, header, a->resume, err);
@@ -392,7 +398,7 @@ static ms_status choose_grains(const grains_arguments *a, const char *from, ms_e
     status = ms_library_make(&library, &table, &goal, err);
     ms_progress_close();
     if (status == MS_OK) {
-        status = ms_outputs_make_folder(a->folder, err);
+        status = ms_files_make_folder(a->folder, err);
         if (status == MS_OK) {
             status = ms_library_write(&written, &library, from, a->folder, err);
         }
@@ -413,7 +419,7 @@ static ms_status execute_grains(grains_arguments *a, char *const *words, size_t 
         return status;
     }
     a->grains.list = &list;
-    a->grains.run = ms_grain_list_checksum(&list);
+    a->grains.run = ms_grain_list_checksum(&list) ^ (uint64_t)a->grains.equal_volume;
     status = a->assembly ? ms_grain_assembly_check(&a->grains, words, count, err) : MS_OK;
     if (status == MS_OK) {
         status = a->dry_run ? try_three(a, err) : make_all(a, err);

@@ -282,6 +282,7 @@ static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, 
     }
     status = ms_scene_choose(&scene, &a->goal, err);
     if (status == MS_OK) {
+        ms_scene_say_remarks(&scene);
         status = report_scene(a, &scene, err);
     }
     if (status == MS_OK) {

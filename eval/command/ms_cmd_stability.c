@@ -150,7 +150,7 @@ static ms_status resolve_stability(stability_arguments *a, const char *const *sh
 static ms_status check_stability_files(const stability_arguments *a, ms_error *err)
 {
     ms_files files = {0};
-    ms_status status = a->charts ? ms_outputs_make_folder(a->charts, err) : MS_OK;
+    ms_status status = a->charts ? ms_files_add_folder(&files, a->charts, err) : MS_OK;
     for (size_t s = 0; s < a->plan.n_shapes && status == MS_OK; s++) {
         status = ms_files_add(&files, a->plan.shape[s], MS_FILE_READ, err); /* a mesh: no data file */
     }
@@ -196,7 +196,8 @@ static ms_status report_stability(const stability_arguments *a, const ms_stabili
     }
     free(groups);
     if (status == MS_OK && a->charts) {
-        status = ms_stability_charts(a->charts, run, count, err);
+        status = ms_files_make_folder(a->charts, err);
+        status = status == MS_OK ? ms_stability_charts(a->charts, run, count, err) : status;
     }
     return status == MS_OK ? check_any_gave(run, count, err) : status;
 }

@@ -14,7 +14,7 @@
 static const char *const NAMES[] = {MS_COLUMN_LIST_BEFORE(COLUMN_NAME) MS_COLUMN_LIST_BEHIND(COLUMN_NAME)};
 #undef COLUMN_NAME
 
-static const char *name_column(int column)
+const char *ms_compare_column(int column)
 {
     if (NAMES[column]) {
         return NAMES[column];
@@ -65,7 +65,7 @@ char *ms_compare_header(void)
 {
     ms_compare_row names;
     for (int c = 0; c < MS_COLUMNS; c++) {
-        names.text[c] = name_column(c);
+        names.text[c] = ms_compare_column(c);
     }
     return make_text(&names, MS_COLUMNS);
 }
@@ -114,7 +114,7 @@ static json_t *row_json(const char *row)
     char *field[MS_COLUMNS], *copy = strdup(row);
     json_t *json = copy && ms_csv_split(field, MS_COLUMNS, copy) == MS_COLUMNS ? json_object() : NULL;
     for (int c = 0; c < MS_COLUMNS && json; c++) {
-        ms_json_object_set(&json, name_column(c), field_json(c, field[c]));
+        ms_json_object_set(&json, ms_compare_column(c), field_json(c, field[c]));
     }
     free(copy);
     return json;

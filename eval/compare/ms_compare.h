@@ -62,6 +62,9 @@ typedef struct ms_compare_row {
     double number[MS_COLUMNS];
 } ms_compare_row;
 
+/** The name of a column, of ms_column. */
+const char *ms_compare_column(int column);
+
 /** All fields empty. */
 ms_compare_row ms_compare_empty(void);
 

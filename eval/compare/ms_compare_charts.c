@@ -4,65 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "chart/ms_chart.h"
 #include "ms_compare.h"
-
-/* One row, cut into its fields. */
-typedef struct record {
-    char *line;
-    char *field[MS_COLUMNS];
-} record;
+#include "ms_compare_records.h"
 
 /* All that the charts are made of. */
 typedef struct records {
     size_t count;
-    record *record;
+    ms_compare_record *record; /* borrowed */
     const char *folder;
 } records;
-
-static double number(const record *r, ms_column column)
-{
-    return ms_csv_number(r->field[column]);
-}
-
-static int same_field(const record *a, const record *b, ms_column column)
-{
-    return strcmp(a->field[column], b->field[column]) == 0;
-}
-
-static int same_shape(const record *a, const record *b)
-{
-    return same_field(a, b, MS_COLUMN_SHAPE) && same_field(a, b, MS_COLUMN_LABEL);
-}
-
-static int same_method(const record *a, const record *b)
-{
-    return same_field(a, b, MS_COLUMN_GENERATOR) && same_field(a, b, MS_COLUMN_OPTIONS);
-}
-
-static void free_records(records *all)
-{
-    for (size_t r = 0; r < all->count; r++) {
-        free(all->record[r].line);
-    }
-    free(all->record);
-}
-
-static ms_status cut_rows(records *all, const ms_csv *csv, ms_error *err)
-{
-    all->record = calloc(csv->n_rows + 1, sizeof *all->record);
-    for (size_t r = 0; all->record && r < csv->n_rows; r++) {
-        record *one = &all->record[all->count++];
-        one->line = strdup(csv->row[r]);
-        if (!one->line) {
-            break;
-        }
-        ms_csv_split(one->field, MS_COLUMNS, one->line); /* as many as there are columns: ms_csv_open has seen to it */
-    }
-    return all->record && (all->count == 0 || all->record[all->count - 1].line)
-               ? MS_OK
-               : ms_fail(err, MS_ERR_NOMEM, "no memory for the charts of %zu rows", csv->n_rows);
-}
 
 /* One kind of chart. */
 typedef struct chart_kind {
@@ -99,22 +49,23 @@ static chart_kind describe_measure(ms_measure_code code)
 }
 
 /* Greatest value of a column among the rows of a shape; NAN without any. */
-static double greatest(const records *all, const record *shape, ms_column column)
+static double greatest(const records *all, const ms_compare_record *shape, ms_column column)
 {
     double value = (double)NAN;
     for (size_t r = 0; r < all->count; r++) {
-        if (same_shape(&all->record[r], shape)) {
-            value = fmax(value, number(&all->record[r], column));
+        if (ms_compare_records_same_shape(&all->record[r], shape)) {
+            value = fmax(value, ms_compare_record_number(&all->record[r], column));
         }
     }
     return value;
 }
 
-static int several(const records *all, const record *shape, ms_column column)
+static int several(const records *all, const ms_compare_record *shape, ms_column column)
 {
     int found = 0;
     for (size_t r = 0; r < all->count; r++) {
-        found |= same_shape(&all->record[r], shape) && !same_field(&all->record[r], shape, column);
+        found |= ms_compare_records_same_shape(&all->record[r], shape) &&
+                 !ms_compare_records_agree(&all->record[r], shape, column);
     }
     return found;
 }
@@ -123,8 +74,8 @@ static int several(const records *all, const record *shape, ms_column column)
 static int is_first(const records *all, size_t at, int method)
 {
     for (size_t r = 0; r < at; r++) {
-        if (same_shape(&all->record[r], &all->record[at]) &&
-            (!method || same_method(&all->record[r], &all->record[at]))) {
+        if (ms_compare_records_same_shape(&all->record[r], &all->record[at]) &&
+            (!method || ms_compare_records_same_method(&all->record[r], &all->record[at]))) {
             return 0;
         }
     }
@@ -132,15 +83,17 @@ static int is_first(const records *all, size_t at, int method)
 }
 
 /* The points of a method; a clump of another tool has no number that it was asked for. */
-static size_t collect(ms_chart_point *point, const records *all, const record *first, const chart_kind *k)
+static size_t collect(ms_chart_point *point, const records *all, const ms_compare_record *first, const chart_kind *k)
 {
     const double fixed = greatest(all, first, k->fixed);
     size_t count = 0;
     for (size_t r = 0; r < all->count; r++) {
-        const record *one = &all->record[r];
-        const double value = number(one, k->fixed);
-        if (same_shape(one, first) && same_method(one, first) && (value == fixed || isnan(value))) {
-            point[count] = (ms_chart_point){.x = number(one, k->x), .y = number(one, k->y)};
+        const ms_compare_record *one = &all->record[r];
+        const double value = ms_compare_record_number(one, k->fixed);
+        if (ms_compare_records_same_shape(one, first) && ms_compare_records_same_method(one, first) &&
+            (value == fixed || isnan(value))) {
+            point[count] =
+                (ms_chart_point){.x = ms_compare_record_number(one, k->x), .y = ms_compare_record_number(one, k->y)};
             if (k->front) {
                 snprintf(point[count].label, MS_CHART_LABEL, "%s", one->field[MS_COLUMN_SPHERES]);
             }
@@ -151,13 +104,14 @@ static size_t collect(ms_chart_point *point, const records *all, const record *f
 }
 
 /* What is expected, by number of spheres, each once. */
-static size_t collect_expected(ms_chart_point *point, const records *all, const record *shape)
+static size_t collect_expected(ms_chart_point *point, const records *all, const ms_compare_record *shape)
 {
     size_t count = 0;
     for (size_t r = 0; r < all->count; r++) {
-        const record *one = &all->record[r];
-        if (same_shape(one, shape)) {
-            const ms_chart_point next = {.x = number(one, MS_COLUMN_SPHERES), .y = number(one, MS_COLUMN_EXPECTED)};
+        const ms_compare_record *one = &all->record[r];
+        if (ms_compare_records_same_shape(one, shape)) {
+            const ms_chart_point next = {.x = ms_compare_record_number(one, MS_COLUMN_SPHERES),
+                                         .y = ms_compare_record_number(one, MS_COLUMN_EXPECTED)};
             size_t at = count;
             while (at > 0 && point[at - 1].x > next.x) {
                 at--;
@@ -191,21 +145,9 @@ static void free_draft(draft *d)
     free(d->point);
 }
 
-static char *name_method(const record *r)
-{
-    const char *options = r->field[MS_COLUMN_OPTIONS];
-    const int is_clump = r->field[MS_COLUMN_ASKED][0] == '\0'; /* its options are its file */
-    const size_t room = strlen(r->field[MS_COLUMN_GENERATOR]) + strlen(options) + 2;
-    char *name = malloc(room);
-    if (name) {
-        snprintf(name, room, "%s%s%s", r->field[MS_COLUMN_GENERATOR], options[0] && !is_clump ? ":" : "",
-                 is_clump ? "" : options);
-    }
-    return name;
-}
-
 /* The front, or what is expected, comes first, so that it is drawn behind the others. */
-static ms_status fill_draft(draft *d, const records *all, const record *shape, const chart_kind *k, ms_error *err)
+static ms_status fill_draft(draft *d, const records *all, const ms_compare_record *shape, const chart_kind *k,
+                            ms_error *err)
 {
     d->series = calloc(all->count + 1, sizeof *d->series);
     d->name = calloc(all->count + 1, sizeof *d->name);
@@ -216,10 +158,10 @@ static ms_status fill_draft(draft *d, const records *all, const record *shape, c
     const int expected = k->y == MS_COLUMN_DICE && k->x == MS_COLUMN_SPHERES;
     d->n_series = k->front || expected ? 1 : 0;
     for (size_t r = 0; r < all->count; r++) {
-        if (same_shape(&all->record[r], shape) && is_first(all, r, 1)) {
+        if (ms_compare_records_same_shape(&all->record[r], shape) && is_first(all, r, 1)) {
             ms_chart_point *point = d->point + d->n_points;
             const size_t count = collect(point, all, &all->record[r], k);
-            char *name = d->name[d->n_series] = name_method(&all->record[r]);
+            char *name = d->name[d->n_series] = ms_compare_record_method(&all->record[r]);
             if (!name) {
                 return ms_fail(err, MS_ERR_NOMEM, "no memory for a chart of %zu rows", all->count);
             }
@@ -241,12 +183,26 @@ static ms_status fill_draft(draft *d, const records *all, const record *shape, c
     return MS_OK;
 }
 
-static void name_shape(char *out, size_t size, const record *shape)
+static void name_shape(char *out, size_t size, const ms_compare_record *shape)
 {
     ms_compare_name(out, size, shape->field[MS_COLUMN_SHAPE], shape->field[MS_COLUMN_LABEL]);
 }
 
-static ms_status draw_compare_chart(const records *all, const record *shape, const chart_kind *k, ms_error *err)
+ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, ms_error *err)
+{
+    ms_status status = ms_chart_write(chart, stem, err);
+    if (status == MS_ERR_ARG) { /* every run failed: the rows say why */
+        fprintf(stderr, "%s\n", err->text);
+        return MS_OK;
+    }
+    if (status == MS_OK && (status = ms_chart_draw(stem, err)) == MS_OK) {
+        printf("drew %s.svg, .png\n", stem);
+    }
+    return status;
+}
+
+static ms_status draw_compare_chart(const records *all, const ms_compare_record *shape, const chart_kind *k,
+                                    ms_error *err)
 {
     char name[256], title[512], at[64];
     draft d = {0};
@@ -268,13 +224,7 @@ static ms_status draw_compare_chart(const records *all, const record *shape, con
                                 .n_series = d.n_series,
                                 .series = d.series};
         snprintf(stem, room, "%s/%s-%s", all->folder, name, k->name);
-        status = ms_chart_write(&chart, stem, err);
-        if (status == MS_ERR_ARG) { /* every run failed: the rows say why */
-            fprintf(stderr, "%s\n", err->text);
-            status = MS_OK;
-        } else if (status == MS_OK && (status = ms_chart_draw(stem, err)) == MS_OK) {
-            printf("drew %s.svg, .png\n", stem);
-        }
+        status = ms_compare_charts_draw(&chart, stem, err);
     }
     free_draft(&d);
     free(stem);
@@ -282,7 +232,8 @@ static ms_status draw_compare_chart(const records *all, const record *shape, con
 }
 
 /* One chart of a shape; a failure is kept if it is the first. */
-static void draw_kind(ms_status *status, const records *all, const record *shape, const chart_kind *k, ms_error *err)
+static void draw_kind(ms_status *status, const records *all, const ms_compare_record *shape, const chart_kind *k,
+                      ms_error *err)
 {
     ms_error why;
     if (k->x == MS_COLUMN_CELLS && !several(all, shape, MS_COLUMN_CELLS)) {
@@ -300,7 +251,7 @@ static ms_status draw_compare_charts(const records *all, ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t r = 0; r < all->count; r++) {
-        const record *shape = &all->record[r];
+        const ms_compare_record *shape = &all->record[r];
         for (int m = 0; is_first(all, r, 0) && m < MS_MEASURES; m++) {
             const chart_kind kind = describe_measure((ms_measure_code)m);
             if (kind.y_label) {
@@ -326,13 +277,8 @@ ms_status ms_compare_charts_list(ms_files *files, const char *folder, const char
     return status;
 }
 
-ms_status ms_compare_charts(const ms_csv *csv, const char *folder, ms_error *err)
+ms_status ms_compare_charts(const ms_compare_records *all, const char *folder, ms_error *err)
 {
-    records all = {.folder = folder};
-    ms_status status = cut_rows(&all, csv, err);
-    if (status == MS_OK) {
-        status = draw_compare_charts(&all, err);
-    }
-    free_records(&all);
-    return status;
+    const records drawn = {.count = all->count, .record = all->record, .folder = folder};
+    return draw_compare_charts(&drawn, err);
 }

@@ -2,8 +2,9 @@
 #ifndef MS_COMPARE_CHARTS_H
 #define MS_COMPARE_CHARTS_H
 
-#include "chart/ms_csv.h"
+#include "chart/ms_chart.h"
 #include "cli/ms_files.h"
+#include "ms_compare_records.h"
 
 /**
  * Draws for each shape, as FOLDER/SHAPE-KIND.svg and .png with data and script beside them, by the rows of the finest
@@ -15,11 +16,13 @@
  * - inertia, corrected: error of the moments by number of spheres, of the union and with masses by ms_density_solve;
  * - resolution: D by cells at the largest number of spheres, if there are several resolutions.
  *
- * @param csv    rows of ms_compare_header
  * @param folder exists
  * @return MS_OK; as ms_chart_write, ms_chart_draw
  */
-ms_status ms_compare_charts(const ms_csv *csv, const char *folder, ms_error *err);
+ms_status ms_compare_charts(const ms_compare_records *all, const char *folder, ms_error *err);
+
+/** Writes and draws one, and says so; of one without a point it says that, and is done. @return as above */
+ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, ms_error *err);
 
 /** Adds the files of all charts that there can be of a shape, by its name (ms_compare_name). */
 ms_status ms_compare_charts_list(ms_files *files, const char *folder, const char *shape, ms_error *err);

@@ -21,7 +21,7 @@ ms_compare_row ms_compare_plan_row(const ms_comparison *comparison, const ms_com
     row.text[MS_COLUMN_CHECKSUM] = checksum;
     row.text[MS_COLUMN_LABEL] = comparison->label;
     row.text[MS_COLUMN_GENERATOR] = method->name;
-    row.text[MS_COLUMN_OPTIONS] = method->generator ? method->options : ms_file_name(method->options);
+    row.text[MS_COLUMN_OPTIONS] = method->generator ? method->options : ms_file_name(method->clump[stage->at].file);
     row.number[MS_COLUMN_CELLS] = stage->cells;
     if (method->generator) {
         row.number[MS_COLUMN_SEED] = comparison->seed;
@@ -119,8 +119,9 @@ static void sum_shape(compare_planner *p, const char *shape)
     }
 }
 
-static ms_status plan_shape(compare_planner *p, const char *shape, ms_error *err)
+static ms_status plan_shape(compare_planner *p, size_t at, ms_error *err)
 {
+    const char *shape = p->a->shape[at];
     const int is_volume = ms_volume_is_volume_path(shape); /* which has voxels of its own */
     ms_compare_stage *stage = NULL;
     ms_status status = MS_OK;
@@ -129,6 +130,7 @@ static ms_status plan_shape(compare_planner *p, const char *shape, ms_error *err
         ms_input_flags flags = p->a->input;
         stage = &p->plan->stage[p->plan->n_stages++];
         stage->shape = shape;
+        stage->at = at;
         stage->cells = is_volume ? (double)NAN : p->a->cells.value[c];
         flags.cells = is_volume ? 0 : stage->cells;
         flags.need = ms_methods_need(&p->a->methods, flags.cut);
@@ -159,7 +161,7 @@ ms_status ms_compare_plan_make(ms_compare_plan *plan, const ms_comparison *compa
     ms_status status =
         plan->stage && plan->run ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu stages of runs", stages);
     for (size_t s = 0; s < comparison->n_shapes && status == MS_OK; s++) {
-        status = plan_shape(&p, comparison->shape[s], err);
+        status = plan_shape(&p, s, err);
     }
     if (status == MS_OK && plan->n_rows < csv->n_rows) {
         status = ms_fail(err, MS_ERR_ARG, "%s: holds %zu rows of another comparison behind these; name another file",

@@ -11,6 +11,7 @@
 /** A shape at a resolution. */
 typedef struct ms_compare_stage {
     const char *shape;
+    size_t at;    /* of the shape among all */
     double cells; /* NAN for a volume */
     ms_shared_input shared;
     ms_expect expect; /* of the shape, once a run has needed it; empty if nothing can be expected of it */

@@ -28,7 +28,7 @@ static char *make_path(const ms_compare_sheet *sheet, const char *name, ms_error
     return path;
 }
 
-static char *clump_path(const ms_compare_sheet *sheet, const ms_method *method, double asked, ms_error *err)
+char *ms_compare_sheet_path(const ms_compare_sheet *sheet, const ms_method *method, double asked, ms_error *err)
 {
     char name[256];
     snprintf(name, sizeof name, "%.80s%s%.120s-%g.csv", method->name, method->options[0] ? "-" : "", method->options,
@@ -45,7 +45,7 @@ ms_status ms_compare_sheet_keep(const ms_compare_sheet *sheet, const ms_method *
                                 const ms_clump *clump, ms_error *err)
 {
     const ms_content content = {.clump = clump};
-    char *path = clump_path(sheet, method, asked, err);
+    char *path = ms_compare_sheet_path(sheet, method, asked, err);
     const ms_status status =
         path ? ms_write_clump(&content, path, ms_write_format_find("csv", err), err) : MS_ERR_NOMEM;
     free(path);
@@ -59,7 +59,7 @@ ms_status ms_compare_sheet_list(ms_files *files, const ms_compare_sheet *sheet, 
     for (size_t m = 0; m < sheet->methods->count; m++) {
         const ms_method *method = &sheet->methods->method[m];
         for (size_t k = 0; method->generator && k < sheet->n_asked && status == MS_OK; k++) {
-            char *path = clump_path(sheet, method, sheet->asked[k], err);
+            char *path = ms_compare_sheet_path(sheet, method, sheet->asked[k], err);
             status = path ? ms_files_add(files, path, MS_FILE_LATER, err) : MS_ERR_NOMEM;
             free(path);
         }
@@ -84,10 +84,10 @@ static ms_status draw_clump(ms_picture *picture, const ms_view *view, const ms_c
 {
     ms_clump clump;
     if (!method->generator) {
-        ms_render_clump(picture, view, &method->clump);
+        ms_render_clump(picture, view, &method->clump[sheet->at].clump);
         return MS_OK;
     }
-    char *path = clump_path(sheet, method, asked, err);
+    char *path = ms_compare_sheet_path(sheet, method, asked, err);
     ms_status status = path ? MS_OK : MS_ERR_NOMEM;
     if (path && access(path, F_OK) != 0) {
         fprintf(stderr, "%s is not there: its place on the contact sheet is empty\n", path);

@@ -9,6 +9,7 @@
 /** What is on a sheet; all borrowed. */
 typedef struct ms_compare_sheet {
     const char *folder, *shape; /* shape: begins the names of its files */
+    size_t at;                  /* of the shape among those that clumps of other tools go with */
     const ms_methods *methods;
     const double *asked; /* numbers of spheres, ascending */
     size_t n_asked;
@@ -17,6 +18,9 @@ typedef struct ms_compare_sheet {
 /** Keeps a clump for the sheet as FOLDER/SHAPE-METHOD-N.csv. @return as ms_write_clump */
 ms_status ms_compare_sheet_keep(const ms_compare_sheet *sheet, const ms_method *method, double asked,
                                 const ms_clump *clump, ms_error *err);
+
+/** Where that is; the caller frees it; NULL without memory. */
+char *ms_compare_sheet_path(const ms_compare_sheet *sheet, const ms_method *method, double asked, ms_error *err);
 
 /** Adds the files of a sheet, those of its clumps among them. */
 ms_status ms_compare_sheet_list(ms_files *files, const ms_compare_sheet *sheet, ms_error *err);

@@ -7,10 +7,13 @@
 #include <string.h>
 
 #include "cli/ms_expectation.h"
+#include "cli/ms_files.h"
 #include "ms_compare.h"
 #include "ms_compare_charts.h"
 #include "ms_compare_plan.h"
+#include "ms_compare_population_write.h"
 #include "ms_compare_sheet.h"
+#include "ms_compare_verdict.h"
 #include "ms_trial.h"
 
 /* A row, with the texts that it borrows. */
@@ -18,6 +21,7 @@ typedef struct compare_result {
     ms_compare_row row;
     char checksum[20];
     ms_error cause;
+    int is_remarked; /* nonzero: the method has a remark on the clump */
 } compare_result;
 
 /* Where the comparison stands. */
@@ -27,6 +31,7 @@ typedef struct compare_walk {
     compare_result **result; /* of each run that is done and not taken; NULL without memory */
     ms_csv *csv;
     size_t made, failed; /* rows; of those made how many failed */
+    size_t remarked;     /* of the others: the method has a remark on the clump */
     ms_error first_cause;
     ms_status drawn;  /* of the first chart that failed; the comparison goes on */
     ms_error why_not; /* it failed */
@@ -74,10 +79,14 @@ static void note_drawn(compare_walk *w, ms_status status, const ms_error *err)
 }
 
 /* The sheet of a shape of that name. */
-static ms_compare_sheet plan_sheet(const ms_comparison *a, const char *name)
+static ms_compare_sheet plan_sheet(const ms_comparison *a, const char *name, size_t at)
 {
-    return (ms_compare_sheet){
-        .folder = a->charts, .shape = name, .methods = &a->methods, .asked = a->asked.value, .n_asked = a->asked.count};
+    return (ms_compare_sheet){.folder = a->charts,
+                              .shape = name,
+                              .at = at,
+                              .methods = &a->methods,
+                              .asked = a->asked.value,
+                              .n_asked = a->asked.count};
 }
 
 /* For the contact sheet: charts are drawn of runs in turn, so that no other run is at it. */
@@ -89,7 +98,7 @@ static void keep_clump(compare_walk *w, const ms_compare_run *run, double asked,
     const double finest = w->a->cells.value[w->a->cells.count - 1];
     if (w->a->charts && run->method->generator && !(run->stage->cells < finest)) {
         ms_compare_name(name, sizeof name, run->stage->shape, w->a->label);
-        const ms_compare_sheet sheet = plan_sheet(w->a, name);
+        const ms_compare_sheet sheet = plan_sheet(w->a, name, run->stage->at);
         note_drawn(w, ms_compare_sheet_keep(&sheet, run->method, asked, &prefix, &err), &err);
     }
 }
@@ -100,7 +109,7 @@ static void draw_sheet(compare_walk *w, const ms_compare_stage *stage)
     ms_error err;
     if (stage->shared.status == MS_OK) {
         ms_compare_name(name, sizeof name, stage->shape, w->a->label);
-        const ms_compare_sheet sheet = plan_sheet(w->a, name);
+        const ms_compare_sheet sheet = plan_sheet(w->a, name, stage->at);
         note_drawn(w, ms_compare_sheet_draw(&sheet, &stage->shared.input.target, &err), &err);
     }
 }
@@ -110,7 +119,7 @@ static ms_status judge_clump(compare_walk *w, compare_result *result, const ms_c
                              const ms_trial *trial, double seconds)
 {
     const ms_method *method = run->method;
-    const ms_clump *clump = method->generator ? &trial->clump : &method->clump;
+    const ms_clump *clump = method->generator ? &trial->clump : &method->clump[run->stage->at].clump;
     const size_t n = asked < (double)clump->n_spheres ? (size_t)asked : clump->n_spheres;
     ms_compare_row *row = &result->row;
     if (method->generator) {
@@ -158,6 +167,18 @@ static ms_status make_trial(compare_walk *w, ms_trial *trial, const ms_compare_r
     return ms_trial_make(trial, &how, &run->stage->shared.input.target, err);
 }
 
+/* What a row that failed, in all or in its masses, has as its cause, and what the method remarks on its clump. */
+static void put_cause(compare_result *r, const ms_trial *trial, int failed)
+{
+    char *text = r->cause.text;
+    const size_t length = failed ? strlen(text) : 0;
+    if (!failed || trial->remarks.text[0]) {
+        snprintf(text + length, sizeof r->cause.text - length, "%s%s", failed ? "; " : "", trial->remarks.text);
+    }
+    r->row.text[MS_COLUMN_CAUSE] = text[0] ? text : NULL;
+    r->is_remarked = trial->remarks.text[0] != '\0';
+}
+
 /* The rows of a run, from `there` on; those before were there. */
 static void make_rows(compare_walk *w, compare_result *result, const ms_compare_run *run, int beside)
 {
@@ -181,10 +202,9 @@ static void make_rows(compare_walk *w, compare_result *result, const ms_compare_
         if (shared->status == MS_OK) {
             put_input(&r->row, &shared->input);
         }
-        if (made != MS_OK ||
-            judge_clump(w, r, run, run->asked[k], &trial, trial.seconds ? trial.seconds[k] : 0) != MS_OK) {
-            r->row.text[MS_COLUMN_CAUSE] = r->cause.text;
-        }
+        const int failed = made != MS_OK ||
+                           judge_clump(w, r, run, run->asked[k], &trial, trial.seconds ? trial.seconds[k] : 0) != MS_OK;
+        put_cause(r, &trial, failed);
     }
     ms_trial_free(&trial);
 }
@@ -203,24 +223,26 @@ static void work_run(void *context, size_t at, ms_queue_place *place)
 }
 
 /* Counts it, and remembers why the first one failed. Nonzero if it did. */
-static int note_row(compare_walk *w, const ms_compare_row *row)
+static int note_row(compare_walk *w, const compare_result *result)
 {
+    const ms_compare_row *row = &result->row;
     const int failed = !isfinite(row->number[MS_COLUMN_DICE]);
     if (failed && !w->first_cause.text[0]) {
         ms_fail(&w->first_cause, MS_ERR_SHAPE, "%s", row->text[MS_COLUMN_CAUSE]);
     }
     w->made++;
+    w->remarked += !failed && result->is_remarked;
     return failed;
 }
 
-static ms_status add_row(compare_walk *w, const ms_compare_row *row, size_t *failed, ms_error *err)
+static ms_status add_row(compare_walk *w, const compare_result *result, size_t *failed, ms_error *err)
 {
-    char *line = ms_compare_line(row);
+    char *line = ms_compare_line(&result->row);
     const ms_status status = line ? ms_csv_add(w->csv, line, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for a row");
     free(line);
     if (status == MS_OK) {
-        *failed += note_row(w, row);
-        say_row(w->a->words, row);
+        *failed += note_row(w, result);
+        say_row(w->a->words, &result->row);
     }
     return status;
 }
@@ -234,7 +256,7 @@ static ms_status take_rows(void *context, size_t at, size_t *failed, ms_error *e
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu rows", run->count);
     }
     for (size_t k = run->there; k < run->count && status == MS_OK; k++) {
-        status = add_row(w, &w->result[at][k].row, failed, err);
+        status = add_row(w, &w->result[at][k], failed, err);
     }
     free(w->result[at]);
     w->result[at] = NULL;
@@ -252,7 +274,7 @@ static ms_status list_charts(ms_files *files, const ms_comparison *a, size_t s, 
             return ms_fail(err, MS_ERR_ARG, "two shapes are called %s, and so would be their charts; rename one", name);
         }
     }
-    const ms_compare_sheet sheet = plan_sheet(a, name);
+    const ms_compare_sheet sheet = plan_sheet(a, name, s);
     const ms_status status = ms_compare_sheet_list(files, &sheet, err);
     return status == MS_OK ? ms_compare_charts_list(files, a->charts, name, err) : status;
 }
@@ -265,6 +287,9 @@ ms_status ms_compare_list_files(ms_files *files, const ms_comparison *comparison
         if (status == MS_OK && comparison->charts) {
             status = list_charts(files, comparison, s, err);
         }
+    }
+    if (status == MS_OK && comparison->population) {
+        status = ms_compare_population_list(files, comparison->population, err);
     }
     return status == MS_OK ? ms_methods_list_files(files, &comparison->methods, err) : status;
 }
@@ -296,6 +321,26 @@ static ms_status walk_plan(compare_walk *w, ms_error *err)
     return status;
 }
 
+/* What is made of all rows together: charts, the population, the verdict. */
+static void conclude(compare_walk *w)
+{
+    const ms_comparison *a = w->a;
+    ms_compare_records all;
+    ms_error why;
+    const ms_status cut = ms_compare_records_cut(&all, w->csv, &why);
+    note_drawn(w, cut, &why);
+    if (cut == MS_OK && a->charts) {
+        note_drawn(w, ms_compare_charts(&all, a->charts, &why), &why);
+    }
+    if (cut == MS_OK && a->population) {
+        note_drawn(w, ms_compare_population_write(&all, a->population, a->words, &why), &why);
+    }
+    if (cut == MS_OK) {
+        note_drawn(w, ms_compare_verdict_say(stderr, &all, &why), &why);
+    }
+    ms_compare_records_free(&all);
+}
+
 ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error *err)
 {
     ms_compare_plan plan;
@@ -304,7 +349,13 @@ ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error
     if (status != MS_OK) {
         return status;
     }
-    status = walk_plan(&w, err);
+    if (comparison->charts) {
+        status = ms_files_make_folder(comparison->charts, err);
+    }
+    if (status == MS_OK && comparison->population) {
+        status = ms_files_make_folder(comparison->population, err);
+    }
+    status = status == MS_OK ? walk_plan(&w, err) : status;
     ms_compare_plan_free(&plan);
     if (status != MS_OK) {
         return status;
@@ -313,12 +364,12 @@ ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error
     if (w.failed) {
         fprintf(comparison->words, "; %zu of the new ones failed, see the column cause", w.failed);
     }
-    putc('\n', comparison->words);
-    if (comparison->charts) {
-        ms_error why;
-        note_drawn(&w, ms_compare_charts(csv, comparison->charts, &why), &why);
-        *err = w.why_not;
+    if (w.remarked) {
+        fprintf(comparison->words, "; on %zu of them the method has a remark, see the column cause", w.remarked);
     }
+    putc('\n', comparison->words);
+    conclude(&w);
+    *err = w.why_not;
     if (w.drawn == MS_OK && w.made > 0 && w.failed == w.made) {
         return ms_fail(err, MS_ERR_SHAPE, "not one of %zu rows succeeded; the first failed because of this: %.700s",
                        w.made, w.first_cause.text);

@@ -26,8 +26,9 @@ typedef struct ms_comparison {
     ms_numbers asked, cells; /* numbers of spheres; resolutions, which a volume does not take */
     char label[20];          /* as text; "" for none */
     double repeats, seed;
-    FILE *words;        /* where rows are said */
-    const char *charts; /* folder, which exists; NULL for none */
+    FILE *words;            /* where rows are said */
+    const char *charts;     /* folder, which exists; NULL for none */
+    const char *population; /* the same, of tables and charts of all shapes together */
 } ms_comparison;
 
 /** Adds what is read, shapes and clumps, and the files of the charts. @return MS_OK; MS_ERR_ARG for two shapes of one
@@ -37,12 +38,13 @@ ms_status ms_compare_list_files(ms_files *files, const ms_comparison *comparison
 /**
  * Adds the rows of all runs, in a fixed order; those that are there already must be its first rows, and are not run
  * again. Runs go side by side (ms_queue.h), unless times are the result: with charts, or repeats. Says each row.
- * Then draws the charts.
+ * Then draws the charts, writes the tables of the population, and says on stderr what it comes to.
  *
  * @param csv with ms_compare_header
  * @return MS_OK, also where some runs failed: that is in their rows; MS_ERR_SHAPE where each of the new ones did, when
  *         all else is done; MS_ERR_ARG for rows of another comparison; as
- *         ms_csv_add; of charts, as ms_compare_charts and ms_compare_sheet_draw, when all else is done
+ *         ms_csv_add; of charts and tables, as ms_compare_charts, ms_compare_sheet_draw
+ *         and ms_compare_population_write, when all else is done
  */
 ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error *err);
 

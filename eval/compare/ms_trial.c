@@ -74,6 +74,8 @@ static ms_status run_once(ms_trial *trial, double *seconds, const ms_trial_run *
     ms_run one = {.target = target, .settings = run->settings, .seed = run->seed};
     one.stop = (ms_stop){.spheres = run->asked[run->n_asked - 1], .radius = run->min_radius};
     ms_clump_free(&trial->clump);
+    trial->remarks.text[0] = '\0';
+    ms_generator_keep_remarks(&one, &trial->remarks);
     if (!run->beside) {
         const ms_progress_line line = {.name = run->title, .goal = run->generator->nested ? one.stop.spheres : 0};
         ms_progress_show(&one);

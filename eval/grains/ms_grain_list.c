@@ -1,8 +1,6 @@
 #include "ms_grain_list.h"
 
-#include <dirent.h>
 #include <errno.h>
-#include <glob.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +11,7 @@
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "cli/ms_files.h"
-#include "mesh/formats/ms_mesh_read.h"
+#include "cli/ms_paths.h"
 #include "ms_grain_manifest.h"
 
 /* A part of the memory allowed that volumes may keep from the listing on. */
@@ -119,60 +117,15 @@ static ms_status add_file(ms_grain_list *list, const char *path, uint32_t row_la
     return status;
 }
 
-static int is_shape_path(const char *path)
+/* A file, or those of a folder or a pattern. */
+static ms_status add_files(ms_grain_list *list, const char *word, const ms_grain_how *how, ms_error *err)
 {
-    return ms_volume_is_volume_path(path) || ms_mesh_read_is_mesh_path(path);
-}
-
-/* A raw file is most often the data of a header beside it; one that is not is named itself. */
-static int select_shape(const struct dirent *entry)
-{
-    return ms_mesh_read_is_mesh_path(entry->d_name) || ms_scan_has_header(entry->d_name);
-}
-
-/* The meshes and volumes of a folder in the order of their names, byte by byte. */
-static int compare_names(const struct dirent **a, const struct dirent **b)
-{
-    return strcmp((*a)->d_name, (*b)->d_name);
-}
-
-static ms_status add_folder(ms_grain_list *list, const char *folder, const ms_grain_how *how, ms_error *err)
-{
-    struct dirent **entry;
-    const int count = scandir(folder, &entry, select_shape, compare_names);
-    ms_status status = count > 0 ? MS_OK
-                                 : ms_fail(err, MS_ERR_IO, "%s: %s", folder,
-                                           count < 0 ? strerror(errno) : "no mesh and no volume is in this folder");
-    for (int e = 0; e < count; e++) {
-        const size_t size = strlen(folder) + strlen(entry[e]->d_name) + 2;
-        char *path = status == MS_OK ? malloc(size) : NULL;
-        if (path) {
-            const size_t end = strlen(folder) - (folder[strlen(folder) - 1] == '/');
-            snprintf(path, size, "%.*s/%s", (int)end, folder, entry[e]->d_name);
-            status = add_file(list, path, 0, how, err);
-        } else if (status == MS_OK) {
-            status = ms_fail(err, MS_ERR_NOMEM, "no memory for the files of %s", folder);
-        }
-        free(path);
-        free(entry[e]);
+    ms_paths paths = {0};
+    ms_status status = ms_paths_add(&paths, word, ms_paths_is_shape, "mesh and no volume", err);
+    for (size_t p = 0; p < paths.count && status == MS_OK; p++) {
+        status = add_file(list, paths.path[p], 0, how, err);
     }
-    if (count >= 0) {
-        free(entry);
-    }
-    return status;
-}
-
-static ms_status add_pattern(ms_grain_list *list, const char *pattern, const ms_grain_how *how, ms_error *err)
-{
-    glob_t found;
-    ms_status status = MS_OK;
-    if (glob(pattern, 0, NULL, &found) != 0) {
-        return ms_fail(err, MS_ERR_IO, "%s: no file has this name or fits this pattern", pattern);
-    }
-    for (size_t p = 0; p < found.gl_pathc && status == MS_OK; p++) {
-        status = is_shape_path(found.gl_pathv[p]) ? add_file(list, found.gl_pathv[p], 0, how, err) : MS_OK;
-    }
-    globfree(&found);
+    ms_paths_free(&paths);
     return status;
 }
 
@@ -227,13 +180,8 @@ static ms_status add_word(ms_grain_list *list, const char *word, const ms_grain_
     struct stat info;
     char ending[16];
     ms_file_ending(ending, word);
-    if (stat(word, &info) != 0) {
-        return add_pattern(list, word, how, err);
-    }
-    if (S_ISDIR(info.st_mode) && !ms_volume_is_volume_path(word)) { /* of slices, it is a volume */
-        return add_folder(list, word, how, err);
-    }
-    return strcmp(ending, "csv") == 0 ? add_manifest(list, word, how, err) : add_file(list, word, 0, how, err);
+    const int is_manifest = strcmp(ending, "csv") == 0 && stat(word, &info) == 0 && !S_ISDIR(info.st_mode);
+    return is_manifest ? add_manifest(list, word, how, err) : add_files(list, word, how, err);
 }
 
 static int compare_grains(const void *a, const void *b)

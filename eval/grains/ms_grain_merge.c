@@ -11,7 +11,7 @@
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "chart/ms_csv.h"
-#include "cli/ms_outputs.h"
+#include "cli/ms_files.h"
 #include "ms_grain_row.h"
 
 enum { MOST_COLUMNS = 64 + MS_MEASURES, RUN_LENGTH = 16 };
@@ -335,7 +335,7 @@ ms_status ms_grain_merge(const char *folder, char *const *parts, size_t count, m
         status = check_whole(&m, path, err);
     }
     if (status == MS_OK) { /* not before: what is refused leaves none behind */
-        status = ms_outputs_make_folder(folder, err);
+        status = ms_files_make_folder(folder, err);
     }
     if (status == MS_OK) {
         status = find_ways(&m, folder, parts, count, err);

@@ -210,12 +210,14 @@ static int read_status(ms_grain_status *status, const char *named)
     return found;
 }
 
-ms_status ms_grain_row_read(ms_grain_status *status, double *spheres, const char *line, ms_error *err)
+ms_status ms_grain_row_read(ms_grain_status *status, int *is_remarked, double *spheres, const char *line, ms_error *err)
 {
     row_fields fields;
     cut_row(&fields, line);
     const char *n = find_field(&fields, "n");
     const int found = read_status(status, find_field(&fields, "status"));
+    const char *cause = find_field(&fields, "cause");
+    *is_remarked = found && *status == MS_GRAIN_OK && cause && cause[0];
     *spheres = n ? strtod(n, NULL) : 0;
     free_fields(&fields);
     return found ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "has no status of a grain");
@@ -234,13 +236,14 @@ ms_status ms_grain_row_find(ms_grain_found *found, const char *line, ms_error *e
     cut_row(&fields, line);
     const char *file = find_field(&fields, "file");
     const char *source = find_field(&fields, "source");
+    found->number = read_number(&fields, "grain");
     const int is_row = file && strlen(file) < sizeof found->file && source && strlen(source) < sizeof found->source &&
+                       found->number >= 1 && found->number <= 9007199254740992.0 &&
                        read_status(&found->status, find_field(&fields, "status"));
     if (is_row) {
         snprintf(found->file, sizeof found->file, "%s", file);
         snprintf(found->source, sizeof found->source, "%s", source);
         found->label = read_number(&fields, "label");
-        found->number = read_number(&fields, "grain");
         found->volume = read_number(&fields, "volume");
         for (int c = 0; c < PLACE_COLUMNS; c++) {
             *place_number(&found->place, c) = read_number(&fields, PLACE[c]);

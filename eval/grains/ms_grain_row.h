@@ -37,7 +37,7 @@ typedef struct ms_grain_row {
     ms_grain_place place;
     double seconds; /* of all that was done for it */
     int beside;     /* other grains at the same time */
-    ms_error cause;
+    ms_error cause; /* of a grain with a clump: what the method remarks on it; "" without */
 } ms_grain_row;
 
 /** A row as a line of CSV without its end; NULL: the names of the columns. The caller frees it; NULL without memory. */
@@ -45,9 +45,12 @@ char *ms_grain_row_line(const ms_grain_row *row);
 
 /**
  * What a line that was there says: how it went, and with how many spheres.
+ *
+ * @param[out] is_remarked nonzero if there is a clump, and the method has a remark on it
  * @return MS_OK; MS_ERR_FORMAT for a line that is no row
  */
-ms_status ms_grain_row_read(ms_grain_status *status, double *spheres, const char *line, ms_error *err);
+ms_status ms_grain_row_read(ms_grain_status *status, int *is_remarked, double *spheres, const char *line,
+                            ms_error *err);
 
 /** A line that was there, as far as it says where its clump is. */
 typedef struct ms_grain_found {

@@ -8,8 +8,8 @@
 
 #include "base/ms_file.h"
 #include "base/ms_quaternion.h"
+#include "cli/ms_files.h"
 #include "cli/ms_mass.h"
-#include "cli/ms_outputs.h"
 #include "clump/ms_template.h"
 #include "measure/ms_metrics.h"
 #include "volume/ms_components.h"
@@ -21,6 +21,7 @@ typedef struct grains_work {
     size_t count, there;
     char **line; /* of grains that are done and whose rows are not taken */
     ms_grain_status *status;
+    char *remarked; /* nonzero: the method has a remark on its clump */
     double *spheres;
     int write; /* zero: only tried */
     double *seconds;
@@ -91,6 +92,7 @@ static void free_work(grains_work *w)
     free(w->line);
     free(w->index);
     free(w->status);
+    free(w->remarked);
     free(w->spheres);
     free(w->seconds);
 }
@@ -100,9 +102,10 @@ static ms_status make_room(grains_work *w, ms_error *err)
 {
     w->line = calloc(w->count + 1, sizeof *w->line);
     w->status = calloc(w->count + 1, sizeof *w->status);
+    w->remarked = calloc(w->count + 1, 1);
     w->spheres = calloc(w->count + 1, sizeof *w->spheres);
     w->seconds = calloc(w->count + 1, sizeof *w->seconds);
-    return w->line && w->status && w->spheres && w->seconds
+    return w->line && w->status && w->remarked && w->spheres && w->seconds
                ? MS_OK
                : ms_fail(err, MS_ERR_NOMEM, "no memory for the rows of %zu grains", w->count);
 }
@@ -169,7 +172,7 @@ static ms_status write_format(const ms_grain_row *row, const ms_content *content
     ms_grain_row_path(path, sizeof path, g->folder, row);
     char *slash = strrchr(path, '/');
     *slash = '\0';
-    ms_status status = ms_outputs_make_folder(path, err);
+    ms_status status = ms_files_make_folder(path, err);
     *slash = '/';
     snprintf(path + strlen(path), sizeof path - strlen(path), ".%s", format->ending);
     if (status == MS_OK) {
@@ -196,24 +199,30 @@ static ms_status write_grain(const ms_grain_row *row, const ms_input *input, con
     return status;
 }
 
-static ms_status make_clump(ms_result *r, const ms_input *input, const ms_grain_how *how, const ms_mass_flags *mass,
-                            ms_error *err)
+/* @param[out] remarks of the method */
+static ms_status make_clump(ms_result *r, ms_error *remarks, const ms_input *input, const ms_grain_how *how,
+                            const ms_grains *g, ms_error *err)
 {
-    const ms_run run = {.target = &input->target,
-                        .stop = how->stop,
-                        .settings = &how->recipe.settings,
-                        .seed = (uint64_t)how->recipe.seed};
+    ms_run run = {.target = &input->target,
+                  .stop = how->stop,
+                  .settings = &how->recipe.settings,
+                  .seed = (uint64_t)how->recipe.seed};
+    ms_generator_keep_remarks(&run, remarks);
     const double start = omp_get_wtime();
     ms_status status = ms_generator_run(&r->clump, &r->reason, how->recipe.generator, &run, err);
     const double generated = omp_get_wtime();
     const size_t max_voxels = ms_input_max_voxels(&how->input);
+    if (status == MS_OK && g->equal_volume) {
+        status = ms_equal_volume_scale(&r->clump, &r->volume, &input->target.body, err);
+    }
     if (status == MS_OK) {
         status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump, max_voxels, err);
     }
     r->generate_seconds = generated - start;
     r->score_seconds = omp_get_wtime() - generated;
-    return status == MS_OK && mass ? ms_mass_correct(&r->mass, &r->clump, mass, &input->target.body, max_voxels, err)
-                                   : status;
+    return status == MS_OK && g->mass
+               ? ms_mass_correct(&r->mass, &r->clump, g->mass, &input->target.body, max_voxels, err)
+               : status;
 }
 
 /* Leaves the largest piece of a label alone, if that is wanted. */
@@ -230,8 +239,9 @@ static ms_status drop_pieces(ms_grain_row *row, ms_input *input, const ms_grains
     return status;
 }
 
-/* The grain from its shape to its files. */
-static ms_status make_grain(ms_grain_row *row, ms_result *r, const grains_work *w, ms_queue_place *place)
+/* The grain from its shape to its files. @param[out] remarks of the method */
+static ms_status make_grain(ms_grain_row *row, ms_result *r, ms_error *remarks, const grains_work *w,
+                            ms_queue_place *place)
 {
     const ms_grain *grain = row->grain;
     ms_input_flags flags = grain->how->input;
@@ -262,7 +272,7 @@ static ms_status make_grain(ms_grain_row *row, ms_result *r, const grains_work *
                                                  : (double)NAN;
         row->voxel_size = input.target.grid.h;
         row->volume = input.target.body.volume;
-        status = make_clump(r, &input, grain->how, w->g->mass, &row->cause);
+        status = make_clump(r, remarks, &input, grain->how, w->g, &row->cause);
     }
     if (status == MS_OK) {
         status = find_place(&row->place, &r->mass, &input.target.body, &row->cause);
@@ -281,19 +291,21 @@ static void work_grain(void *context, size_t k, ms_queue_place *place)
     const size_t at = w->there + k;
     ms_grain_row row = begin_row(w, at);
     ms_result result;
+    ms_error remarks = {""};
     memset(&result, 0, sizeof result);
     const double start = omp_get_wtime();
     if (!leave_out(&row, w->g)) {
-        row.status = make_grain(&row, &result, w, place) == MS_OK ? MS_GRAIN_OK : MS_GRAIN_FAILED;
+        row.status = make_grain(&row, &result, &remarks, w, place) == MS_OK ? MS_GRAIN_OK : MS_GRAIN_FAILED;
     }
     if (row.status == MS_GRAIN_OK) {
-        row.cause.text[0] = '\0';
+        row.cause = remarks;
     } else {
         row.result = NULL;
     }
     row.seconds = w->seconds[at] = omp_get_wtime() - start;
     row.beside = ms_queue_beside(place);
     w->status[at] = row.status;
+    w->remarked[at] = row.status == MS_GRAIN_OK && remarks.text[0];
     w->spheres[at] = row.result ? (double)result.clump.n_spheres : 0;
     w->line[at] = ms_grain_row_line(&row);
     ms_clump_free(&result.clump);
@@ -302,9 +314,10 @@ static void work_grain(void *context, size_t k, ms_queue_place *place)
     }
 }
 
-static void add_to_sum(grains_work *w, ms_grain_status status, double spheres)
+static void add_to_sum(grains_work *w, ms_grain_status status, int is_remarked, double spheres)
 {
     w->sum->grains++;
+    w->sum->remarked += (size_t)is_remarked;
     w->sum->ok += status == MS_GRAIN_OK;
     w->sum->left_out += status == MS_GRAIN_LEFT_OUT;
     w->sum->failed += status == MS_GRAIN_FAILED;
@@ -321,7 +334,7 @@ static ms_status take_grain(void *context, size_t k, size_t *failed, ms_error *e
     w->line[at] = NULL;
     if (status == MS_OK) {
         *failed = w->status[at] == MS_GRAIN_FAILED;
-        add_to_sum(w, w->status[at], w->spheres[at]);
+        add_to_sum(w, w->status[at], w->remarked[at], w->spheres[at]);
     }
     return status;
 }
@@ -345,12 +358,13 @@ static ms_status check_row(grains_work *w, size_t at, ms_error *err)
     ms_grain_row row = begin_row(w, at);
     ms_error cause;
     double spheres;
+    int is_remarked;
     row.checksum = sum_file(row.grain->source);
     char *key = ms_grain_row_key(&row);
     if (!key) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for a row");
     }
-    ms_status status = ms_grain_row_read(&row.status, &spheres, w->csv->row[at], &cause);
+    ms_status status = ms_grain_row_read(&row.status, &is_remarked, &spheres, w->csv->row[at], &cause);
     if (strncmp(w->csv->row[at], key, strlen(key)) != 0) {
         status = ms_fail(err, MS_ERR_ARG,
                          "%s: line %zu is of another run; it should begin with '%.300s'; --resume takes grains and "
@@ -359,7 +373,7 @@ static ms_status check_row(grains_work *w, size_t at, ms_error *err)
     } else if (status != MS_OK) {
         status = ms_fail(err, status, "%s: line %zu %s", w->csv->path, at + 2, cause.text);
     } else {
-        add_to_sum(w, row.status, spheres);
+        add_to_sum(w, row.status, is_remarked, spheres);
     }
     free(key);
     return status;

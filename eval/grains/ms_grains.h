@@ -16,6 +16,7 @@ typedef struct ms_grains {
     const ms_mass_flags *mass; /* resolved; NULL: no masses */
     const ms_format *format[MS_GRAINS_FORMATS];
     size_t n_formats;
+    int equal_volume;    /* clumps are scaled to the volume of the grain */
     int skip_border;     /* grains that the border of their volume cuts are left out */
     double least_voxels; /* labels of fewer voxels are left out */
     int largest_piece;   /* of a label in several pieces the largest alone is taken */
@@ -26,6 +27,7 @@ typedef struct ms_grains {
 /** What came of it, of the rows that were there before, too. */
 typedef struct ms_grains_sum {
     size_t grains, ok, left_out, failed; /* of this part */
+    size_t remarked;                     /* of those ok: the method has a remark */
     double spheres;
 } ms_grains_sum;
 

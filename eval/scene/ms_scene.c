@@ -100,10 +100,13 @@ static void choose_numbers(ms_scene_shape *shape)
         if (have < n && shape->score[n - 1].dice < shape->score[have - 1].dice) {
             const ms_clump clump = shape->clump[n - 1];
             const ms_score score = shape->score[n - 1];
+            const ms_error remarks = shape->remarks[n - 1];
             shape->clump[n - 1] = shape->clump[have - 1];
             shape->score[n - 1] = shape->score[have - 1];
+            shape->remarks[n - 1] = shape->remarks[have - 1];
             shape->clump[have - 1] = clump;
             shape->score[have - 1] = score;
+            shape->remarks[have - 1] = remarks;
         }
     }
     for (size_t n = 0; n < shape->most; n++) {
@@ -116,19 +119,25 @@ static ms_status make_room(ms_scene_shape *shape, size_t count, ms_error *err)
     shape->clump = calloc(count, sizeof *shape->clump);
     shape->score = calloc(count, sizeof *shape->score);
     shape->dice = calloc(count, sizeof *shape->dice);
-    if (!shape->clump || !shape->score || !shape->dice) {
+    shape->remarks = calloc(count, sizeof *shape->remarks);
+    if (!shape->clump || !shape->score || !shape->dice || !shape->remarks) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu templates", count);
     }
     shape->most = count;
     return MS_OK;
 }
 
-static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const ms_run *run,
+/* @param remarks on the clump: prefixes of one share them, and other templates have their own */
+static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const ms_error *remarks, const ms_run *run,
                             const ms_generator *generator, size_t max_voxels, ms_error *err)
 {
     ms_status status = make_room(shape, clump->n_spheres, err);
+    const size_t most = status == MS_OK ? shape->most : 0;
+    for (size_t n = ms_generator_is_nested(generator, run->settings) ? 1 : most; n > 0 && n <= most; n++) {
+        shape->remarks[n - 1] = *remarks;
+    }
     if (status == MS_OK) {
-        status = ms_curve_clumps(shape->score, shape->clump, clump, generator, run, max_voxels, err);
+        status = ms_curve_clumps(shape->score, shape->clump, shape->remarks, clump, generator, run, max_voxels, err);
     }
     if (status == MS_OK) {
         choose_numbers(shape);
@@ -153,6 +162,7 @@ static ms_status try_number(int *reached, scene_search *s, size_t n, ms_error *e
     ms_metrics metrics;
     ms_stop_reason reason;
     s->run.stop.spheres = n;
+    ms_generator_keep_remarks(&s->run, &shape->remarks[n - 1]);
     ms_status status = ms_generator_run(&shape->clump[n - 1], &reason, s->generator, &s->run, err);
     if (status == MS_OK) {
         status = ms_metrics_compute_kinds(&metrics, NULL, 0, s->run.target, &shape->clump[n - 1], s->max_voxels, err);
@@ -248,12 +258,14 @@ static ms_status make_all_templates(ms_scene_shape *shape, ms_run *run, const ms
     const ms_generator *generator = how->recipe->generator;
     ms_stop_reason reason;
     ms_clump clump;
+    ms_error remarks = {""};
+    ms_generator_keep_remarks(run, &remarks);
     ms_status status = ms_generator_run(&clump, &reason, generator, run, err);
     if (!beside) {
         ms_progress_show(run);
     }
     if (status == MS_OK) {
-        status = make_curve(shape, &clump, run, generator, ms_input_max_voxels(how->input), err);
+        status = make_curve(shape, &clump, &remarks, run, generator, ms_input_max_voxels(how->input), err);
         ms_clump_free(&clump);
     }
     return status;
@@ -273,7 +285,6 @@ static ms_status make_templates(ms_scene_shape *shape, const char *title, const 
         ms_progress_open(&line);
         run.stage = NULL; /* of all runs the first is a small part */
     }
-    ms_progress_say_remarks(&run, &line);
     shape->input = ms_report_input_json(input);
     ms_status status;
     if (ms_scene_is_searched(goal, recipe)) {
@@ -428,6 +439,16 @@ ms_status ms_scene_choose(ms_scene *scene, const ms_goal *goal, ms_error *err)
     return status;
 }
 
+void ms_scene_say_remarks(const ms_scene *scene)
+{
+    for (size_t s = 0; s < scene->count; s++) {
+        const ms_scene_shape *shape = &scene->shape[s];
+        if (shape->remarks[shape->chosen - 1].text[0]) {
+            fprintf(stderr, "%s: %s\n", shape->row->path, shape->remarks[shape->chosen - 1].text);
+        }
+    }
+}
+
 void ms_scene_free(ms_scene *scene)
 {
     for (size_t s = 0; s < scene->count; s++) {
@@ -438,6 +459,7 @@ void ms_scene_free(ms_scene *scene)
         free(shape->clump);
         free(shape->score);
         free(shape->dice);
+        free(shape->remarks);
         json_decref(shape->input);
     }
     free(scene->shape);

@@ -34,9 +34,10 @@ typedef struct ms_scene_shape {
     size_t most;                /* spheres of the largest template */
     ms_clump *clump;            /* templates of 1 .. most spheres; empty where a search has not run them */
     ms_score *score;
-    double *dice;  /* D alone; NAN likewise */
-    json_t *input; /* as ms_report_input_json */
-    size_t chosen; /* number of spheres, after ms_scene_choose */
+    double *dice;      /* D alone; NAN likewise */
+    ms_error *remarks; /* what the method remarks on each; "" without */
+    json_t *input;     /* as ms_report_input_json */
+    size_t chosen;     /* number of spheres, after ms_scene_choose */
 } ms_scene_shape;
 
 /** A zeroed struct is empty. */
@@ -85,6 +86,9 @@ double ms_scene_gain(const ms_scene_shape *shape);
 
 /** The shape with the smallest sphere. */
 const ms_scene_shape *ms_scene_smallest(const ms_scene *scene);
+
+/** What the method remarks on the templates chosen, on standard error. */
+void ms_scene_say_remarks(const ms_scene *scene);
 
 /** The goal, a line for each shape, and what they come to. */
 void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal);

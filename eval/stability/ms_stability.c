@@ -63,6 +63,7 @@ static ms_status seek_number(ms_stability_run *run, ms_run job, ms_error *err)
 {
     ms_clump clump;
     ms_stop_reason reason;
+    job.remark = NULL; /* of its clump the number alone is kept */
     job.stop = (ms_stop){.radius = run->min_radius};
     job.stop.spheres =
         run->asked < MS_CLUMP_MAX_SPHERES / UNTIL_FACTOR ? run->asked * UNTIL_FACTOR : MS_CLUMP_MAX_SPHERES;
@@ -73,12 +74,14 @@ static ms_status seek_number(ms_stability_run *run, ms_run job, ms_error *err)
     return status;
 }
 
-static ms_status run_method(ms_stability_run *run, const ms_target *target, const ms_motion *motion,
+/* @param[out] remarks of the method */
+static ms_status run_method(ms_stability_run *run, ms_error *remarks, const ms_target *target, const ms_motion *motion,
                             const ms_stability *s, ms_error *err)
 {
     ms_clump clump;
     ms_run job = {.target = target, .settings = &run->method->settings, .seed = run->seed};
     job.stop = (ms_stop){.spheres = run->asked, .radius = run->min_radius};
+    ms_generator_keep_remarks(&job, remarks);
     const double start = omp_get_wtime();
     ms_status status = ms_generator_run(&clump, &run->reason, run->method->generator, &job, err);
     run->seconds = omp_get_wtime() - start;
@@ -100,6 +103,7 @@ void ms_stability_try(ms_stability_run *run, const ms_stability *s)
     const int threads = omp_get_max_threads();
     ms_changed c;
     ms_target target = {0};
+    ms_error remarks = {""};
     run->shape_checksum = s->input->checksum;
     run->shortest_side = ms_input_shortest_side(&s->input->mesh);
     ms_status status = apply_change(&c, run, s, &run->cause);
@@ -113,11 +117,11 @@ void ms_stability_try(ms_stability_run *run, const ms_stability *s)
     }
     if (status != MS_OK) {
         run->outcome = MS_OUTCOME_UNUSABLE;
-    } else if (run_method(run, &target, &c.motion, s, &run->cause) != MS_OK) {
+    } else if (run_method(run, &remarks, &target, &c.motion, s, &run->cause) != MS_OK) {
         run->outcome = MS_OUTCOME_FAILED;
     } else {
         run->outcome = run->metrics.spheres < run->asked ? MS_OUTCOME_SHORT : MS_OUTCOME_OK;
-        run->cause.text[0] = 0;
+        run->cause = remarks;
     }
     omp_set_num_threads(threads);
     ms_target_free(&target);
@@ -255,14 +259,37 @@ static int is_key(const char *column, const ms_stability_run *run)
     return run->change == &ms_changes[0] && strcmp(column, "seed") == 0;
 }
 
-/* What the statistics and the charts are made of. */
-static void take_field(ms_stability_run *run, const char *column, const char *text)
+/* Zero for a word that is none of them. */
+static int take_outcome(ms_outcome *outcome, const char *text)
+{
+    for (int o = 0; o < MS_OUTCOMES; o++) {
+        if (strcmp(text, OUTCOMES[o]) == 0) {
+            *outcome = (ms_outcome)o;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Empty where the mismatch was not reached. Zero for what is no number of spheres. */
+static int take_until(size_t *spheres, const char *text)
+{
+    const double n = ms_csv_number(text);
+    const int is_number = n >= 1 && n <= MS_CLUMP_MAX_SPHERES;
+    *spheres = is_number ? (size_t)n : 0;
+    return is_number || !text[0];
+}
+
+/* What the statistics and the charts are made of. Zero if the field cannot be. */
+static int take_field(ms_stability_run *run, const char *column, const char *text)
 {
     if (strcmp(column, "status") == 0) {
-        for (int o = 0; o < MS_OUTCOMES; o++) {
-            run->outcome = strcmp(text, OUTCOMES[o]) == 0 ? (ms_outcome)o : run->outcome;
-        }
-    } else if (strcmp(column, "voxel_size") == 0) {
+        return take_outcome(&run->outcome, text);
+    }
+    if (strcmp(column, "n_until") == 0) {
+        return take_until(&run->spheres_until, text);
+    }
+    if (strcmp(column, "voxel_size") == 0) {
         run->voxel_size = ms_csv_number(text);
     } else if (strcmp(column, ms_measure_column(&ms_measures[MS_MEASURE_DICE],
                                                 ms_measures[MS_MEASURE_DICE].in_stability)) == 0) {
@@ -270,14 +297,12 @@ static void take_field(ms_stability_run *run, const char *column, const char *te
     } else if (strcmp(column, ms_measure_column(&ms_measures[MS_MEASURE_INERTIA],
                                                 ms_measures[MS_MEASURE_INERTIA].in_stability)) == 0) {
         run->metrics.inertia.weighted = ms_csv_number(text);
-    } else if (strcmp(column, "n_until") == 0) {
-        const double n = ms_csv_number(text); /* NAN where there is none */
-        run->spheres_until = n >= 1 && n <= MS_CLUMP_MAX_SPHERES ? (size_t)n : 0;
     } else if (strcmp(column, "spheres_fnv1a") == 0) {
         run->checksum = strtoull(text, NULL, 16);
     } else if (strcmp(column, "cause") == 0) {
         snprintf(run->cause.text, sizeof run->cause.text, "%s", text);
     }
+    return 1;
 }
 
 ms_status ms_stability_read_row(ms_stability_run *run, const char *row, ms_error *err)
@@ -294,8 +319,11 @@ ms_status ms_stability_read_row(ms_stability_run *run, const char *row, ms_error
                              "is of another run: %s should be '%.200s'; --resume takes shapes, methods, numbers and "
                              "flags as they were",
                              header.field[c], own.field[c]);
-        } else {
-            take_field(run, header.field[c], there.field[c]);
+        } else if (!take_field(run, header.field[c], there.field[c])) {
+            status = ms_fail(err, MS_ERR_FORMAT,
+                             "is damaged: %s cannot be '%.60s'; take the lines from there on out, and --resume makes "
+                             "them anew",
+                             header.field[c], there.field[c]);
         }
     }
     free(header.line);

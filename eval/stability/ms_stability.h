@@ -51,7 +51,7 @@ typedef struct ms_stability_run {
     size_t spheres_until; /* number with which the method met the mismatch asked for; 0: not with 10 times `asked` */
     double seconds;       /* of the method */
     uint64_t checksum;    /* of the spheres, moved back */
-    ms_error cause;       /* "" unless failed or unusable */
+    ms_error cause;       /* why it failed or is unusable; of the others what the method remarks; "" without */
 } ms_stability_run;
 
 /**
@@ -87,7 +87,8 @@ char *ms_stability_line(const ms_stability_run *run);
  * Takes what a run gave from its row: outcome, D, inertia error, n_until, checksum and cause.
  *
  * @param[in,out] run what it is, which the row must say, too
- * @return MS_OK; MS_ERR_ARG for a row of another run, a sentence that follows "line N"; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for a row of another run, MS_ERR_FORMAT for one that is damaged, a sentence that follows
+ *         "line N"; MS_ERR_NOMEM
  */
 ms_status ms_stability_read_row(ms_stability_run *run, const char *row, ms_error *err);
 

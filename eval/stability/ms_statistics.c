@@ -39,7 +39,10 @@ static void count_outcome(ms_statistics_group *g, const ms_stability_run *run)
     g->failed += run->outcome == MS_OUTCOME_FAILED;
     g->shorter += run->outcome == MS_OUTCOME_SHORT;
     g->runs += run->outcome != MS_OUTCOME_UNUSABLE;
-    if (run->cause.text[0] && (!g->cause || (!was_failed && g->failed))) {
+    if (run->cause.text[0] && ms_stability_gave(run)) {
+        g->remarked++;
+        g->remark = g->remark ? g->remark : &run->cause;
+    } else if (run->cause.text[0] && (!g->cause || (!was_failed && g->failed))) {
         g->cause = &run->cause;
     }
 }
@@ -184,6 +187,10 @@ void ms_statistics_print(FILE *stream, const ms_statistics_group *groups, size_t
             fprintf(stream, "%s, %s, %s: %zu failed, %zu unusable: %s\n", at->shape,
                     ms_stability_label(at->method).text, at->change->name, at->failed, at->unusable, at->cause->text);
         }
+        if (at->shape && at->remark) {
+            fprintf(stream, "%s, %s, %s: %zu with a remark: %s\n", at->shape, ms_stability_label(at->method).text,
+                    at->change->name, at->remarked, at->remark->text);
+        }
     }
 }
 
@@ -203,8 +210,9 @@ static json_t *group_json(const ms_statistics_group *g)
     const struct {
         const char *key;
         size_t value;
-    } counts[] = {{"runs", g->runs},     {"identical", g->identical}, {"failed", g->failed},
-                  {"short", g->shorter}, {"unusable", g->unusable},   {"not_reached", g->not_reached}};
+    } counts[] = {{"runs", g->runs},        {"identical", g->identical}, {"failed", g->failed},
+                  {"short", g->shorter},    {"unusable", g->unusable},   {"not_reached", g->not_reached},
+                  {"remarked", g->remarked}};
     json_t *json = json_object();
     int failed = json_object_set_new(json, "shape", g->shape ? ms_report_text(g->shape) : json_null());
     failed |= json_object_set_new(json, "method", ms_report_text(ms_stability_label(g->method).text));
@@ -217,6 +225,7 @@ static json_t *group_json(const ms_statistics_group *g)
     failed |= json_object_set_new(json, "n_until", statistics_json(&g->until));
     failed |= json_object_set_new(json, "worst", g->worst ? ms_report_text(g->worst) : json_null());
     failed |= json_object_set_new(json, "cause", g->cause ? ms_report_text(g->cause->text) : json_null());
+    failed |= json_object_set_new(json, "remark", g->remark ? ms_report_text(g->remark->text) : json_null());
     return ms_report_whole(json, failed);
 }
 

@@ -21,13 +21,15 @@ typedef struct ms_statistics_group {
     const ms_change *change;
     size_t runs; /* without the unusable ones */
     size_t failed, shorter, unusable;
-    size_t identical;      /* the spheres of the unchanged shape, to the last bit */
-    size_t not_reached;    /* of --until-dice */
-    ms_statistics dice;    /* D; of all shapes: D over that of the unchanged shape */
-    ms_statistics inertia; /* weighted mean error */
-    ms_statistics until;   /* numbers of spheres */
-    const char *worst;     /* of all shapes: where D over the unchanged one is largest; NULL without */
-    const ms_error *cause; /* of the first run that failed, or else was unusable; NULL without */
+    size_t identical;       /* the spheres of the unchanged shape, to the last bit */
+    size_t not_reached;     /* of --until-dice */
+    ms_statistics dice;     /* D; of all shapes: D over that of the unchanged shape */
+    ms_statistics inertia;  /* weighted mean error */
+    ms_statistics until;    /* numbers of spheres */
+    const char *worst;      /* of all shapes: where D over the unchanged one is largest; NULL without */
+    const ms_error *cause;  /* of the first run that failed, or else was unusable; NULL without */
+    size_t remarked;        /* of the other runs: the method has a remark on the clump */
+    const ms_error *remark; /* the first; NULL without */
 } ms_statistics_group;
 
 /**

@@ -71,7 +71,7 @@ ms_status ms_view_page_command(FILE *stream, int argc, char *const *argv, ms_err
     int written = 0;
     if (words) {
         put_words(words, argc, argv);
-        written = fclose(words) == 0;
+        written = fclose(words) == 0 && line; /* glibc closes well without memory, too */
     }
     if (written) {
         fputs("<pre id=\"command\">", stream);

@@ -8,38 +8,23 @@
 
 #include "base/ms_escape.h"
 #include "base/ms_vector.h"
+#include "ms_view_base64.h"
 #include "ms_view_shape.h"
 
 /* Cells of the lattice of distances along its longest side, and points at which a sphere is looked at. */
 enum { CELLS = 40, SAMPLES = 256 };
 
 /* All that is shown lies in a ball: where it is, in the clump's unit. */
-typedef struct frame {
+typedef struct placing {
     double centre[3], scale;
-} frame;
-
-static void put_base64(FILE *stream, const void *data, size_t size)
-{
-    static const char SIGN[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const uint8_t *byte = data;
-    putc('"', stream);
-    for (size_t at = 0; at < size; at += 3) {
-        uint32_t bits = 0;
-        for (size_t k = 0; k < 3; k++) {
-            bits = bits << 8 | (at + k < size ? byte[at + k] : 0);
-        }
-        for (size_t k = 0; k < 4; k++) {
-            putc(at + k <= size ? SIGN[bits >> (18 - 6 * k) & 63] : '=', stream);
-        }
-    }
-    putc('"', stream);
-}
+} placing;
 
 /* Little-endian, as all machines are for which this is built; the test of the program reads it back. */
 static void put_array(FILE *stream, const char *name, const void *data, size_t size)
 {
-    fprintf(stream, ",\"%s\":", name);
-    put_base64(stream, data, size);
+    fprintf(stream, ",\"%s\":\"", name);
+    ms_view_base64_put(stream, data, size);
+    putc('"', stream);
 }
 
 static void put_vector(FILE *stream, const char *name, const double v[3])
@@ -64,9 +49,9 @@ static ms_status put_name(FILE *stream, const char *name, ms_error *err)
     return text ? MS_OK : MS_ERR_NOMEM;
 }
 
-static frame find_frame(const ms_clump *clump, const ms_mesh *mesh)
+static placing find_placing(const ms_clump *clump, const ms_mesh *mesh)
 {
-    frame f = {.scale = 0};
+    placing f = {.scale = 0};
     double lo[3], hi[3];
     ms_clump_box(lo, hi, clump);
     if (mesh) {
@@ -90,14 +75,14 @@ static frame find_frame(const ms_clump *clump, const ms_mesh *mesh)
     return f;
 }
 
-static void to_frame(double out[3], const frame *f, const double place[3])
+static void place_in(double out[3], const placing *f, const double place[3])
 {
     for (int k = 0; k < 3; k++) {
         out[k] = (place[k] - f->centre[k]) / f->scale;
     }
 }
 
-static ms_status put_spheres(FILE *stream, const frame *f, const ms_clump *clump, ms_error *err)
+static ms_status put_spheres(FILE *stream, const placing *f, const ms_clump *clump, ms_error *err)
 {
     float *value = malloc(4 * clump->n_spheres * sizeof *value);
     if (!value) {
@@ -105,7 +90,7 @@ static ms_status put_spheres(FILE *stream, const frame *f, const ms_clump *clump
     }
     for (size_t s = 0; s < clump->n_spheres; s++) {
         double at[3];
-        to_frame(at, f, clump->sphere[s].centre);
+        place_in(at, f, clump->sphere[s].centre);
         for (int k = 0; k < 3; k++) {
             value[4 * s + (size_t)k] = (float)at[k];
         }
@@ -167,7 +152,7 @@ static ms_status put_protrusions(FILE *stream, const ms_view_shape *shape, const
 }
 
 /* Corners as parts of the box; faces in as few bits as number them. */
-static ms_status put_mesh(FILE *stream, const frame *f, const ms_view_shape *shape, ms_error *err)
+static ms_status put_mesh(FILE *stream, const placing *f, const ms_view_shape *shape, ms_error *err)
 {
     const ms_mesh *mesh = shape->shown;
     const size_t corners = 3 * mesh->n_vertices, faces = 3 * mesh->n_triangles;
@@ -178,8 +163,8 @@ static ms_status put_mesh(FILE *stream, const frame *f, const ms_view_shape *sha
         return ms_fail(err, MS_ERR_NOMEM, "no memory to show %zu triangles", mesh->n_triangles);
     }
     ms_mesh_box(lo, hi, mesh);
-    to_frame(low, f, lo);
-    to_frame(high, f, hi);
+    place_in(low, f, lo);
+    place_in(high, f, hi);
     for (size_t c = 0; c < corners; c++) {
         const double span = hi[c % 3] - lo[c % 3];
         part[c] = (uint16_t)(span > 0 ? 65535 * (mesh->vertex[c / 3][c % 3] - lo[c % 3]) / span + 0.5 : 0);
@@ -219,7 +204,7 @@ static double fill_field(float *value, const int n[3], const double lo[3], doubl
 }
 
 /* A cell around the clump; of what is inside, a cell's depth is enough to tell. */
-static ms_status put_field(FILE *stream, const frame *f, const ms_view_shape *shape, const ms_clump *clump,
+static ms_status put_field(FILE *stream, const placing *f, const ms_view_shape *shape, const ms_clump *clump,
                            ms_error *err)
 {
     double lo[3], hi[3], low[3], side = 0;
@@ -242,7 +227,7 @@ static ms_status put_field(FILE *stream, const frame *f, const ms_view_shape *sh
         for (size_t p = 0; p < points; p++) {
             part[p] = (uint8_t)(255 * (fmax(least, (double)value[p]) - least) / (most - least) + 0.5);
         }
-        to_frame(low, f, lo);
+        place_in(low, f, lo);
         fprintf(stream, ",\"field\":{\"n\":[%d,%d,%d],\"h\":%.9g,\"range\":[%.9g,%.9g]", n[0], n[1], n[2], h / f->scale,
                 least / f->scale, most / f->scale);
         put_vector(stream, "low", low);
@@ -254,7 +239,7 @@ static ms_status put_field(FILE *stream, const frame *f, const ms_view_shape *sh
     return value && part ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory to show distances");
 }
 
-static ms_status put_shape(FILE *stream, const ms_view_scene *scene, const frame *f, const ms_view_shape *shape,
+static ms_status put_shape(FILE *stream, const ms_view_scene *scene, const placing *f, const ms_view_shape *shape,
                            ms_error *err)
 {
     ms_status status = put_mesh(stream, f, shape, err);
@@ -271,7 +256,7 @@ ms_status ms_view_scene_write(FILE *stream, const ms_view_scene *scene, ms_error
     ms_view_shape shape = {0};
     ms_status status = scene->target ? ms_view_shape_make(&shape, scene->target, scene->most_triangles, err) : MS_OK;
     if (status == MS_OK) {
-        const frame f = find_frame(scene->clump, shape.mesh);
+        const placing f = find_placing(scene->clump, shape.mesh);
         fprintf(stream, "{\"ordered\":%s,\"scale\":%.9g", scene->ordered ? "true" : "false", f.scale);
         put_vector(stream, "centre", f.centre);
         status = put_name(stream, scene->name, err);

@@ -24,8 +24,8 @@ typedef struct ms_view_scene {
  *     name        text
  *     spheres     x, y, z, r, single precision
  *     mass        of each sphere, kg, single precision; where there are masses
- *     protrusion  of each sphere, how far what is exposed of it is outside the shape at most, in the clump's unit, single
- *                 precision; where the shape is closed
+ *     protrusion  of each sphere, how far what is exposed of it is outside the shape at most, in the clump's unit,
+ *                 single precision; where the shape is closed
  *     mesh        low, high: its box; corners: parts of it, 16 bits; faces: 16 bits, 32 where there are over 65536
  *                 corners; of: triangles that the shape has
  *     field       n, low, h: a lattice around the clump; values: signed distance to the shape, outside positive, parts

@@ -114,8 +114,10 @@ function paint() {
   let title, low, high;
   if (surface) {
     const gaps = scene.mesh ? findGaps() : new Float32Array();
-    const gap = gaps.reduce((a, b) => Math.max(a, b), 0);
-    [title, low, high] = ['distance from the other surface', 0, Math.max(gap, findProtrusion()) || 1];
+    const field = scene.raw.field, gap = gaps.reduce((a, b) => Math.max(a, b), 0);
+    [title, low, high] = field ? ['distance from the other surface', 0, Math.max(gap, findProtrusion()) || 1]
+      : ['gap: distance of the shape from the spheres', 0, gap || 1];
+    fill(buffers.value, new Float32Array(scene.spheres.length / 4)); /* seen where there is no field */
     scene.most = high;
     fill(buffers.gap, gaps.map(x => x / high));
     high *= scene.raw.scale;
@@ -212,12 +214,11 @@ function drawMesh(box, alpha) {
     return;
   }
   gl.enable(gl.BLEND);
-  gl.enable(gl.CULL_FACE);
-  gl.depthMask(false);
-  for (const side of [gl.FRONT, gl.BACK]) { /* what is behind first */
-    gl.cullFace(side);
-    draw();
+  if (scene.protrusion) { /* a closed one: what looks away is behind the spheres */
+    gl.enable(gl.CULL_FACE);
   }
+  gl.depthMask(false);
+  draw();
   gl.depthMask(true);
   gl.disable(gl.CULL_FACE);
   gl.disable(gl.BLEND);
@@ -292,6 +293,66 @@ function show(which) {
   paint();
   say();
   redraw();
+}
+
+/* ---- reports: a tile and a row for each scene ---- */
+function open(which) {
+  show(which);
+  byId('viewer').scrollIntoView();
+}
+
+/* Drawn small before the viewer has its size. */
+function fillTiles() {
+  const tiles = byId('tiles');
+  [canvas.width, canvas.height] = [150, 150];
+  layout = 'clump';
+  scenes.forEach((raw, which) => {
+    const tile = document.createElement('button'), picture = document.createElement('canvas');
+    [picture.width, picture.height] = [150, 150];
+    show(which);
+    draw();
+    picture.getContext('2d').drawImage(canvas, 0, 0);
+    tile.append(picture, raw.name);
+    tile.dataset.scene = which;
+    tile.addEventListener('click', () => open(which));
+    tiles.append(tile);
+  });
+  layout = 'both';
+}
+
+/* Numbers by size, all else as text; empty fields last. */
+function sort(table, column, up) {
+  const text = row => row.cells[column].textContent, rows = [...table.tBodies[0].rows];
+  rows.sort((a, b) => {
+    const s = text(a), t = text(b), both = s !== '' && t !== '';
+    return !both ? (s === '') - (t === '') : up * (isNaN(s) || isNaN(t) ? s.localeCompare(t) : s - t);
+  });
+  table.tBodies[0].append(...rows);
+}
+
+function listenToTable() {
+  const table = byId('rows');
+  [...table.tHead.rows[0].cells].forEach((cell, column) => cell.addEventListener('click', () => {
+    cell.dataset.up = cell.dataset.up === '1' ? '-1' : '1';
+    sort(table, column, Number(cell.dataset.up));
+  }));
+  for (const row of table.tBodies[0].rows) {
+    if (gl && row.dataset.scene) {
+      row.addEventListener('click', () => open(Number(row.dataset.scene)));
+    }
+  }
+  byId('filter').addEventListener('input', e => {
+    const words = e.target.value.toLowerCase().split(/\s+/), shown = new Set();
+    for (const row of table.tBodies[0].rows) {
+      row.hidden = !words.every(word => row.textContent.toLowerCase().includes(word));
+      if (!row.hidden) {
+        shown.add(row.dataset.scene);
+      }
+    }
+    for (const tile of byId('tiles').children) {
+      tile.hidden = !shown.has(tile.dataset.scene);
+    }
+  });
 }
 
 function start() {
@@ -415,7 +476,13 @@ if (!gl) {
 } else {
   start();
   reset();
+  if (byId('tiles')) {
+    fillTiles();
+  }
   listen();
   show(0);
+}
+if (byId('rows')) {
+  listenToTable();
 }
 })();

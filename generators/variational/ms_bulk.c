@@ -151,7 +151,7 @@ typedef struct spheres {
     double dice, cost;
 } spheres;
 
-static ms_status measure_spheres(spheres *s, const ms_surface_fit *fit, ms_error *err)
+static ms_status measure_start(spheres *s, const ms_surface_fit *fit, ms_error *err)
 {
     const ms_status status = ms_bulk_dice(&s->dice, s->ball, s->count, fit, err);
     const double excess = status == MS_OK && fit->gap ? ms_gap_excess(fit->gap, s->ball, s->count) : 0;
@@ -159,7 +159,7 @@ static ms_status measure_spheres(spheres *s, const ms_surface_fit *fit, ms_error
     return status;
 }
 
-static void copy_spheres(spheres *to, const spheres *from)
+static void copy_balls(spheres *to, const spheres *from)
 {
     const spheres copy = {to->ball, from->count, from->dice, from->cost};
     memcpy(to->ball, from->ball, from->count * sizeof *from->ball);
@@ -169,7 +169,7 @@ static void copy_spheres(spheres *to, const spheres *from)
 static void keep_better(spheres *best, const spheres *s)
 {
     if (s->cost < best->cost) {
-        copy_spheres(best, s);
+        copy_balls(best, s);
     }
 }
 
@@ -188,7 +188,7 @@ static ms_status settle_within_bounds(spheres *s, ms_surface_fit *fit, ms_error 
         status = ms_connect_hold(s->ball, &s->count, fit, err);
     }
     fit->slant = 0;
-    return status == MS_OK ? measure_spheres(s, fit, err) : status;
+    return status == MS_OK ? measure_start(s, fit, err) : status;
 }
 
 /* Nothing is to be held that a fit may lose. */
@@ -213,7 +213,7 @@ static ms_status fit_turns(spheres *best, spheres *s, int from, int to, ms_surfa
         status = ms_surface_fit_steps(fit, s->ball, s->count, STEPS, DAMPING[turn], err);
         fit->slant = 0;
         if (status == MS_OK) {
-            status = measure_spheres(s, fit, err);
+            status = measure_start(s, fit, err);
         }
         if (status == MS_OK && is_free(fit)) {
             keep_better(best, s);
@@ -229,7 +229,7 @@ static ms_status begin_start(spheres *best, spheres *s, ms_surface_fit *fit, ms_
     for (size_t b = 0; b < s->count; b++) {
         s->ball[b].radius = fmax(s->ball[b].radius, fit->bounds.least);
     }
-    const ms_status status = measure_spheres(s, fit, err);
+    const ms_status status = measure_start(s, fit, err);
     if (status == MS_OK && is_free(fit)) {
         keep_better(best, s);
     }
@@ -271,18 +271,18 @@ static ms_status take_given(ms_ball *ball, size_t *count, const ms_bulk_other *o
 
 /* The spheres that there are, within their bounds: pieces as they are, since fits may pull spheres from where they may
  * be; and pieces that are fitted to one. */
-static ms_status settle_first(spheres *best, spheres *s, const spheres *first, ms_surface_fit *fit, ms_error *err)
+static ms_status settle_given(spheres *best, spheres *s, const spheres *first, ms_surface_fit *fit, ms_error *err)
 {
     ms_status status = MS_OK;
     if (fit->connected) {
-        copy_spheres(s, first);
+        copy_balls(s, first);
         status = ms_connect_hold(s->ball, &s->count, fit, err);
-        status = status == MS_OK ? measure_spheres(s, fit, err) : status;
+        status = status == MS_OK ? measure_start(s, fit, err) : status;
         if (status == MS_OK) {
             keep_better(best, s);
         }
     }
-    copy_spheres(s, first);
+    copy_balls(s, first);
     if (status == MS_OK) {
         status = settle_within_bounds(s, fit, err);
     }
@@ -298,11 +298,11 @@ static ms_status race_starts(spheres *best, spheres *one, spheres *another, cons
 {
     const int *across = fit->mirror.across;
     const size_t images = (size_t)1 << (across[0] + across[1] + across[2]);
-    ms_status status = measure_spheres(best, fit, err);
-    copy_spheres(another, best);
+    ms_status status = measure_start(best, fit, err);
+    copy_balls(another, best);
     best->cost = HUGE_VAL; /* not within bounds as yet */
     if (status == MS_OK) {
-        status = settle_first(best, one, another, fit, err);
+        status = settle_given(best, one, another, fit, err);
     }
     if (status == MS_OK) {
         status = begin_start(best, one, fit, err);

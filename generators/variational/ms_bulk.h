@@ -32,8 +32,8 @@ ms_status ms_bulk_cluster(ms_ball *ball, size_t *count, const ms_coarse_view *vo
  * Fits spheres so that D itself is least, of which |S xor U| is the numerator alone. Where D is far from 0 that is not
  * the same: the best spheres of a thin wall are so thick that |U| = 2 |S|. D = |S xor U| / (|S| + |U|) is least where
  * |S xor U| - D |U| is, D being the least one, which is sought by turns. Both the spheres and others (large ones in the
- * place of clusters of the volume, or those given) are fitted for 40 steps, and the better ones for 60 more, within bounds all of them. The
- * best of all that were found are kept.
+ * place of clusters of the volume, or those given) are fitted for 40 steps, and the better ones for 60 more, within
+ * bounds all of them. The best of all that were found are kept.
  *
  * @param[in,out] ball  `count` spheres, in voxels
  * @param         room  for spheres in ball: as many as are wanted or given

@@ -5,8 +5,8 @@
 #include "voxel/ms_target.h"
 
 /**
- * Moves an inscribed sphere away from where it touches the surface, as long as it grows by half of what it moves: to the
- * medial axis, not along it.
+ * Moves an inscribed sphere away from where it touches the surface, as long as it grows by half of what it moves: to
+ * the medial axis, not along it.
  *
  * @param[in,out] ball   its centre, inside a closed mesh, in voxels; gets its radius
  * @param         target with its mesh

@@ -9,13 +9,13 @@
 #include "ms_coarse_view.h"
 #include "ms_coverage_count.h"
 
-/* It is counted on every k-th voxel so that the mean radius is about as many of them, until the last moves. A finer count
- * takes longer and gains little. */
+/* It is counted on every k-th voxel so that the mean radius is about as many of them, until the last moves. A finer
+ * count takes longer and gains little. */
 static const double RESOLUTION = 12;
 enum { MOST_STEP = 6 };
 
-/* Steps of the moves, in those: the first, of spheres about one that was added or dropped, while others may yet come, and
- * the last of all. */
+/* Steps of the moves, in those: the first, of spheres about one that was added or dropped, while others may yet come,
+ * and the last of all. */
 static const double FIRST = 4, AGAIN = 2, ROUGH = 0.5, LAST = 0.1;
 
 /* Part of a step within which a climb has led back. */
@@ -80,7 +80,7 @@ static void mark_near(inscribed *s, const ms_ball *changed, double reach)
 
 /* The sphere after one of 8 moves and the climb from there: a step to either side along each axis, or none, or the way
  * up that the radii about it tell: in corners the axes lead nowhere. 0 if there is none such. */
-static int try_move(ms_ball *out, double radius[6], const ms_ball *ball, int which, double step, const inscribed *s)
+static int climb_from(ms_ball *out, double radius[6], const ms_ball *ball, int which, double step, const inscribed *s)
 {
     const double slope[3] = {radius[0] - radius[1], radius[2] - radius[3], radius[4] - radius[5]};
     const double steepest = sqrt(ms_dot(slope, slope));
@@ -100,7 +100,7 @@ static int try_move(ms_ball *out, double radius[6], const ms_ball *ball, int whi
 }
 
 /* Makes the best move of a sphere; 0 if none is better than to stay. */
-static int move_one(inscribed *s, size_t b, double step)
+static int move_on_axis(inscribed *s, size_t b, double step)
 {
     const ms_ball before = s->ball[b];
     ms_ball best = before, tried;
@@ -109,7 +109,7 @@ static int move_one(inscribed *s, size_t b, double step)
     const int64_t stay = find_gain(s, &before);
     int64_t most = stay;
     for (int which = 0; which < 8 && step < before.radius; which++) {
-        const int64_t gain = try_move(&tried, radius, &before, which, step, s) ? find_gain(s, &tried) : stay;
+        const int64_t gain = climb_from(&tried, radius, &before, which, step, s) ? find_gain(s, &tried) : stay;
         if (gain > most) {
             most = gain;
             best = tried;
@@ -133,7 +133,7 @@ static void move_marked(inscribed *s, uint8_t *ever, double first, double last)
                 const ms_ball before = s->ball[b];
                 const int is_stale = s->stale[b];
                 s->stale[b] = 0;
-                if (is_stale && move_one(s, b, step)) {
+                if (is_stale && move_on_axis(s, b, step)) {
                     moved++;
                     mark_near(s, &before, step);
                     mark_near(s, &s->ball[b], step);
@@ -290,7 +290,7 @@ static ms_status begin_count(inscribed *s, int step, ms_error *err)
     return status;
 }
 
-static int choose_step(const inscribed *s)
+static int choose_count_step(const inscribed *s)
 {
     double sum = 0;
     for (size_t b = 0; b < s->count; b++) {
@@ -302,7 +302,7 @@ static int choose_step(const inscribed *s)
 
 static ms_status improve_all(inscribed *s, ms_ball *kept, uint8_t *ever, ms_error *err)
 {
-    ms_status status = begin_count(s, choose_step(s), err);
+    ms_status status = begin_count(s, choose_count_step(s), err);
     if (status == MS_OK) {
         memset(s->stale, 1, s->count);
         move_marked(s, ever, FIRST, ROUGH);

@@ -104,7 +104,7 @@ static ms_status add_gap_losses(double *loss, const ms_ball *ball, size_t count,
     return MS_OK;
 }
 
-/* By the exposed surface instead, where a loss is less than that: elsewhere voxels say enough. All, where D is fitted. */
+/* By the exposed surface instead, where a loss is less than that: elsewhere voxels say enough. All, with a slant. */
 static ms_status sharpen_losses(double *loss, double than, const ms_ball *ball, size_t count, const ms_surface_fit *fit,
                                 ms_error *err)
 {

@@ -53,7 +53,8 @@ static void pareto_against_brute_force(void **state)
 static void pareto_without_numbers(void **state)
 {
     (void)state;
-    const ms_chart_point point[] = {{(double)NAN, 0, ""}, {2.385, 1.7, "a"}, {0, HUGE_VAL, ""}, {-HUGE_VAL, 0, ""}};
+    const ms_chart_point point[] = {
+        {(double)NAN, 0, "", 0}, {2.385, 1.7, "a", 0}, {0, HUGE_VAL, "", 0}, {-HUGE_VAL, 0, "", 0}};
     ms_chart_point front[4];
     assert_int_equal(ms_chart_pareto(front, point, 4), 1);
     assert_string_equal(front[0].label, "a");
@@ -79,8 +80,9 @@ static void what_the_files_hold(void **state)
     (void)state;
     char text[8192];
     ms_error err;
-    const ms_chart_point first[] = {{1, 0, "a"}, {10, 0.25, "i\"t"}, {0, 0.5, "gone"}, {(double)NAN, 1, "gone"}};
-    const ms_chart_point none[] = {{-1, 1, "gone"}};
+    const ms_chart_point first[] = {
+        {1, 0, "a", 0}, {10, 0.25, "i\"t", 0}, {0, 0.5, "gone", 0}, {(double)NAN, 1, "gone", 0}};
+    const ms_chart_point none[] = {{-1, 1, "gone", 0}};
     const ms_chart_series series[] = {{"nothing", MS_CHART_CURVE, 1, none}, {"o'ne\n", MS_CHART_CURVE, 4, first}};
     const ms_chart chart = {.title = "t",
                             .x_label = "x",
@@ -101,11 +103,30 @@ static void what_the_files_hold(void **state)
     assert_null(strstr(text, "nothing"));
 }
 
+/* A band spans its axis up to its upper edge, and has the colour of the curve behind it. */
+static void a_band_has_two_edges(void **state)
+{
+    (void)state;
+    char text[8192];
+    ms_error err;
+    const ms_chart_point band[] = {{.x = 1, .y = 2, .top = 6}, {.x = 2, .y = 3, .top = 12}};
+    const ms_chart_point curve[] = {{.x = 1, .y = 4}, {.x = 2, .y = 5}};
+    const ms_chart_series series[] = {{"s", MS_CHART_BAND, 2, band}, {"s", MS_CHART_CURVE, 2, curve}};
+    const ms_chart chart = {.title = "t", .x_label = "x", .y_label = "y", .n_series = 2, .series = series};
+    assert_int_equal(ms_chart_write(&chart, "test-band", &err), MS_OK);
+    read_text(text, sizeof text, "test-band.dat");
+    assert_non_null(strstr(text, "1 2 6 \"\"\n2 3 12 \"\"\n"));
+    read_text(text, sizeof text, "test-band.gp");
+    assert_non_null(strstr(text, "set yrange [1.5:12.5]"));
+    assert_non_null(strstr(text, "using 1:2:3 with filledcurves fc rgb '#000000'"));
+    assert_non_null(strstr(text, "lc rgb '#000000' title"));
+}
+
 static void what_is_refused(void **state)
 {
     (void)state;
     ms_error err;
-    const ms_chart_point point[] = {{1, 1, ""}};
+    const ms_chart_point point[] = {{1, 1, "", 0}};
     const ms_chart_series series[] = {{"s", MS_CHART_CURVE, 0, point}};
     ms_chart chart = {.title = "t", .x_label = "x", .y_label = "y", .n_series = 1, .series = series};
     assert_int_equal(ms_chart_write(&chart, "test-none", &err), MS_ERR_ARG);
@@ -122,6 +143,7 @@ int main(void)
         cmocka_unit_test(pareto_against_brute_force),
         cmocka_unit_test(pareto_without_numbers),
         cmocka_unit_test(what_the_files_hold),
+        cmocka_unit_test(a_band_has_two_edges),
         cmocka_unit_test(what_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

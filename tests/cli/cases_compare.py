@@ -307,7 +307,8 @@ class Refusals(Compare):
                 (("box.obj", "--repeat", "0"), "--repeat"),
                 (("box.obj", "--clump", "box.obj"), "NAME=FILE"),
                 (("box.obj", "--clump", "a=missing.csv"), "missing.csv"),
-                (("box.obj", "box.obj", "--clump", "a=two.csv"), "one shape")):
+                (("box.obj", "box.obj", "-n", "1"), "box.obj is there twice"),
+                (("box.obj", "two.obj", "--clump", "a=two.csv"), "a clump of one shape")):
             with self.subTest(args=args):
                 self.write("two.csv", "1,1,0.5,0.5\n")
                 self.assert_refused("compare", *args, code=2, says=(says,))

@@ -104,6 +104,28 @@ class Correct(Case):
         self.write("mixed.csv", "x,y,z,r,mass,density,carrier\n0,0,0,1,1,1,0\n0,0,0,0.1,1,1,1\n0,0,1,1,1,1,0\n")
         self.assert_refused("convert", "mixed.csv", "-o", "e.json", code=1, says=("behind all spheres",))
 
+    def test_equal_volume(self):
+        """One ball for a box of 6 mm^3; the scores are those of the scaled clump, and so are the masses."""
+        radius = (6 * 3 / (4 * math.pi)) ** (1 / 3)
+        self.write("ball.csv", "2.5,2,1.5,0.5\n")
+        flags = ("--target", "box.obj", "--equal-volume")
+        run = self.mskit("correct", "ball.csv", *flags, "--density", 1, "-o", "d.csv")
+        self.assertIn(f"equal volume                       scaled by {2 * radius:.6g}; volume of the union 6,", run.out)
+        self.assertIn(f"mean width of the clump            {2 * radius:.6g}", run.out)
+        self.assert_close(self.rows("d.csv")[0][3], radius, 1e-12)
+        run = self.mskit("generate", "box.obj", "-g", "mss", *GRID, "-n", 10, "--equal-volume", "--json", "-o", "e.csv")
+        done = run.json["equal_volume"]
+        self.assert_close(done["volume"], 6, 1e-12)
+        self.assertGreater(done["scale"], 1)
+        score = self.mskit("score", "e.csv", "--target", "box.obj", *GRID, "--json").json
+        self.assertEqual(score["scores"]["dice"], run.json["scores"]["dice"])
+
+    def test_equal_volume_refused(self):
+        self.assert_refused("correct", "c.csv", "--properties", "union", "--density", 1, "--equal-volume", "-o", "d.csv",
+                            code=2, says=("--equal-volume",))
+        self.assert_refused("generate", "box.obj", "--equal-volume", "-n", 5, "--curve", "d.csv", code=2,
+                            says=("--equal-volume",))
+
     def test_units(self):
         mass = {}
         for flags in (("--unit", "um"), ("--scale", "1e-6"), ("--unit", "m"), ()):
@@ -270,10 +292,12 @@ class Correct(Case):
         self.assert_refused("correct", "c.csv", "--target", "missing.stl", "--density", "1", "-o", "e.csv", code=1,
                             says=("missing.stl",))
         self.assert_refused("convert", "c.csv", "-o", "t.liggghts", code=1, says=("mskit correct",))
+        self.assert_refused("convert", "c.csv", "-o", "e.csv", "--density", "5", code=1, says=("c.csv has no masses",))
         self.assert_refused("convert", "c.csv", "--frame", "c.csv", "-o", "e.csv", code=1, says=("no JSON",))
 
     def test_wrong_usage(self):
         whole = ("correct", "c.csv", "--target", "box.obj", "--density", "1")
+        union = ("correct", "c.csv", "--properties", "union", "--density", "1", "-o", "d.csv")
         for args, says in (
                 (("correct", "c.csv", "-o", "d.csv", "--density", "1"), "--target SHAPE or --properties union"),
                 (("correct", "c.csv", "-o", "d.csv", "--target", "box.obj"), "--density"),
@@ -282,6 +306,8 @@ class Correct(Case):
                 ((*whole, "--unit", "ft", "-o", "d.csv"), "'ft'"),
                 ((*whole, "--unit", "m", "--scale", "1", "-o", "d.csv"), "exclude"),
                 ((*whole, "--axes", "x", "-o", "d.csv"), "principal, input"),
+                ((*union, "--weld", "0.1"), "--weld is of a shape"), ((*union, "--label", "2"), "--label is of a shape"),
+                ((*union, "--cells", "20"), "--cells is of a shape"),
                 ((*whole, "--format", "csv", "--format", "csv"), "twice"),
                 (("convert", "c.csv"), "-o FILE"),
                 (("convert", "c.csv", "-o", "a.xyz"), "names no format"),

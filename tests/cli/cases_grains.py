@@ -134,6 +134,25 @@ class Faults(Grains):
         self.assertIn("bad.npy", rows[3]["cause"])
         self.assertIn("2 failed", result.out)
 
+    def test_remarks_of_the_method(self):
+        """A bound that a clump cannot hold is in its row, with these commands, and how often is said."""
+        bound, says = ("variational:gap=0.1,protrusion=0", "-n", "1", "--cells", "6"), "gap=0.1 cannot be held by 1 sphere"
+        self.grains("stones", "-g", "variational", "--gap", "0.1", "--protrusion", "0", *bound[1:])
+        again = self.mskit("grains", "stones", "-g", "variational", "--gap", "0.1", "--protrusion", "0", *bound[1:], "-o",
+                           "out", "--resume")
+        self.assertIn("0 failed, 2 with a remark of the method: see the column cause", again.out)
+        compared = self.mskit("compare", "stones/a.obj", "-g", *bound, "-o", "compare.csv")
+        self.assertIn("on 1 of them the method has a remark", compared.out)
+        changed = self.mskit("stability", "stones/a.obj", "-g", *bound, "--perturb", "seed", "--runs", "1", "-o", "s.csv",
+                             "--json").json
+        for group in changed:
+            self.assertEqual((group["failed"], group["remarked"], group["cause"]), (0, 1, None))
+            self.assertIn(says, group["remark"])
+        for name in ("out/grains.csv", "compare.csv", "s.csv"):
+            for row in self.table(name):
+                self.assertIn(says, row["cause"])
+                self.assertGreater(float(row["dice"]), 0)
+
     def test_exit_code_where_no_grain_has_a_clump(self):
         self.write("bad.obj", "nothing\n")
         self.assert_says(self.mskit("grains", "bad.obj", "-o", "out", code=1), "not one grain")

@@ -172,6 +172,28 @@ class Failures(Output):
         os.mkdir(self.path("locked"), 0o500)
         self.assert_refused("generate", "box.obj", *RUN, "-o", "locked/a.csv", code=1, says=("locked/a.csv", "denied"))
 
+    def test_a_refusal_leaves_no_folder(self):
+        """One that was there stays; where results are, the folder is there, too."""
+        folder = {"compare": "--charts", "stability": "--charts", "scene": "-o"}
+        for command, *args in (("compare", "none.stl"), ("compare", "box.obj", "-o", "box.obj"),
+                               ("stability", "box.obj", "-o", "box.obj"), ("generate", "none.stl"),
+                               ("generate", "box.obj", *RUN, "--max-memory", "1k"), ("convert", "none.csv"),
+                               ("correct", "none.csv", "--target", "box.obj", "--density", "1"),
+                               ("scene", "none.stl", "--budget", "3"),
+                               ("scene", "box.obj", "-g", "mss", "--cells", "8", "--max-spheres", "1",
+                                "--tolerance", "dice=0.01")):
+            with self.subTest(command=command, args=args):
+                args = (command, *args, folder.get(command, "--all-formats"), "made")
+                self.assert_refused(*args, code=1)
+                os.mkdir(self.path("made"))
+                self.assert_refused(*args, code=1)
+                os.rmdir(self.path("made"))
+        self.run_box("--all-formats", "made", "--curve", "made/curve.csv")
+        self.assertIn("box-variational.csv", os.listdir(self.path("made")))
+        self.assert_refused("generate", "box.obj", *RUN, "--all-formats", "no/made", code=1, says=("no/made",))
+        self.assert_refused("generate", "box.obj", *RUN, "--all-formats", "new", "-o", "new/../new/box-variational.csv",
+                            code=1, says=("are one file",))
+
     def test_failed_write_leaves_the_earlier_file(self):
         """The largest file allowed is 1500 bytes (LLVM's OpenMP itself needs one of 1024): the write fails halfway."""
         self.run_box("-o", "whole.json")

@@ -103,6 +103,19 @@ class Stability(Case):
             self.assert_says(result, "one.csv", "other")
             self.assertEqual(self.read("one.csv"), text)
 
+    def test_a_damaged_row_is_refused(self):
+        args = ("stability", "cube", "-g", "mss", "-n", "4", "--cells", "10", "--perturb", "seed", "--runs", "1",
+                "--until-dice", "0.2", "--json")
+        groups = self.mskit(*args, "-o", "one.csv").json
+        self.assertEqual({group["n_until"]["count"] for group in groups}, {1})
+        for column, wrong in (("n_until", "1e300"), ("n_until", "-1"), ("n_until", "two"), ("status", "fine")):
+            with self.subTest(column=column, wrong=wrong):
+                header, first, *others = csv.reader(io.StringIO(self.read("one.csv").decode()))
+                first[header.index(column)] = wrong
+                self.write("cut.csv", "".join(",".join(line) + "\n" for line in (header, first, *others)))
+                self.assert_refused(*args, "--resume", "-o", "cut.csv", code=1,
+                                    says=("cut.csv: line 2", f"{column} cannot be '{wrong}'"))
+
     def test_levels(self):
         """Ladders in equal ratios from end to end; the voxels go with the resolution."""
         rows = self.rows("cube", "-g", "mss", "-n", "1", "--cells", "10", "--runs", "3", "--perturb", "resolution",

@@ -62,6 +62,7 @@ class Volume(Case):
         self.write("cut.npy", npy(listed, SIZE[::-1]))
         info = self.mskit("info", "cut.npy", "--json").json
         self.assertEqual((info["n"], info["spacing"], info["origin"]), (list(SIZE), 1, [0, 0, 0]))
+        self.assert_refused("info", "cut.npy", "--expect", code=2, says=("--expect is of one shape; give --label L",))
         (lo, hi), first = zip(*BOXES[1]), {"label": 1, "voxels": VOXELS[1], "pieces": 1, "largest_piece": VOXELS[1]}
         self.assertEqual(info["labels"][0], {**first, "box_lo": list(lo), "box_hi": list(hi), "cut_by_border": False})
         self.assertEqual(info["labels"][1], {"label": 2, "voxels": VOXELS[2] + 1, "box_lo": [0, 0, 0],

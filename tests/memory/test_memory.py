@@ -32,6 +32,8 @@ COMMANDS = {
     "masses": ["generate", "body.stl", "-n", "4", "--correct", "--density", "2000", "-o", "out.lammps"] + SMALL,
     "volume": ["generate", "body.npy", "-n", "3", "-j", "1", "--json"],
     "score": ["score", "clump.csv", "--target", "body.stl", "--json"] + SMALL,
+    "show": ["score", "clump.csv", "--target", "body.stl", "-o", "out.html", "-o", "out.stl", "-o", "out.png", "-o",
+             "out.vtp"] + SMALL,
     "score --cut": ["score", "clump.csv", "--target", "body.stl", "--cut", "--json"] + SMALL,
     "score --curve": ["score", "clump.json", "--target", "body.stl", "--curve"] + SMALL,
     "correct": ["correct", "clump.csv", "--target", "body.stl", "--density", "2000", "-o", "out.json", "--json"] + SMALL,

@@ -42,8 +42,8 @@ ROOMS = {
                      "eval/stability", "eval/view"],
     "eval/compare": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure",
                      "common/mesh",
-                     "common/volume", "common/voxel", "generators", "eval/chart", "eval/cli", "eval/queue"],
-    "eval/grains": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh/formats",
+                     "common/volume", "common/voxel", "generators", "eval/chart", "eval/cli", "eval/queue", "eval/view"],
+    "eval/grains": ["common/base", "common/clump", "common/clump/formats", "common/measure",
                     "common/volume", "generators", "eval/chart", "eval/cli", "eval/queue"],
     "eval/population": ["common/base", "common/clump", "common/clump/formats", "eval/chart", "eval/cli", "eval/grains"],
     "eval/queue": ["common/base", "eval/cli"],
@@ -119,6 +119,8 @@ def find_circle(graph):
 
 
 class Rooms(unittest.TestCase):
+    maxDiff = None
+
     @classmethod
     def setUpClass(cls):
         cls.sources = read_sources()

@@ -141,6 +141,42 @@ class Browser(unittest.TestCase):
         self.assertLess(abs(seen["left"] / seen["right"] - 1), 0.1)
         self.expect_no_error()
 
+    def test_report(self):
+        self.mskit("shape", "grain", "-o", "grain.ply")
+        self.mskit("shape", "tablet", "-o", "tablet.stl")
+        self.mskit("compare", "grain.ply", "tablet.stl", "-g", "mss", "-g", "euclid", "-n", "3,30", "--cells", 20,
+                   "--charts", "charts", "--report", "r.html")
+        self.open("r.html")
+        rows = self.browser.find_elements("css selector", "#rows tbody tr")
+        self.assertEqual(len(rows), 8)
+        self.assertEqual(len(self.browser.find_elements("css selector", "#tiles button")), 8)
+        self.assertEqual(len({tile.screenshot_as_base64 for tile in
+                              self.browser.find_elements("css selector", "#tiles canvas")}), 8, "each its own picture")
+        self.look()
+        rows[6].click()
+        self.assertGreater(self.look()["changed"], 0.05, "a click on a row shows its clump")
+        words = [cell.text for cell in rows[6].find_elements("css selector", "td")]
+        self.assertIn(words[0], self.text("name"))
+        self.assertTrue(self.text("count").startswith(words[4] + " spheres"), (words, self.text("count")))
+        self.expect_sorted()
+        self.browser.find_element("id", "filter").send_keys("tablet euclid")
+        shown = [row for row in self.browser.find_elements("css selector", "#rows tbody tr") if row.is_displayed()]
+        self.assertEqual(len(shown), 2)
+        self.assertIn("--charts charts", self.text("command"))
+        charts = self.browser.execute_script("return [...document.images].map(i => i.naturalWidth)")
+        self.assertGreaterEqual(len(charts), 8)
+        self.assertGreater(min(charts), 100, "each chart is drawn")
+        self.expect_no_error()
+
+    def expect_sorted(self):
+        heading = self.browser.find_elements("css selector", "#rows th")[5]
+        self.assertEqual(heading.text, "dice")
+        for sign in (1, -1):
+            heading.click()
+            values = [sign * float(row.find_elements("css selector", "td")[5].text)
+                      for row in self.browser.find_elements("css selector", "#rows tbody tr")]
+            self.assertEqual(values, sorted(values))
+
     def test_without_webgl(self):
         self.mskit("shape", "ball", "-o", "ball.stl")
         self.mskit("generate", "ball.stl", "-n", 1, "--cells", 10, "-o", "c.html")

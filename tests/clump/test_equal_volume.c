@@ -1,0 +1,67 @@
+/* Clumps of the particle's volume, against balls and lenses of known volume and width. */
+#include "clump/ms_equal_volume.h"
+#include "support/body_samples.h"
+#include "support/clump_samples.h"
+
+static const ms_body UNIT = {.volume = 1, .centroid = {5, 0, 0}};
+
+static void a_ball(void **state)
+{
+    ms_clump clump = {0};
+    ms_equal_volume done;
+    (void)state;
+    add_sphere(&clump, 7, 0, 0, 2.385);
+    assert_int_equal(ms_clump_alloc_masses(&clump, NULL), MS_OK);
+    assert_int_equal(ms_equal_volume_scale(&clump, &done, &UNIT, NULL), MS_OK);
+    const double r = cbrt(0.75 / pi);
+    expect_close(clump.sphere[0].radius, r, 1e-12);
+    expect_close(clump.sphere[0].centre[0], 5 + 2 * r / 2.385, 1e-12);
+    expect_close(done.scale, r / 2.385, 1e-12);
+    expect_close(done.volume, 1, 1e-12);
+    expect_close(done.error, 0, 1e-12);
+    expect_close(done.mean_width, 2 * r, 1e-12);
+    assert_null(clump.mass);
+    ms_clump_free(&clump);
+}
+
+static void two_balls_that_overlap(void **state)
+{
+    /* Radius 1, centres 1 apart: two balls less two caps of height 1/2. The mean width of two balls is that of one and
+     * half the distance: |c.u| is 1/2 on the mean. */
+    const double volume = 2 * ball_volume(1) - 2 * pi * 0.25 * (3 - 0.5) / 3;
+    ms_clump clump = {0};
+    ms_equal_volume done;
+    (void)state;
+    add_sphere(&clump, 0, 0, 0, 1);
+    add_sphere(&clump, 0, 1, 0, 1);
+    expect_close(ms_equal_volume_width(&clump), 2.5, 1e-4);
+    assert_int_equal(ms_equal_volume_scale(&clump, &done, &UNIT, NULL), MS_OK);
+    expect_close(done.scale, cbrt(1 / volume), 1e-12);
+    expect_close(clump.sphere[1].centre[1] - clump.sphere[0].centre[1], done.scale, 1e-12);
+    expect_close(done.error, 0, 1e-12);
+    expect_close(done.mean_width, 2.5 * done.scale, 1e-4);
+    ms_clump_free(&clump);
+}
+
+static void what_has_no_volume(void **state)
+{
+    ms_clump clump = {0};
+    ms_equal_volume done;
+    ms_error err = {{0}};
+    (void)state;
+    assert_int_equal(ms_equal_volume_scale(&clump, &done, &UNIT, &err), MS_ERR_ARG);
+    add_sphere(&clump, 0, 0, 0, 1);
+    assert_int_equal(ms_equal_volume_scale(&clump, &done, &(ms_body){0}, &err), MS_ERR_ARG);
+    assert_true(done.scale == 0 && clump.sphere[0].radius == 1);
+    ms_clump_free(&clump);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_ball),
+        cmocka_unit_test(two_balls_that_overlap),
+        cmocka_unit_test(what_has_no_volume),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
