@@ -18,20 +18,30 @@ static const double ON_SURFACE = 1e-9;
 /* Sample points per voxel and axis, at -3/8, -1/8, 1/8, 3/8 from the centre: 64 bits in all. */
 enum { SAMPLES = 4, HALF_OF_SAMPLES = 32 };
 
+/* Voxels of a row in a word. */
+enum { WORD = 64 };
+
+static size_t words_of_row(const ms_grid *grid)
+{
+    return ((size_t)grid->n[0] + WORD - 1) / WORD;
+}
+
 ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule rule, ms_error *err)
 {
-    const size_t voxels = ms_grid_voxels(grid);
+    const size_t voxels = ms_grid_voxels(grid), words = words_of_row(grid) * (size_t)grid->n[1] * (size_t)grid->n[2];
     memset(raster, 0, sizeof *raster);
     raster->grid = grid;
     raster->rule = rule;
     raster->first = malloc(voxels * sizeof *raster->first);
+    raster->vacant = malloc(words * sizeof *raster->vacant);
     raster->partial = calloc((size_t)grid->n[2], sizeof *raster->partial);
     raster->left = grid->cells ? ms_cut_left_build(grid->cells) : NULL;
-    if (!raster->first || !raster->partial || (grid->cells && !raster->left)) {
+    if (!raster->first || !raster->vacant || !raster->partial || (grid->cells && !raster->left)) {
         ms_raster_free(raster);
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
     }
     memset(raster->first, 0xff, voxels * sizeof *raster->first);
+    memset(raster->vacant, 0xff, words * sizeof *raster->vacant);
     return MS_OK;
 }
 
@@ -39,6 +49,7 @@ void ms_raster_free(ms_raster *raster)
 {
     if (raster) {
         free(raster->first);
+        free(raster->vacant);
         free(raster->ball);
         free(raster->tally);
         ms_cut_left_free(raster->left);
@@ -205,23 +216,11 @@ static int clamp_index(double value, int lo, int hi)
     return value < lo ? lo : value > hi ? hi : (int)value;
 }
 
-/* The first voxel from i on that is not covered, or `to`. Most of a row is covered: four voxels in a word are passed
- * over at once, if none of the four numbers is the highest (of the complement, none is 0: Warren, Hacker's Delight,
- * 6-1). */
-static int skip_covered(const uint16_t *first, int i, int to)
+/* Bits from..to-1 of a word that begins with voxel `base`. */
+static uint64_t word_mask(int base, int from, int to)
 {
-    const uint64_t ones = 0x0001000100010001u, highest = 0x8000800080008000u;
-    for (; i + 4 <= to; i += 4) {
-        uint64_t four;
-        memcpy(&four, first + i, sizeof four);
-        if ((~four - ones) & four & highest) {
-            break;
-        }
-    }
-    while (i < to && first[i] != MS_RASTER_NONE) {
-        i++;
-    }
-    return i;
+    const uint64_t above = from > base ? UINT64_MAX << (from - base) : UINT64_MAX;
+    return above & (to < base + WORD ? UINT64_MAX >> (base + WORD - to) : UINT64_MAX);
 }
 
 /* One row of voxels: those between first[outer] are looked at, those within `inner` of the
@@ -234,21 +233,20 @@ static void cover_row(worker *w, size_t b, int j, int k, double outer, double in
     const size_t start = ms_grid_index(raster->grid, 0, j, k);
     uint16_t *first = raster->first + start;
     const uint8_t *inside = raster->grid->inside + start;
+    uint64_t *vacant =
+        raster->vacant + words_of_row(raster->grid) * ((size_t)j + (size_t)raster->grid->n[1] * (size_t)k);
     row_sums sums = {.lo = INT_MAX, .hi = INT_MIN};
     const int from = clamp_index(ceil(x - outer), 0, n), to = clamp_index(floor(x + outer) + 1, 0, n);
     const int full_from = inner < 0 ? to : clamp_index(ceil(x - inner), from, to);
     const int full_to = inner < 0 ? to : clamp_index(floor(x + inner) + 1, full_from, to);
-    for (int i = from; i < full_from; i++) {
-        if (first[i] == MS_RASTER_NONE && covers_half(w, b, i, j, k)) {
-            cover_voxel(&sums, first, inside, i, b);
-        }
-    }
-    for (int i = skip_covered(first, full_from, full_to); i < full_to; i = skip_covered(first, i + 1, full_to)) {
-        cover_voxel(&sums, first, inside, i, b);
-    }
-    for (int i = full_to; i < to; i++) {
-        if (first[i] == MS_RASTER_NONE && covers_half(w, b, i, j, k)) {
-            cover_voxel(&sums, first, inside, i, b);
+    for (int base = from / WORD * WORD; base < to; base += WORD) {
+        uint64_t *word = vacant + base / WORD;
+        for (uint64_t bits = *word & word_mask(base, from, to); bits; bits &= bits - 1) {
+            const int i = base + __builtin_ctzll(bits);
+            if ((i >= full_from && i < full_to) || covers_half(w, b, i, j, k)) {
+                *word ^= bits & -bits;
+                cover_voxel(&sums, first, inside, i, b);
+            }
         }
     }
     if (sums.count) {

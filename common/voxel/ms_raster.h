@@ -31,7 +31,8 @@ typedef struct ms_raster_partial {
 typedef struct ms_raster {
     const ms_grid *grid; /* borrowed: the target */
     ms_voxel_rule rule;
-    uint16_t *first; /* one per voxel of the grid */
+    uint16_t *first;  /* one per voxel of the grid */
+    uint64_t *vacant; /* of each row along x, 64 voxels in a word: those that no ball covers */
     size_t n_balls, capacity;
     ms_ball *ball;
     ms_raster_partial *partial; /* one per plane across z, by the rule HALF */
@@ -46,7 +47,7 @@ typedef struct ms_raster {
  *
  * @param[out] raster the caller frees it; empty on failure
  * @param      grid   the target; borrowed until ms_raster_free
- * @return MS_OK; MS_ERR_NOMEM. Two bytes a voxel, and by the rule HALF some 24 for each that a ball's surface passes
+ * @return MS_OK; MS_ERR_NOMEM. Two bytes and a bit a voxel, and by the rule HALF some 24 for each that a ball's surface passes
  *         through and that is not covered.
  */
 MS_API ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule rule, ms_error *err);

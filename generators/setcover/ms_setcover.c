@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 #include "ms_cut_cover.h"
-#include "ms_setcover_candidates.h"
+#include "ms_setcover_choice.h"
 #include "shared/ms_cover.h"
 #include "shared/ms_nested.h"
 #include "voxel/ms_cut_cells.h"
@@ -43,86 +43,107 @@ static double setcover_option(const ms_run *run, int which)
 }
 
 /* Drops the candidates that the stop rule calls too small. */
-static void drop_small(ms_ball *candidate, size_t *count, const ms_run *run)
+static int drop_small(ms_setcover_pool *pool, double least)
 {
-    const double least = run->stop.radius / run->target->grid.h;
+    const size_t found = pool->count;
     size_t kept = 0;
-    for (size_t c = 0; c < *count; c++) {
-        if (!(candidate[c].radius < least)) {
-            candidate[kept++] = candidate[c];
+    for (size_t c = 0; c < found; c++) {
+        if (!(pool->ball[c].radius < least)) {
+            pool->ball[kept++] = pool->ball[c];
         }
     }
-    *count = kept;
+    pool->count = kept;
+    return kept < found;
 }
 
 /* What the spheres are chosen from. */
 typedef struct setcover_choice {
-    ms_cover *cover;   /* one of these */
-    ms_cut_cover *cut; /* the other is NULL */
-    const ms_ball *candidate;
-    int dropped; /* nonzero: some were smaller than the least radius */
+    ms_setcover_pool pool;
+    ms_cover *cover;         /* by voxels */
+    ms_setcover_choice fine; /* of a pool with starts */
+    ms_cut_cells *cells;     /* made here; or NULL */
+    ms_cut_cover *cut;       /* by cells; or NULL */
+    int dropped;             /* nonzero: some were smaller than the least radius */
 } setcover_choice;
 
 /* A step of algorithm 2; ms_nested_choose. */
 static ms_status choose_ball(void *context, ms_ball *ball, ms_stop_reason *reason, const ms_raster *placed,
                              ms_error *err)
 {
-    const setcover_choice *choice = context;
-    size_t which;
+    setcover_choice *choice = context;
+    size_t which, found;
     (void)placed, (void)err;
-    if (choice->cut ? ms_cut_cover_next(&which, choice->cut) == 0 : ms_cover_next(&which, choice->cover) == 0) {
-        *reason = choice->dropped ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
+    if (choice->pool.start) {
+        found = ms_setcover_choose(ball, &choice->fine);
     } else {
-        *ball = choice->candidate[which];
+        found = choice->cut ? ms_cut_cover_next(&which, choice->cut) > 0 : ms_cover_next(&which, choice->cover);
+        *ball = found ? choice->pool.ball[which] : *ball;
+    }
+    if (!found) {
+        *reason = choice->dropped || choice->fine.dropped ? MS_STOP_RADIUS : MS_STOP_EXHAUSTED;
     }
     return MS_OK;
 }
 
-/* Starts to choose, by the count asked for. */
-static ms_status start_choice(setcover_choice *choice, ms_cut_cells **cells, size_t count, const ms_run *run,
-                              ms_error *err)
+/* Starts to choose by voxels. */
+static ms_status start_by_voxels(setcover_choice *choice, const ms_run *run, double least, ms_error *err)
+{
+    const ms_setcover_pool *pool = &choice->pool;
+    const ms_cover_rule rule = pool->start                            ? MS_COVER_ADMITTED
+                               : setcover_option(run, CONNECTED) != 0 ? MS_COVER_CONNECTED
+                                                                      : MS_COVER_GROUPED;
+    const ms_status status = ms_cover_build(&choice->cover, &run->target->grid, pool->ball, pool->count, rule, err);
+    if (status == MS_OK && pool->start) {
+        choice->fine = ms_setcover_choice_start(pool, choice->cover, least);
+    }
+    return status;
+}
+
+/* Starts to choose by cells. */
+static ms_status start_by_cells(setcover_choice *choice, const ms_run *run, ms_error *err)
 {
     const ms_target *target = run->target;
-    const ms_cut_cells *cut = target->grid.cells;
-    const int connected = setcover_option(run, CONNECTED) != 0;
-    if (setcover_option(run, COUNT) == COUNT_VOXELS) {
-        return ms_cover_build(&choice->cover, &target->grid, choice->candidate, count,
-                              connected ? MS_COVER_CONNECTED : MS_COVER_GROUPED, err);
-    }
     ms_status status = MS_OK;
-    if (!cut) {
-        status = ms_cut_cells_build(cells, &target->grid, target->closed ? target->mesh : NULL, err);
-        cut = *cells;
+    if (!target->grid.cells) {
+        status = ms_cut_cells_build(&choice->cells, &target->grid, target->closed ? target->mesh : NULL, err);
     }
-    return status == MS_OK ? ms_cut_cover_build(&choice->cut, cut, choice->candidate, count, connected, err) : status;
+    const ms_cut_cells *cells = choice->cells ? choice->cells : target->grid.cells;
+    return status == MS_OK ? ms_cut_cover_build(&choice->cut, cells, choice->pool.ball, choice->pool.count,
+                                                setcover_option(run, CONNECTED) != 0, err)
+                           : status;
+}
+
+/* Whether spheres are chosen from coarse to fine, and moved on the medial surface, if there is a closed mesh. */
+static int is_coarse_to_fine(const ms_run *run)
+{
+    return setcover_option(run, COUNT) == COUNT_VOXELS && setcover_option(run, CONNECTED) == 0 &&
+           setcover_option(run, CANDIDATES) == SETCOVER_MEDIAL && setcover_option(run, SKELETON) == MS_SKELETON_SURFACE;
 }
 
 static ms_status generate_by_setcover(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
 {
+    const int by_voxels = setcover_option(run, COUNT) == COUNT_VOXELS;
     const ms_setcover_lattice lattice = {.deq = setcover_option(run, SKELETON_DEQ),
                                          .centres = (ms_setcover_centres)setcover_option(run, CANDIDATES),
                                          .kind = (ms_skeleton)setcover_option(run, SKELETON),
-                                         .align = setcover_option(run, ALIGN) != 0};
-    ms_ball *candidate;
-    ms_cut_cells *cells = NULL;
+                                         .align = setcover_option(run, ALIGN) != 0,
+                                         .later = is_coarse_to_fine(run)};
     setcover_choice choice = {0};
-    size_t count;
     ms_generator_stage(run, "candidate spheres", (double)NAN);
-    ms_status status = ms_setcover_candidates(&candidate, &count, run->target, &lattice, err);
-    const size_t found = count;
+    ms_status status = ms_setcover_candidates(&choice.pool, run->target, &lattice, err);
     if (status == MS_OK) {
-        drop_small(candidate, &count, run);
+        const double least = run->stop.radius / run->target->grid.h;
         ms_generator_stage(run, "what each candidate covers", (double)NAN);
-        choice = (setcover_choice){.candidate = candidate, .dropped = count < found};
-        status = start_choice(&choice, &cells, count, run, err);
+        choice.dropped = !lattice.later && drop_small(&choice.pool, least);
+        status = by_voxels ? start_by_voxels(&choice, run, least, err) : start_by_cells(&choice, run, err);
     }
     if (status == MS_OK) {
         status = ms_nested_run(clump, reason, run, choose_ball, &choice, err);
     }
     ms_cover_free(choice.cover);
     ms_cut_cover_free(choice.cut);
-    ms_cut_cells_free(cells);
-    free(candidate);
+    ms_cut_cells_free(choice.cells);
+    ms_setcover_pool_free(&choice.pool);
     return status;
 }
 

@@ -255,27 +255,57 @@ static void fit_all(ms_ball *ball, size_t *count, const ms_target *target, doubl
     drop_empty(ball, count);
 }
 
-/* The maximal spheres of all centres, as far as they differ. */
-static ms_status fit_maximal(ms_ball *ball, size_t *count, const ms_target *target, const ms_setcover_field *field,
-                             ms_error *err)
+/* Rolls spheres inward from all centres; which of them differ. */
+static ms_status start_maximal(ms_setcover_pool *pool, const ms_setcover_field *field, ms_error *err)
 {
-    ms_setcover_start *start = malloc((*count + 1) * sizeof *start);
-    if (!start) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu candidate spheres; use a smaller skeleton-deq", *count);
+    const ms_target *target = pool->target;
+    pool->start = malloc((pool->count + 1) * sizeof *pool->start);
+    if (!pool->start) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu candidate spheres; use a smaller skeleton-deq",
+                       pool->count);
     }
-    for (size_t b = 0; b < *count; b++) {
-        ms_grid_place(start[b].from, &target->grid, ball[b].centre);
+    for (size_t b = 0; b < pool->count; b++) {
+        ms_grid_place(pool->start[b].from, &target->grid, pool->ball[b].centre);
     }
-    const ms_status status = ms_setcover_roll(start, count, field, target->closest, err);
-    const ptrdiff_t kept = status == MS_OK ? (ptrdiff_t)*count : 0;
-#pragma omp parallel for schedule(dynamic, 64)
-    for (ptrdiff_t b = 0; b < kept; b++) {
-        const ms_sphere sphere = fit_start(&start[b], target->closest, field->h);
-        ball[b] = ms_grid_ball(&target->grid, &sphere);
+    const ms_status status = ms_setcover_roll(pool->start, &pool->count, field, target->closest, err);
+    for (size_t b = 0; status == MS_OK && b < pool->count; b++) {
+        pool->ball[b].radius = 0;
     }
-    free(start);
-    drop_empty(ball, count);
     return status;
+}
+
+void ms_setcover_pool_fit(const ms_setcover_pool *pool, double from, double below)
+{
+    const ptrdiff_t all = (ptrdiff_t)pool->count;
+#pragma omp parallel for schedule(dynamic, 64)
+    for (ptrdiff_t b = 0; b < all; b++) {
+        if (pool->start[b].scale >= from && pool->start[b].scale < below) {
+            const ms_sphere sphere = fit_start(&pool->start[b], pool->target->closest, pool->step);
+            pool->ball[b] = ms_grid_ball(&pool->target->grid, &sphere);
+        }
+    }
+}
+
+ms_ball ms_setcover_pool_move(const ms_setcover_pool *pool, const ms_ball *ball, int axis, double by)
+{
+    const ms_grid *grid = &pool->target->grid;
+    ms_sphere sphere = ms_grid_sphere(grid, ball);
+    double nearest[3];
+    sphere.centre[axis] += by * grid->h;
+    sphere.radius = ms_closest_distance(nearest, pool->target->closest, sphere.centre,
+                                        (sphere.radius + fabs(by) * grid->h) * NEAR_ENOUGH);
+    if (sphere.radius > SURELY_INSIDE * pool->step) {
+        sphere.radius = ms_medial_sphere(sphere.centre, sphere.radius, nearest, pool->target->closest, pool->step,
+                                         MEDIAL_TOLERANCE * pool->step);
+    }
+    return ms_grid_ball(grid, &sphere);
+}
+
+void ms_setcover_pool_free(ms_setcover_pool *pool)
+{
+    free(pool->ball);
+    free(pool->start);
+    *pool = (ms_setcover_pool){0};
 }
 
 /* Thins the voxels; keeps those on the border, too, if asked for. */
@@ -330,38 +360,52 @@ static ms_status measure_depth(ms_setcover_field *field, float **depth, const ms
     return ms_distance(*depth, skeleton->inside, skeleton->n, err);
 }
 
-ms_status ms_setcover_candidates(ms_ball **ball, size_t *count, const ms_target *target,
-                                 const ms_setcover_lattice *lattice, ms_error *err)
+/* The lattice's voxels from which there are spheres, and how deep all of them lie if spheres are to be rolled. */
+static ms_status choose_voxels(ms_grid *skeleton, ms_setcover_field *field, float **depth, const frame *f,
+                               const ms_setcover_pool *pool, const ms_setcover_lattice *lattice, ms_error *err)
 {
-    const double step = choose_spacing(target, lattice);
+    const ms_target *target = pool->target;
     const int by_mesh = is_by_mesh(target), maximal = by_mesh && lattice->centres != SETCOVER_ALL;
     const int medial = maximal && lattice->kind == MS_SKELETON_SURFACE && lattice->centres == SETCOVER_MEDIAL;
+    ms_status status = by_mesh ? grid_of_mesh(skeleton, target, f, pool->step, lattice, err)
+                               : grid_of_voxels(skeleton, target, f, pool->step, lattice, err);
+    if (status == MS_OK && maximal) {
+        status = measure_depth(field, depth, skeleton, f, err);
+    }
+    if (status == MS_OK && lattice->centres != SETCOVER_ALL) {
+        status = thin_shape(skeleton, lattice->kind, medial, err);
+    }
+    return status;
+}
+
+ms_status ms_setcover_candidates(ms_setcover_pool *pool, const ms_target *target, const ms_setcover_lattice *lattice,
+                                 ms_error *err)
+{
+    const int maximal = is_by_mesh(target) && lattice->centres != SETCOVER_ALL;
     ms_grid skeleton = {0};
     ms_setcover_field field;
     float *depth = NULL;
     frame f;
-    *ball = NULL;
-    *count = 0;
+    *pool = (ms_setcover_pool){.target = target, .step = choose_spacing(target, lattice)};
     ms_status status = choose_frame(&f, target, lattice->align, err);
     if (status == MS_OK) {
-        status = by_mesh ? grid_of_mesh(&skeleton, target, &f, step, lattice, err)
-                         : grid_of_voxels(&skeleton, target, &f, step, lattice, err);
-    }
-    if (status == MS_OK && maximal) {
-        status = measure_depth(&field, &depth, &skeleton, &f, err);
-    }
-    if (status == MS_OK && lattice->centres != SETCOVER_ALL) {
-        status = thin_shape(&skeleton, lattice->kind, medial, err);
+        status = choose_voxels(&skeleton, &field, &depth, &f, pool, lattice, err);
     }
     if (status == MS_OK) {
-        status = list_centres(ball, count, &skeleton, &f, &target->grid, err);
+        status = list_centres(&pool->ball, &pool->count, &skeleton, &f, &target->grid, err);
     }
     if (status == MS_OK && maximal) {
-        status = fit_maximal(*ball, count, target, &field, err);
+        status = start_maximal(pool, &field, err);
     } else if (status == MS_OK) {
-        fit_all(*ball, count, target, step);
+        fit_all(pool->ball, &pool->count, target, pool->step);
     }
     ms_grid_free(&skeleton);
     free(depth);
+    if (status == MS_OK && maximal && !lattice->later) {
+        ms_setcover_pool_fit(pool, 0, HUGE_VAL);
+        drop_empty(pool->ball, &pool->count);
+        free(pool->start);
+        pool->start = NULL;
+    }
     return status;
 }

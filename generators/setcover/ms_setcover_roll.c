@@ -11,6 +11,7 @@ static const double SLACK = 0.6;  /* by as much the field may rise too little be
 static const double CLOSE = 0.25; /* the end of the way is found within this */
 static const double SHORT = 1.2;  /* and by this much it is left out: what the field sees too late */
 static const double CELL = 0.35;  /* spheres whose centres are in a cell of this side are as good as one */
+static const double LEVEL = 1;    /* side of the smallest cells of those twice as large as others */
 static const double BORDER = 0.5; /* the field counts from the voxels outside, the surface is this much nearer */
 
 /* The field between its points. */
@@ -112,31 +113,58 @@ static int compare_rolled(const void *one, const void *other)
     return a->index < b->index ? -1 : 1;
 }
 
-static uint64_t find_end_cell(const ms_setcover_field *f, const double centre[3])
+/* The cell of a place; cells have this side, in voxels of the lattice. Their borders lie on no point of the lattice,
+ * where spheres may end: rounding would tell on which side. */
+static uint64_t find_end_cell(const ms_setcover_field *f, const double centre[3], double side)
 {
     uint64_t cell = 0;
     const double from[3] = {centre[0] - f->origin[0], centre[1] - f->origin[1], centre[2] - f->origin[2]};
     for (int a = 0; a < 3; a++) {
-        const double at = floor(ms_dot(from, f->axis[a]) / (f->h * CELL) + 0.5);
+        const double at = floor((ms_dot(from, f->axis[a]) / f->h + CELL / 2) / side);
         cell = cell << 21 | (uint64_t)fmin(fmax(at, 0), 0x1fffff);
     }
     return cell;
 }
 
-static void keep_largest(ms_setcover_start *start, size_t *count, cell_entry *entry, const ms_setcover_field *f)
+/* Of n spheres leaves in front the largest of each cell. @return how many they are */
+static size_t find_largest(cell_entry *entry, size_t n, const ms_setcover_start *start, const ms_setcover_field *f,
+                           double side)
 {
-    size_t kept = 0;
-    for (size_t i = 0; i < *count; i++) {
-        entry[i] = (cell_entry){find_end_cell(f, start[i].centre), start[i].radius, i};
+    size_t found = 0;
+    for (size_t e = 0; e < n; e++) {
+        entry[e].cell = find_end_cell(f, start[entry[e].index].centre, side);
     }
-    qsort(entry, *count, sizeof *entry, compare_rolled);
-    for (size_t i = 1; i < *count; i++) {
-        if (entry[i].cell == entry[i - 1].cell) {
-            start[entry[i].index].radius = 0;
+    qsort(entry, n, sizeof *entry, compare_rolled);
+    uint64_t last = 0;
+    for (size_t e = 0; e < n; e++) {
+        const uint64_t cell = entry[e].cell;
+        if (e == 0 || cell != last) {
+            entry[found++] = entry[e];
+        }
+        last = cell;
+    }
+    return found;
+}
+
+/* Finds the largest cells of which each is the largest, and drops those that are it of none. */
+static void rank_largest(ms_setcover_start *start, size_t *count, cell_entry *entry, const ms_setcover_field *f)
+{
+    size_t n = *count, kept = 0;
+    for (size_t i = 0; i < n; i++) {
+        entry[i] = (cell_entry){.radius = start[i].radius, .index = i};
+        start[i].scale = 0;
+    }
+    for (double side = CELL; n > 0; side = side < LEVEL ? LEVEL : 2 * side) {
+        n = find_largest(entry, n, start, f, side);
+        for (size_t e = 0; e < n; e++) {
+            start[entry[e].index].scale = side * f->h;
+        }
+        if (n == 1) {
+            break;
         }
     }
     for (size_t i = 0; i < *count; i++) {
-        if (start[i].radius > 0) {
+        if (start[i].scale > 0 && start[i].radius > 0) {
             start[kept++] = start[i];
         }
     }
@@ -155,7 +183,7 @@ ms_status ms_setcover_roll(ms_setcover_start *start, size_t *count, const ms_set
     for (ptrdiff_t i = 0; i < all; i++) {
         roll_in(&start[i], field, closest);
     }
-    keep_largest(start, count, entry, field);
+    rank_largest(start, count, entry, field);
     free(entry);
     return MS_OK;
 }

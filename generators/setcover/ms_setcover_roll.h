@@ -21,6 +21,7 @@ typedef struct ms_setcover_start {
     double from[3];   /* where it was rolled from, inside the mesh */
     double centre[3]; /* about a voxel short of the medial surface, as far as the distance field tells */
     double radius;    /* there, roughly; 0: nothing to be had */
+    double scale;     /* side of the largest cells of which it is the largest of those that end there */
 } ms_setcover_start;
 
 /**

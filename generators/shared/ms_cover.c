@@ -98,7 +98,7 @@ static void shrink_remains(remains *part)
 static int choose_step(const ms_cover *cover, const heap_entry *entry)
 {
     const double radius = cover->candidate[entry->index].radius, gain = (double)entry->gain;
-    int step = cover->rule != MS_COVER_GROUPED || (entry->estimated && entry->counted == cover->n_taken) ? 1 : 8;
+    int step = cover->rule < MS_COVER_ADMITTED || (entry->estimated && entry->counted == cover->n_taken) ? 1 : 8;
     while (step > 1 && (radius < SAMPLED_RADIUS * step || gain < SAMPLED_VOXELS * step * step)) {
         step /= 2;
     }
@@ -289,7 +289,7 @@ static int is_stale(const ms_cover *cover, const heap_entry *entry)
 /* Counts the best bounds again, as long as they are no exact counts. More than are needed may be counted. */
 static void count_best(ms_cover *cover)
 {
-    const int at_once = cover->threads > 1 || cover->rule == MS_COVER_GROUPED ? AT_ONCE : 1;
+    const int at_once = cover->threads > 1 || cover->rule >= MS_COVER_ADMITTED ? AT_ONCE : 1;
     heap_entry stale[AT_ONCE];
     int n = 0;
     while (n < at_once && cover->n_heap > 0 && is_stale(cover, &cover->entry[0])) {
@@ -322,19 +322,46 @@ static int settle_first(ms_cover *cover)
     return 1;
 }
 
-size_t ms_cover_next(size_t *which, ms_cover *cover)
+size_t ms_cover_best(size_t *which, ms_cover *cover)
 {
     while (cover->n_heap > 0) {
         if (is_stale(cover, &cover->entry[0])) {
             count_best(cover);
         } else if (settle_first(cover)) {
-            const size_t gain = cover->entry[0].gain;
             *which = cover->entry[0].index;
-            take_first(cover);
-            return gain;
+            return cover->entry[0].gain;
         }
     }
     return 0;
+}
+
+size_t ms_cover_next(size_t *which, ms_cover *cover)
+{
+    const size_t gain = ms_cover_best(which, cover);
+    if (gain > 0) {
+        take_first(cover);
+    }
+    return gain;
+}
+
+void ms_cover_admit(ms_cover *cover, size_t which)
+{
+    if (cover->candidate[which].radius > 0) {
+        cover->entry[cover->n_heap] = uncounted(cover, (uint32_t)which);
+        cover->n_entries++;
+        sift_up(cover, cover->n_heap++);
+    }
+}
+
+size_t ms_cover_count(const ms_cover *cover, const ms_ball *ball)
+{
+    return ms_cover_bits_sample(&cover->left, ball, 1);
+}
+
+void ms_cover_take(ms_cover *cover, const ms_ball *ball)
+{
+    ms_cover_bits_remove(&cover->left, ball);
+    cover->n_taken++;
 }
 
 /* A candidate and the cell of its group. */
@@ -396,7 +423,7 @@ static ms_status form_groups(ms_cover *cover, ms_error *err)
 static void rank_all(ms_cover *cover)
 {
     for (size_t c = 0; c < cover->count; c++) {
-        if (cover->candidate[c].radius > 0 && !cover->remains[c].is_member) {
+        if (cover->rule != MS_COVER_ADMITTED && cover->candidate[c].radius > 0 && !cover->remains[c].is_member) {
             cover->entry[cover->n_entries++] = uncounted(cover, (uint32_t)c);
         }
     }

@@ -16,6 +16,8 @@ typedef struct ms_cover ms_cover;
 typedef enum ms_cover_rule {
     MS_COVER_ANY,       /* the one that covers most */
     MS_COVER_CONNECTED, /* of those that overlap one taken before, so that every prefix is one piece */
+    MS_COVER_ADMITTED,  /* any of those that were admitted (ms_cover_admit); large ones are estimated from some of their
+                           rows before they are counted, so that another one may have been a few percent better */
     MS_COVER_GROUPED    /* any, but candidates whose centres lie within a sixteenth of their radius are looked at only
                            when the largest of them is the best, or when gains have fallen to an eighth of such a
                            ball; large ones are estimated from some of their rows before they are counted: nearly the
@@ -52,6 +54,18 @@ ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *can
  *         nothing was taken
  */
 size_t ms_cover_next(size_t *which, ms_cover *cover);
+
+/** The candidate that ms_cover_next would take, without taking it. @return as ms_cover_next */
+size_t ms_cover_best(size_t *which, ms_cover *cover);
+
+/** A candidate, which is as it shall be from now on, may be chosen (MS_COVER_ADMITTED); at most once each. */
+void ms_cover_admit(ms_cover *cover, size_t which);
+
+/** How many voxels not yet covered a ball covers, whether it is a candidate or not. */
+size_t ms_cover_count(const ms_cover *cover, const ms_ball *ball);
+
+/** Covers what a ball covers, whether it is a candidate or not (but for MS_COVER_CONNECTED). */
+void ms_cover_take(ms_cover *cover, const ms_ball *ball);
 
 void ms_cover_free(ms_cover *cover);
 

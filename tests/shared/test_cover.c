@@ -30,7 +30,7 @@ static void make_problem(problem *p, int nx)
     p->count = 1 + (size_t)rand() % MAX_BALLS;
     for (size_t b = 0; b < p->count; b++) {
         ms_ball *ball = &p->ball[b];
-        *ball = p->ball[rand() % (b + 1)];
+        *ball = p->ball[(size_t)rand() % (b ? b : 1)]; /* of the first nothing is kept */
         const int kind = b ? rand() % 8 : 7;
         for (int a = 0; a < 3 && kind > 1; a++) {
             ball->centre[a] = (1.4 * uniform() - 0.2) * n[a];
@@ -228,6 +228,108 @@ static void gains_are_those_of_the_raster(void **state)
     }
 }
 
+/* Balls of all sizes, most of them large enough to be estimated. */
+static void make_crowd(ms_grid *grid, ms_ball *ball, int count)
+{
+    static const double ORIGIN[3] = {0, 0, 0};
+    static const int N[3] = {90, 70, 70};
+    ms_error err;
+    assert_int_equal(ms_grid_alloc(grid, N, 1, ORIGIN, &err), MS_OK);
+    memset(grid->inside, 1, ms_grid_voxels(grid));
+    srand(12);
+    for (int b = 0; b < count; b++) {
+        for (int a = 0; a < 3; a++) {
+            ball[b].centre[a] = uniform() * N[a];
+        }
+        ball[b].radius = 8 + 18 * uniform();
+    }
+}
+
+/* In the code under test malloc is this one (the linker's --wrap). */
+void *__real_malloc(size_t size);
+void *__wrap_malloc(size_t size);
+
+static int starved; /* nonzero: there is no memory */
+static size_t refused;
+
+void *__wrap_malloc(size_t size)
+{
+    if (starved) {
+#pragma omp atomic
+        refused++;
+        return NULL;
+    }
+    return __real_malloc(size);
+}
+
+/* Without memory for what is left of candidates the same ones are taken. */
+static void the_choice_does_not_hang_on_memory(void **state)
+{
+    (void)state;
+    enum { COUNT = 400 };
+    ms_ball ball[COUNT];
+    size_t taken[COUNT], gain[COUNT], which, adds, n = 0, m = 0;
+    ms_grid grid;
+    ms_cover *cover[2];
+    ms_error err;
+    make_crowd(&grid, ball, COUNT);
+    for (int c = 0; c < 2; c++) {
+        assert_int_equal(ms_cover_build(&cover[c], &grid, ball, COUNT, MS_COVER_GROUPED, &err), MS_OK);
+    }
+    for (; (adds = ms_cover_next(&which, cover[0])) > 0; n++) {
+        taken[n] = which;
+        gain[n] = adds;
+    }
+    starved = 1;
+    for (; (adds = ms_cover_next(&which, cover[1])) > 0 && m < n && which == taken[m] && adds == gain[m]; m++) {
+    }
+    starved = 0;
+    assert_int_equal(m, n);
+    assert_int_equal(adds, 0);
+    assert_true(n > 20 && refused > COUNT);
+    ms_cover_free(cover[0]);
+    ms_cover_free(cover[1]);
+    ms_grid_free(&grid);
+}
+
+/* The best of those admitted, and the count of any ball, by brute force, whatever is taken. */
+static void only_what_was_admitted_is_chosen(void **state)
+{
+    (void)state;
+    srand(13);
+    for (int round = 0; round < 60; round++) {
+        problem p;
+        ms_cover *cover;
+        ms_error err;
+        size_t admitted = 0, which, gain = 1;
+        make_problem(&p, 20);
+        assert_int_equal(ms_cover_build(&cover, &p.grid, p.ball, p.count, MS_COVER_ADMITTED, &err), MS_OK);
+        assert_int_equal(ms_cover_best(&which, cover), 0);
+        while (admitted < p.count || gain > 0) {
+            if (admitted < p.count) {
+                ms_cover_admit(cover, admitted++);
+            }
+            size_t most = 0;
+            for (size_t b = 0; b < p.count; b++) {
+                const size_t count = brute_count(p.grid.inside, &p.grid, &p.ball[b], 0);
+                assert_int_equal(ms_cover_count(cover, &p.ball[b]), count);
+                most = b < admitted && count > most ? count : most;
+            }
+            gain = ms_cover_best(&which, cover);
+            assert_int_equal(gain, most);
+            assert_true(gain == 0 || which < admitted);
+            if (gain > 0) {
+                ms_ball moved = p.ball[which];
+                moved.centre[0] += rand() % 3 ? 0 : 1; /* no candidate */
+                ms_cover_take(cover, &moved);
+                brute_count(p.grid.inside, &p.grid, &moved, 1);
+            }
+        }
+        ms_cover_free(cover);
+        ms_grid_free(&p.grid);
+    }
+}
+
 static void nothing_to_cover(void **state)
 {
     (void)state;
@@ -253,6 +355,8 @@ int main(void)
         cmocka_unit_test(groups_lose_nothing),
         cmocka_unit_test(samples_are_of_every_so_many_rows),
         cmocka_unit_test(gains_are_those_of_the_raster),
+        cmocka_unit_test(the_choice_does_not_hang_on_memory),
+        cmocka_unit_test(only_what_was_admitted_is_chosen),
         cmocka_unit_test(nothing_to_cover),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
