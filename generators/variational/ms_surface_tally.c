@@ -13,7 +13,7 @@ static double cone_volume(double from, double to)
     return to > from ? (to * to * to - from * from * from) / 3 : 0;
 }
 
-/* Where the others begin below a sphere's surface takes as long as all else: `losses` is 0 where it is not asked for. */
+/* Where the others begin below the surface takes as long as all else: `losses` is 0 where it is not asked for. */
 static ms_surface_worth tally_sphere(const ms_surface_fit *fit, const ms_caps_window *window, ms_exposed *exposed,
                                      uint32_t self, int losses)
 {
