@@ -411,24 +411,25 @@ double ms_closest_distance(double nearest[3], const ms_closest *closest, const d
     return fmin(sqrt(s.best), at_most);
 }
 
-double ms_closest_signed_normal(double normal[3], const ms_closest *closest, const double point[3])
+double ms_closest_side(double normal[3], const ms_closest *closest, const double point[3], double distance)
 {
     nearest_search s;
-    begin_search(&s, closest, point, HUGE_VAL);
-    search_tree(&s);
-    double distance = sqrt(s.best);
     /* All triangles as near as that, but for rounding. */
     begin_search(&s, closest, point, distance + 1e-12 * (distance + closest->bvh.size));
     s.side_wanted = 1;
     search_tree(&s);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; normal && k < 3; k++) {
         normal[k] = s.normal[k];
     }
     return s.side < 0 ? -distance : distance;
 }
 
+double ms_closest_signed_normal(double normal[3], const ms_closest *closest, const double point[3])
+{
+    return ms_closest_side(normal, closest, point, ms_closest_distance(NULL, closest, point, HUGE_VAL));
+}
+
 double ms_closest_signed_distance(const ms_closest *closest, const double point[3])
 {
-    double normal[3];
-    return ms_closest_signed_normal(normal, closest, point);
+    return ms_closest_signed_normal(NULL, closest, point);
 }

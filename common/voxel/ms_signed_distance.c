@@ -7,6 +7,9 @@
 #include "mesh/ms_closest.h"
 #include "ms_distance.h"
 
+/* Of bounds: more than the rounding of the single precision that nodes are kept in. */
+static const double SLACK = 1 + 1e-5;
+
 /* The nodes of one step. */
 typedef struct nodes {
     int step;
@@ -137,25 +140,6 @@ ms_status ms_signed_distance_open(ms_signed_distance *field, const ms_target *ta
     return MS_OK;
 }
 
-/* Farther from the surface than half a voxel's diagonal, all of the voxel about a node is on one side. */
-static float compute_node(const ms_signed_distance *field, size_t node)
-{
-    const ms_grid *grid = &field->target->grid;
-    int on[3];
-    ms_grid_voxel(on, field->n, node);
-    const int i = on[0] * field->step, j = on[1] * field->step, k = on[2] * field->step;
-    const double at[3] = {i, j, k};
-    double place[3];
-    ms_grid_place(place, grid, at);
-    if (i < grid->n[0] && j < grid->n[1] && k < grid->n[2]) {
-        const double away = ms_closest_distance(NULL, field->target->closest, place, HUGE_VAL) / grid->h;
-        if (away > 0.9) {
-            return (float)(grid->inside[ms_grid_index(grid, i, j, k)] ? -away : away);
-        }
-    }
-    return (float)(ms_closest_signed_distance(field->target->closest, place) / grid->h);
-}
-
 /* NAN: not known yet. */
 static inline double read_node(const ms_signed_distance *field, size_t node)
 {
@@ -163,6 +147,43 @@ static inline double read_node(const ms_signed_distance *field, size_t node)
 #pragma omp atomic read
     phi = field->phi[node];
     return (double)phi;
+}
+
+/* What the distance at a node cannot exceed by those that are known next to it, in voxels: from one to the next it
+ * changes by no more than the way. */
+static double find_bound(const ms_signed_distance *field, const int on[3], size_t node)
+{
+    double least = HUGE_VAL;
+    size_t stride = 1;
+    for (int a = 0; a < 3; a++) {
+        if (on[a] > 0) {
+            least = fmin(least, fabs(read_node(field, node - stride))); /* NAN counts for nothing */
+        }
+        if (on[a] < field->n[a] - 1) {
+            least = fmin(least, fabs(read_node(field, node + stride)));
+        }
+        stride *= (size_t)field->n[a];
+    }
+    return (least + field->step) * SLACK;
+}
+
+/* Farther from the surface than half a voxel's diagonal, all of the voxel about a node is on one side. */
+static float compute_node(const ms_signed_distance *field, size_t node)
+{
+    const ms_grid *grid = &field->target->grid;
+    const ms_closest *closest = field->target->closest;
+    int on[3];
+    ms_grid_voxel(on, field->n, node);
+    const int i = on[0] * field->step, j = on[1] * field->step, k = on[2] * field->step;
+    const double at[3] = {i, j, k};
+    double place[3];
+    ms_grid_place(place, grid, at);
+    const double distance = ms_closest_distance(NULL, closest, place, find_bound(field, on, node) * grid->h);
+    const double away = distance / grid->h;
+    if (away > 0.9 && i < grid->n[0] && j < grid->n[1] && k < grid->n[2]) {
+        return (float)(grid->inside[ms_grid_index(grid, i, j, k)] ? -away : away);
+    }
+    return (float)(ms_closest_side(NULL, closest, place, distance) / grid->h);
 }
 
 /* Two threads may compute a node at once: they find the same. */

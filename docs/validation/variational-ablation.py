@@ -6,8 +6,8 @@
 SOURCE is this project; it is copied into FOLDER (a temporary one by default) and built there once for each stage, with
 one constant of the source changed so that the stage does nothing: the program itself has no switch for that. DATA holds
 bunny.ply, human_femur.stl and open-clumps/; what is not there is named and left out. The other shapes are made. D is
-scored at 200 cells along the longest side by the build with all stages. One thread; the builds take turns, and of two
-runs the least time counts: its ratio tells more than itself.
+scored at 200 cells along the longest side by the build with all stages. One thread; the build without a stage and
+the whole one take turns, and of two runs the least time counts: its ratio tells more than itself.
 """
 import glob
 import json
@@ -100,22 +100,25 @@ def measure(builds, path, n, folder):
     return score, least
 
 
+def print_row(name, cells):
+    print(f"| {name} | " + " | ".join(cells) + " |", flush=True)
+
+
 def tabulate(data, folder):
-    """Builds, runs and prints."""
+    """Builds, runs and prints, each row as soon as it is measured."""
     source = os.path.join(folder, "source")
     run("meson", "setup", os.path.join(folder, "build"), source)
-    builds = [build(source, folder, "whole")] + [build_without(source, folder, w) for w in range(len(WITHOUT))]
-    names, columns = [], []
-    for name, n in SHAPES:
-        path = find_shape(name, data, folder, builds[0])
-        if path:
-            score, least = measure(builds, path, n, folder)
-            names.append(f"{os.path.splitext(os.path.basename(name))[0]} {n}")
-            columns.append([f"{score[0]:.5f}, {least[0]:.2f} s"] +
-                           [f"{d / score[0]:.3f}, {t / least[0]:.2f}" for d, t in zip(score[1:], least[1:])])
-    print("| without | " + " | ".join(names) + " |\n| --- |" + " --: |" * len(names))
-    for row, name in enumerate(["nothing: D, time"] + [w[0] for w in WITHOUT]):
-        print(f"| {name} | " + " | ".join(column[row] for column in columns) + " |")
+    whole = build(source, folder, "whole")
+    shapes = [(name, find_shape(name, data, folder, whole), n) for name, n in SHAPES]
+    shapes = [shape for shape in shapes if shape[1]]
+    print_row("without", [f"{os.path.splitext(os.path.basename(name))[0]} {n}" for name, _, n in shapes])
+    print("| --- |" + " --: |" * len(shapes), flush=True)
+    alone = [measure([whole], path, n, folder) for _, path, n in shapes]
+    print_row("nothing: D, time", [f"{score[0]:.5f}, {least[0]:.2f} s" for score, least in alone])
+    for which, (name, _, _) in enumerate(WITHOUT):
+        builds = [whole, build_without(source, folder, which)]
+        pairs = [measure(builds, path, n, folder) for _, path, n in shapes]
+        print_row(name, [f"{score[1] / score[0]:.3f}, {least[1] / least[0]:.2f}" for score, least in pairs])
 
 
 def main():

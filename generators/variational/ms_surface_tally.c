@@ -13,8 +13,9 @@ static double cone_volume(double from, double to)
     return to > from ? (to * to * to - from * from * from) / 3 : 0;
 }
 
+/* Where the others begin below the surface takes as long as all else: `losses` is 0 where it is not asked for. */
 static ms_surface_worth tally_sphere(const ms_surface_fit *fit, const ms_caps_window *window, ms_exposed *exposed,
-                                     uint32_t self)
+                                     uint32_t self, int losses)
 {
     const ms_ball *ball = &window->ball[self];
     const double r = ball->radius;
@@ -27,9 +28,11 @@ static ms_surface_worth tally_sphere(const ms_surface_fit *fit, const ms_caps_wi
         const double *u = exposed->normal[p];
         const double place[3] = {ball->centre[0] + r * u[0], ball->centre[1] + r * u[1], ball->centre[2] + r * u[2]};
         const double phi = ms_signed_distance_at(fit->field, place);
-        const double begin = 1 - ms_exposed_depth(exposed, u), border = fmax(begin, fmin(1, 1 - phi / r));
         sum.mismatch += fabs(phi);
-        sum.loss += (1 + fit->slant) * cone_volume(begin, border) - (1 - fit->slant) * cone_volume(border, 1);
+        if (losses) {
+            const double begin = 1 - ms_exposed_depth(exposed, u), border = fmax(begin, fmin(1, 1 - phi / r));
+            sum.loss += (1 + fit->slant) * cone_volume(begin, border) - (1 - fit->slant) * cone_volume(border, 1);
+        }
     }
     const double part = FOUR_PI * r * r / exposed->points;
     return (ms_surface_worth){.loss = part * r * sum.loss, .mismatch = part * sum.mismatch};
@@ -53,7 +56,7 @@ ms_status ms_surface_tally(ms_surface_worth *each, double *mismatch, const uint8
 #pragma omp for schedule(dynamic, 4)
             for (size_t s = 0; s < count; s++) {
                 if (exposed.normal && (!which || which[s])) {
-                    worth[s] = tally_sphere(fit, &window, &exposed, (uint32_t)s);
+                    worth[s] = tally_sphere(fit, &window, &exposed, (uint32_t)s, each != NULL);
                 }
             }
             ms_exposed_free(&exposed);

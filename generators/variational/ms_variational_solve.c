@@ -112,7 +112,8 @@ static ms_status improve_fit(ms_variational_solver *s, mismatch *now, int steps,
     return status;
 }
 
-/* For spheres that fit so well that the error of a linear look-up would show: the mismatch is looked at anew. */
+/* For spheres that fit so well that the error of a linear look-up would show: the mismatch is looked at anew. Which
+ * spheres are dropped before, it does not change. */
 static ms_status sharpen_field(ms_variational_solver *s, mismatch *now, ms_error *err)
 {
     if (s->field.cubic || !now->is_fine) {
@@ -236,6 +237,9 @@ static ms_status settle_spheres(ms_variational_solver *s, ms_error *err)
     mismatch now = {0};
     ms_status status = find_mismatch(&now, s, err);
     if (status == MS_OK) {
+        status = sharpen_field(s, &now, err);
+    }
+    if (status == MS_OK) {
         status = improve_fit(s, &now, LONG_STEPS, 0.8, 0.2, err);
     }
     if (status == MS_OK) {
@@ -247,18 +251,11 @@ static ms_status settle_spheres(ms_variational_solver *s, ms_error *err)
 /* All stages. */
 static ms_status run_stages(ms_variational_solver *s, ms_error *err)
 {
-    mismatch now = {0};
     ms_status status = MS_OK;
     const double surplus = (double)ms_variational_solver_count(s) - (double)s->wanted;
     s->planned = count_steps(s, surplus);
     if (surplus > 0) {
         status = fit_spheres(s, START_STEPS, 0.8, 0.2, err);
-    }
-    if (status == MS_OK) {
-        status = find_mismatch(&now, s, err);
-    }
-    if (status == MS_OK) {
-        status = sharpen_field(s, &now, err);
     }
     if (status == MS_OK) {
         status = prune_surplus(s, err);

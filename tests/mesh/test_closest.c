@@ -258,6 +258,7 @@ static void normals_are_those_of_the_nearest_faces(void **state)
         }
         const double distance = ms_closest_signed_normal(normal, closest, p);
         assert_true(distance == ms_closest_signed_distance(closest, p));
+        assert_true(distance == ms_closest_side(NULL, closest, p, ms_closest_distance(NULL, closest, p, HUGE_VAL)));
         expect_close(normal[nearest] / sqrt(dot(normal, normal)), p[nearest] > 0.5 ? 1 : -1, 1e-12);
         for (int i = 0; i < 3; i++) { /* all beyond: the corner; one less: an edge */
             p[i] = 1 + p[i];

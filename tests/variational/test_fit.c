@@ -1,9 +1,11 @@
 /* The parts of the variational generator: signed distances, losses, fits, bounds. */
 #include "support/variational_samples.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <string.h>
 
+#include "mesh/ms_closest.h"
 #include "variational/ms_coverage_count.h"
 #include "variational/ms_exposed.h"
 #include "variational/ms_pattern_search.h"
@@ -11,6 +13,23 @@
 #include "variational/ms_split.h"
 #include "variational/ms_surface_fit.h"
 #include "variational/ms_surface_tally.h"
+
+/* To the last bit, whichever neighbours a node was bounded by. */
+static void expect_nodes_of_mesh(const ms_signed_distance *field)
+{
+    const ms_target *target = field->target;
+    int known = 0;
+    for (int i = 0; i < field->n[0] * field->n[1] * field->n[2]; i++) {
+        const int on[3] = {i % field->n[0], i / field->n[0] % field->n[1], i / field->n[0] / field->n[1]};
+        const double at[3] = {on[0] * field->step, on[1] * field->step, on[2] * field->step};
+        double place[3];
+        ms_grid_place(place, &target->grid, at);
+        const double truth = ms_closest_signed_distance(target->closest, place) / target->grid.h;
+        known += !isnan(field->phi[i]);
+        assert_true(isnan(field->phi[i]) || field->phi[i] == (float)truth);
+    }
+    assert_true(known > 200);
+}
 
 /* Exact at the nodes, linear between them, and beyond the lattice never too small. */
 static void field_is_the_distance(void **state)
@@ -37,6 +56,7 @@ static void field_is_the_distance(void **state)
             assert_true(phi > truth - 0.4 * step * step / away - 0.05);
             assert_true(phi < truth + 0.8 * step * step / away + 0.05 + 3 * beyond);
         }
+        expect_nodes_of_mesh(&field);
     }
     ms_target_free(&target);
     ms_mesh_free(&mesh);
@@ -415,7 +435,7 @@ static void tally_is_the_volume(void **state)
     const ms_surface_fit fit = {.field = &field, .lattice = &lattice};
     const double h = target.grid.h, cell = h * h * h, pi = acos(-1.0);
     ms_surface_worth worth[2];
-    double mismatch;
+    double mismatch, alone;
     const ms_sphere smaller = {.radius = 0.99}, beside = {.centre = {0.05, 0, 0}, .radius = 0.99};
     ms_ball ball[2] = {ms_grid_ball(&target.grid, &smaller), ms_grid_ball(&target.grid, &beside)};
     assert_int_equal(ms_surface_tally(worth, &mismatch, NULL, &fit, ball, 1, &err), MS_OK);
@@ -424,6 +444,8 @@ static void tally_is_the_volume(void **state)
     /* Moved by d, a lune of pi r^2 d - pi d^3 / 12 is added: what lies outside of the shape, all but the shell between,
      * counts against it. */
     assert_int_equal(ms_surface_tally(worth, &mismatch, NULL, &fit, ball, 2, &err), MS_OK);
+    assert_int_equal(ms_surface_tally(NULL, &alone, NULL, &fit, ball, 2, &err), MS_OK);
+    assert_true(alone == mismatch);
     const double lune = pi * (0.99 * 0.99 * 0.05 - 0.05 * 0.05 * 0.05 / 12);
     assert_true(-worth[1].loss * cell < lune && -worth[1].loss * cell > lune - 2 * 2 * pi * 0.01);
     assert_true(worth[0].loss * cell > 0.95 * lune && worth[0].loss * cell < 1.01 * lune);
