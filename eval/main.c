@@ -12,9 +12,10 @@
 #include "command/ms_commands.h"
 
 static const ms_command *const COMMANDS[] = {
-    &ms_command_generate,   &ms_command_score,   &ms_command_correct,   &ms_command_convert,    &ms_command_info,
-    &ms_command_shape,      &ms_command_compare, &ms_command_stability, &ms_command_scene,      &ms_command_grains,
-    &ms_command_generators, &ms_command_help,    &ms_command_version,   &ms_command_completion, NULL,
+    &ms_command_generate,  &ms_command_score,   &ms_command_contact,    &ms_command_correct,
+    &ms_command_convert,   &ms_command_info,    &ms_command_shape,      &ms_command_compare,
+    &ms_command_stability, &ms_command_scene,   &ms_command_grains,     &ms_command_generators,
+    &ms_command_help,      &ms_command_version, &ms_command_completion, NULL,
 };
 
 static void print_usage(FILE *stream)

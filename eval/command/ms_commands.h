@@ -9,6 +9,7 @@
 
 extern const ms_command ms_command_compare;
 extern const ms_command ms_command_completion;
+extern const ms_command ms_command_contact;
 extern const ms_command ms_command_convert;
 extern const ms_command ms_command_correct;
 extern const ms_command ms_command_generate;

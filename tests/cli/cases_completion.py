@@ -10,8 +10,8 @@ import time
 
 from support import MSKIT, TIMEOUT, Case
 
-COMMANDS = ("generate", "score", "correct", "convert", "info", "shape", "compare", "stability", "scene", "grains",
-            "generators", "help", "version", "completion")
+COMMANDS = ("generate", "score", "contact", "correct", "convert", "info", "shape", "compare", "stability", "scene",
+            "grains", "generators", "help", "version", "completion")
 
 
 class Words(Case):

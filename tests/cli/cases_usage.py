@@ -5,8 +5,8 @@ import shutil
 
 from support import Case, box_obj
 
-COMMANDS = ("generate", "score", "correct", "convert", "info", "shape", "compare", "stability", "scene", "grains",
-            "generators", "help", "version", "completion")
+COMMANDS = ("generate", "score", "contact", "correct", "convert", "info", "shape", "compare", "stability", "scene",
+            "grains", "generators", "help", "version", "completion")
 
 
 class Help(Case):

@@ -36,6 +36,7 @@ COMMANDS = {
              "out.vtp"] + SMALL,
     "score --cut": ["score", "clump.csv", "--target", "body.stl", "--cut", "--json"] + SMALL,
     "score --curve": ["score", "clump.json", "--target", "body.stl", "--curve"] + SMALL,
+    "contact": ["contact", "clump.csv", "--target", "body.stl", "--poses", "3", "-j", "1", "--json"],
     "correct": ["correct", "clump.csv", "--target", "body.stl", "--density", "2000", "-o", "out.json", "--json"] + SMALL,
     "convert": ["convert", "clump.csv", "-o", "out.json", "-o", "out.vtk"],
     "compare": ["compare", "body.stl", "-n", "2,3", "-g", "mss", "-g", "setcover", "--charts", "charts", "-o", "out.csv"] + SMALL,

@@ -1,0 +1,267 @@
+/* mskit contact CLUMP [--target SHAPE] */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/ms_text.h"
+#include "cli/ms_files.h"
+#include "cli/ms_input.h"
+#include "cli/ms_json_object.h"
+#include "cli/ms_report.h"
+#include "clump/formats/ms_read.h"
+#include "clump/ms_particle.h"
+#include "contact/ms_contact_report.h"
+#include "mesh/ms_hull.h"
+#include "ms_commands.h"
+#include "voxel/ms_grid_hull.h"
+
+static const double PI = 3.14159265358979323846;
+
+static const ms_flag FLAGS[] = {
+    {"target", 't', "SHAPE", "the mesh or volume that the clump stands for: its volume, centre and poses"},
+    {"poses", 0, "N", "orientations drawn at random, and pairs of faces (1000)"},
+    {"overlap", 0, "PART[,PART]...", "largest overlap of a contact / r_eq (0.0005,0.002,0.01)"},
+    {"restitution", 0, "E", "coefficient of restitution of one contact (0.5)"},
+    {"seed", 0, "S", "seed of the orientations (1)"},
+    {"json", 0, NULL, "as JSON"},
+    {"csv", 0, NULL, "the contacts as CSV"},
+    MS_INPUT_MENDING_FLAGS,
+    MS_INPUT_VOLUME_FLAGS,
+    {"max-memory", 0, "SIZE", "refuse grids beyond this, as 500M or 8G (3/4 of the machine's)"},
+    {"threads", 'j', "T", "threads (all cores)"},
+    {0},
+};
+
+typedef struct contact_arguments {
+    ms_input_flags input;
+    ms_contact_options options;
+    const char *clump, *target;
+    const char *of_shape; /* a flag about the shape; NULL without */
+    int json, csv;
+} contact_arguments;
+
+/* What the clump stands for, and both bodies about its centre of mass. */
+typedef struct contact_bodies {
+    ms_clump spheres;
+    ms_support clump, shape; /* `shape` is empty without --target */
+    double r_eq;
+} contact_bodies;
+
+static ms_status take_overlaps(ms_contact_options *options, const char *value, ms_error *err)
+{
+    options->n_overlaps = 0;
+    for (const char *at = value;; at++) {
+        const ms_word word = {at, strcspn(at, ",")};
+        double part;
+        if (!ms_text_to_double(&part, &word) || !(part >= 1e-9 && part <= 0.1)) {
+            return ms_fail(err, MS_ERR_ARG, "--overlap takes parts of r_eq from 1e-9 to 0.1, as 0.001,0.01, not %s",
+                           value);
+        }
+        if (options->n_overlaps == MS_CONTACT_MAX_OVERLAPS) {
+            return ms_fail(err, MS_ERR_ARG, "--overlap takes %d parts at most", MS_CONTACT_MAX_OVERLAPS);
+        }
+        options->overlap[options->n_overlaps++] = part;
+        at += word.length;
+        if (*at == '\0') {
+            return MS_OK;
+        }
+    }
+}
+
+static ms_status take_number(contact_arguments *a, const char *name, const char *value, ms_error *err)
+{
+    double number = 0;
+    ms_status status;
+    if (strcmp(name, "restitution") == 0) {
+        return ms_flags_number(&a->options.restitution, name, value, 1e-6, 1, err);
+    }
+    if (strcmp(name, "poses") == 0) {
+        status = ms_flags_whole(&number, name, value, 1, 1e7, err);
+        a->options.orientations = (size_t)number;
+    } else {
+        status = ms_flags_whole(&number, name, value, 0, 4294967295.0, err);
+        a->options.seed = (unsigned long)number;
+    }
+    return status;
+}
+
+static ms_status take_contact_flag(void *context, const char *name, const char *value, ms_error *err)
+{
+    contact_arguments *a = context;
+    int taken;
+    const ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
+    if (taken) {
+        if (strcmp(name, "threads") != 0 && strcmp(name, "max-memory") != 0) {
+            a->of_shape = name;
+        }
+        return status;
+    }
+    if (strcmp(name, "target") == 0) {
+        a->target = value;
+    } else if (strcmp(name, "overlap") == 0) {
+        return take_overlaps(&a->options, value, err);
+    } else if (strcmp(name, "json") == 0 || strcmp(name, "csv") == 0) {
+        *(name[0] == 'j' ? &a->json : &a->csv) = 1;
+    } else {
+        return take_number(a, name, value, err);
+    }
+    return MS_OK;
+}
+
+/* The hull of voxels, in the unit of the shape. */
+static ms_status hull_of_volume(ms_mesh *hull, ms_input *input, const ms_input_flags *flags, ms_error *err)
+{
+    ms_mesh centres;
+    const ms_grid *grid = &input->target.grid;
+    ms_status status = ms_target_voxels_from_volume(&input->target, &input->volume, flags->label, err);
+    if (status == MS_OK) {
+        status = ms_grid_hull_build(&centres, hull, grid, err);
+        status = status == MS_ERR_SHAPE && hull->n_vertices ? MS_OK : status; /* flat: no hull of the centres */
+        ms_mesh_free(&centres);
+    }
+    for (size_t v = 0; status == MS_OK && v < hull->n_vertices; v++) {
+        for (int k = 0; k < 3; k++) {
+            hull->vertex[v][k] = grid->origin[k] + grid->h * hull->vertex[v][k];
+        }
+    }
+    return status;
+}
+
+/* What the mesh reaches with; where this build can, of its hull alone, which is less. */
+static ms_status hull_of_mesh(ms_mesh *hull, const ms_input *input, ms_error *err)
+{
+    if (!input->report.closed) {
+        return ms_fail(err, MS_ERR_SHAPE, "%s is not closed and has no centre of mass; mend it (--fill-holes, --weld)",
+                       input->path);
+    }
+    return ms_hull_is_built() ? ms_hull_build(hull, (const double(*)[3])input->mesh.vertex, input->mesh.n_vertices, err)
+                              : MS_OK;
+}
+
+static ms_status read_shape(contact_bodies *b, ms_body *body, const contact_arguments *a, ms_error *err)
+{
+    ms_input input;
+    ms_mesh hull = {0};
+    ms_status status = ms_input_read(&input, a->target, &a->input, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    status = ms_input_check_flags(&input, &a->input, err);
+    if (status == MS_OK) {
+        status = input.is_volume ? hull_of_volume(&hull, &input, &a->input, err) : hull_of_mesh(&hull, &input, err);
+    }
+    *body = input.is_volume ? input.target.body : input.solid.body;
+    if (status == MS_OK) {
+        status = ms_support_from_mesh(&b->shape, hull.n_vertices ? &hull : &input.mesh, body->centroid, err);
+    }
+    ms_mesh_free(&hull);
+    ms_input_free(&input);
+    return status;
+}
+
+/* Volume and centre of mass: of the shape, of the particle that the file knows, or of the union of the spheres. */
+static ms_status read_bodies(contact_bodies *b, const contact_arguments *a, ms_error *err)
+{
+    ms_body body;
+    ms_particle particle;
+    ms_status status = ms_read_clump(&b->spheres, &particle, a->clump, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    if (a->target) {
+        status = read_shape(b, &body, a, err);
+    } else if (particle.mass > 0 && particle.density > 0) {
+        body.volume = particle.mass / particle.density / pow(particle.scale, 3);
+        memcpy(body.centroid, particle.centre, sizeof body.centroid);
+    } else {
+        status = ms_particle_union(&body, &b->spheres, ms_input_max_voxels(&a->input), err);
+    }
+    if (status == MS_OK) {
+        b->r_eq = cbrt(3 * body.volume / (4 * PI));
+        status = ms_support_from_clump(&b->clump, &b->spheres, body.centroid, err);
+    }
+    return status;
+}
+
+static json_t *contact_json(const contact_arguments *a, const ms_contact *contact, size_t spheres)
+{
+    json_t *json = json_pack("{s:o,s:o,s:I,s:I,s:f,s:I}", "path", ms_report_text(a->clump), "target",
+                             a->target ? ms_report_text(a->target) : json_null(), "spheres", (json_int_t)spheres,
+                             "orientations", (json_int_t)a->options.orientations, "single_restitution",
+                             a->options.restitution, "seed", (json_int_t)a->options.seed);
+    ms_json_object_merge(&json, ms_contact_report_json(contact));
+    return json;
+}
+
+static ms_status execute_contact(const contact_arguments *a, ms_error *err)
+{
+    contact_bodies b = {.r_eq = 0};
+    ms_contact contact;
+    if (a->input.threads) {
+        omp_set_num_threads(a->input.threads);
+    }
+    ms_status status = read_bodies(&b, a, err);
+    if (status == MS_OK) {
+        status = ms_contact_study(&contact, &b.clump, b.shape.count ? &b.shape : NULL, b.r_eq, &a->options, err);
+    }
+    if (status == MS_OK) {
+        if (a->json) {
+            status = ms_report_print(stdout, contact_json(a, &contact, b.spheres.n_spheres), err);
+        } else if (a->csv) {
+            ms_contact_report_csv(stdout, &contact);
+        } else {
+            printf("%s, %zu spheres\n", a->clump, b.spheres.n_spheres);
+            ms_contact_report_print(stdout, &contact);
+        }
+        ms_contact_free(&contact);
+    }
+    ms_support_free(&b.clump);
+    ms_support_free(&b.shape);
+    ms_clump_free(&b.spheres);
+    return status;
+}
+
+static ms_status resolve_contact(const contact_arguments *a, ms_error *err)
+{
+    const char *const inputs[] = {a->clump, a->target};
+    if (a->json && a->csv) {
+        return ms_fail(err, MS_ERR_ARG, "--json and --csv write to standard output; choose one of them");
+    }
+    if (a->of_shape && !a->target) {
+        return ms_fail(err, MS_ERR_ARG, "--%s is of a shape; give --target SHAPE beside it", a->of_shape);
+    }
+    return ms_files_check_standard(inputs, 2, err);
+}
+
+static int run_contact(const ms_command *command, int argc, char **argv)
+{
+    contact_arguments a = {
+        .options = {
+            .orientations = 1000, .restitution = 0.5, .overlap = {0.0005, 0.002, 0.01}, .n_overlaps = 3, .seed = 1}};
+    int first;
+    ms_error err;
+    ms_input_defaults(&a.input);
+    const int code = ms_flags_parse(&first, command, 0, argc, argv, take_contact_flag, &a);
+    if (code != MS_FLAGS_GO_ON) {
+        return code;
+    }
+    if (argc - first != 1) {
+        return ms_flags_wrong_usage(command, "takes one clump file");
+    }
+    a.clump = argv[first];
+    const ms_status status = resolve_contact(&a, &err);
+    if (status != MS_OK) {
+        return ms_flags_refuse(command, status, &err);
+    }
+    return execute_contact(&a, &err) == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
+}
+
+const ms_command ms_command_contact = {
+    .name = "contact",
+    .summary = "how many spheres of a clump touch at once, what rebounds, and how it lies beside its shape",
+    .usage = "CLUMP [--target SHAPE] [--poses N] [--overlap PART] [--restitution E] [--seed S] [--json | --csv]",
+    .example = "mskit contact grain.csv --target grain.stl --overlap 0.001",
+    .flags = FLAGS,
+    .run = run_contact,
+};

@@ -1,0 +1,163 @@
+#include "ms_contact_report.h"
+
+#include <math.h>
+
+#include "base/ms_vector.h"
+#include "chart/ms_csv.h"
+#include "cli/ms_json_object.h"
+#include "cli/ms_report.h"
+
+static const char *const AGAINST[] = {[MS_CONTACT_PLANE] = "plane", [MS_CONTACT_PARTICLE] = "particle"};
+static const char *const WHERE[] = {[MS_CONTACT_RANDOM] = "random", [MS_CONTACT_POSES] = "poses"};
+
+/* The numbers of a row, in the order of the columns. */
+#define MS_CONTACT_COLUMNS(X)                      \
+    X("overlap", row->overlap)                     \
+    X("orientations", (double)row->samples)        \
+    X("missed", row->missed)                       \
+    X("contacts", row->mean)                       \
+    X("contacts_median", (double)row->median)      \
+    X("contacts_most", (double)row->most)          \
+    X("stiffness", row->stiffness)                 \
+    X("stiffness_most", row->most_stiffness)       \
+    X("damping", row->damping)                     \
+    X("damping_most", row->most_damping)           \
+    X("restitution", row->restitution)             \
+    X("restitution_least", row->least_restitution) \
+    X("overdamped", row->overdamped)
+
+static void print_forms(FILE *stream, const ms_contact *c)
+{
+    fprintf(stream, "  %-22s %.9g\n", "r_eq", c->r_eq);
+    fprintf(stream, "  %-22s %.6g", "mean width", c->clump.mean_width);
+    if (c->shape.pose) {
+        fprintf(stream, ", of the shape %.6g\n  %-22s %.6g, of r_eq %.3g", c->shape.mean_width, "rms of the support",
+                c->rms, c->rms / c->r_eq);
+    }
+    fputc('\n', stream);
+}
+
+static void print_poses(FILE *stream, const ms_contact *c, const ms_contact_form *form, const char *name)
+{
+    const ms_contact_form *other = form == &c->clump ? &c->shape : &c->clump;
+    fprintf(stream, "\n  %-6s %9s %9s %7s  %-26s %s\n", name, "height", "barrier", "share", "down",
+            other->pose ? "angle to the other's nearest" : "");
+    for (size_t p = 0; p < form->n_poses; p++) {
+        const ms_pose *pose = &form->pose[p];
+        fprintf(stream, "  %-6zu %9.4f ", p + 1, pose->height / c->r_eq);
+        if (isfinite(pose->barrier)) {
+            fprintf(stream, "%9.4f", pose->barrier / c->r_eq);
+        } else {
+            fprintf(stream, "%9s", "-");
+        }
+        fprintf(stream, " %7.4f  %8.4f %8.4f %8.4f", pose->share, pose->direction[0], pose->direction[1],
+                pose->direction[2]);
+        if (other->pose) {
+            double angle;
+            ms_contact_nearest(&angle, other, pose->direction);
+            fprintf(stream, "  %.2f", angle * MS_VECTOR_DEGREES);
+        }
+        fputc('\n', stream);
+    }
+}
+
+void ms_contact_report_print(FILE *stream, const ms_contact *c)
+{
+    print_forms(stream, c);
+    fputs("\n  touches                     spheres at once        stiffness       damping         e\n"
+          "  what     where  overlap     mean median most       mean  most      mean  most      mean  least  none\n",
+          stream);
+    for (size_t r = 0; r < c->n_rows; r++) {
+        const ms_contact_row *row = &c->row[r];
+        fprintf(stream, "  %-8s %-6s %-8.3g %7.2f %6zu %4zu   %8.2f %5.4g  %8.2f %5.4g  %8.3f %6.3f %5.3f\n",
+                AGAINST[row->against], WHERE[row->where], row->overlap, row->mean, row->median, row->most,
+                row->stiffness, row->most_stiffness, row->damping, row->most_damping, row->restitution,
+                row->least_restitution, row->overdamped);
+        if (row->missed > 0) {
+            fprintf(stream, "  (of these %.3g pass without touching and are left out)\n", row->missed);
+        }
+    }
+    print_poses(stream, c, &c->clump, "clump");
+    if (c->shape.pose) {
+        print_poses(stream, c, &c->shape, "shape");
+    }
+    fputs("\n  (heights and barriers in r_eq; e: none is the part of which nothing rebounds)\n", stream);
+}
+
+void ms_contact_report_csv(FILE *stream, const ms_contact *c)
+{
+#define NAME(name, value) "," name
+    fputs("against,where" MS_CONTACT_COLUMNS(NAME) "\n", stream);
+#undef NAME
+    for (size_t r = 0; r < c->n_rows; r++) {
+        const ms_contact_row *row = &c->row[r];
+        fprintf(stream, "%s,%s", AGAINST[row->against], WHERE[row->where]);
+#define PUT(name, value) ms_csv_put_number(stream, value);
+        MS_CONTACT_COLUMNS(PUT)
+#undef PUT
+        fputc('\n', stream);
+    }
+}
+
+/* How often each number of contacts occurs: [[number, part], ...]. The samples are in its order. */
+static json_t *counts_json(const ms_contact_row *row)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < row->samples;) {
+        const size_t count = row->sample[i].touch.count;
+        double part = 0;
+        for (; i < row->samples && row->sample[i].touch.count == count; i++) {
+            part += row->sample[i].weight;
+        }
+        ms_json_object_append(&list, json_pack("[I,f]", (json_int_t)count, part));
+    }
+    return list;
+}
+
+static json_t *row_json(const ms_contact_row *row)
+{
+    json_t *json = json_pack("{s:s,s:s}", "against", AGAINST[row->against], "where", WHERE[row->where]);
+#define SET(name, value) ms_json_object_set(&json, name, ms_report_number(value));
+    MS_CONTACT_COLUMNS(SET)
+#undef SET
+    ms_json_object_set(&json, "counts", counts_json(row));
+    return json;
+}
+
+static json_t *pose_json(const ms_contact *c, const ms_pose *pose, const ms_contact_form *other)
+{
+    json_t *json = json_pack("{s:[f,f,f],s:f,s:o,s:f}", "down", pose->direction[0], pose->direction[1],
+                             pose->direction[2], "height", pose->height / c->r_eq, "barrier",
+                             ms_report_number(pose->barrier / c->r_eq), "share", pose->share);
+    if (other->pose) {
+        double angle;
+        const ms_pose *nearest = ms_contact_nearest(&angle, other, pose->direction);
+        ms_json_object_set(&json, "nearest", json_integer((json_int_t)(nearest - other->pose)));
+        ms_json_object_set(&json, "angle", json_real(angle * MS_VECTOR_DEGREES));
+    }
+    return json;
+}
+
+static json_t *form_json(const ms_contact *c, const ms_contact_form *form, const ms_contact_form *other)
+{
+    json_t *poses = json_array();
+    for (size_t p = 0; p < form->n_poses; p++) {
+        ms_json_object_append(&poses, pose_json(c, &form->pose[p], other));
+    }
+    return json_pack("{s:f,s:o}", "mean_width", form->mean_width, "poses", poses);
+}
+
+json_t *ms_contact_report_json(const ms_contact *c)
+{
+    json_t *rows = json_array();
+    for (size_t r = 0; r < c->n_rows; r++) {
+        ms_json_object_append(&rows, row_json(&c->row[r]));
+    }
+    json_t *json =
+        json_pack("{s:f,s:o,s:o}", "r_eq", c->r_eq, "contacts", rows, "clump", form_json(c, &c->clump, &c->shape));
+    if (c->shape.pose) {
+        ms_json_object_set(&json, "shape", form_json(c, &c->shape, &c->clump));
+        ms_json_object_set(&json, "support_rms", json_real(c->rms));
+    }
+    return json;
+}
