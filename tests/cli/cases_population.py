@@ -153,6 +153,7 @@ class Refusals(Population):
         os.mkdir(self.path("pop"))
         self.refused("shapes", "--population", "pop", "-o", "pop/best.csv", says=("pop/best.csv",), code=1)
         self.refused("shapes", "shapes/box-0.obj", says=("shapes/box-0.obj is there twice",))
+        self.refused("shapes", "./shapes/box-0.obj", says=("./shapes/box-0.obj is there twice, as shapes/box-0.obj",))
 
 
 if __name__ == "__main__":
