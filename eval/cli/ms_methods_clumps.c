@@ -7,10 +7,10 @@
 #include "ms_methods.h"
 #include "ms_paths.h"
 
+/* A pattern says itself what is hidden, and what it finds may begin with ./ or ../ */
 static int is_any(const char *name, int in_folder)
 {
-    (void)in_folder;
-    return name[0] != '.';
+    return !in_folder || name[0] != '.';
 }
 
 /* Length of the shape's name if the clump is called by it; 0 if not. */

@@ -210,21 +210,33 @@ static int execute_compare(const ms_command *command, const compare_arguments *a
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
-/* A shape is read for each resolution. One that is there twice, as by a folder and by itself, would count twice. */
-static ms_status check_shapes(const ms_comparison *c, ms_error *err)
+/* A shape that is there twice, as by a folder and by itself, would count twice. */
+static ms_status add_shape(ms_files *files, const char *shape, ms_error *err)
 {
-    for (size_t s = 0; s < c->n_shapes; s++) {
-        for (size_t before = 0; before < s; before++) {
-            if (strcmp(c->shape[before], c->shape[s]) == 0) {
-                return ms_fail(err, MS_ERR_ARG, "%s is there twice", c->shape[s]);
-            }
-        }
-        if (ms_file_is_standard(c->shape[s])) {
-            return ms_fail(err, MS_ERR_ARG,
-                           "compare may read a shape several times, and - once; save it and name the file");
+    const size_t before = files->count;
+    const ms_status status = ms_files_add(files, shape, MS_FILE_READ, err);
+    for (size_t f = 0; f < before && files->count > before; f++) {
+        if (strcmp(files->file[f].key, files->file[before].key) == 0) {
+            return ms_fail(err, MS_ERR_ARG, "%s is there twice, as %s; name each shape once", shape,
+                           files->file[f].path);
         }
     }
-    return MS_OK;
+    return status;
+}
+
+/* A shape is read for each resolution. */
+static ms_status check_shapes(const ms_comparison *c, ms_error *err)
+{
+    ms_files files = {0};
+    ms_status status = MS_OK;
+    for (size_t s = 0; s < c->n_shapes && status == MS_OK; s++) {
+        status = ms_file_is_standard(c->shape[s])
+                     ? ms_fail(err, MS_ERR_ARG,
+                               "compare may read a shape several times, and - once; save it and name the file")
+                     : add_shape(&files, c->shape[s], err);
+    }
+    ms_files_free(&files);
+    return status;
 }
 
 /* What follows from all flags together. */

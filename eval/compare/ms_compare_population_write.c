@@ -25,14 +25,18 @@ typedef struct twin_table {
     int is_begun; /* the header is written */
 } twin_table;
 
-static void put_row(twin_table *t, const table_field *row, size_t count)
+/* @param is_told 0: there is nothing to tell, and no more than the header is written, so that no table is without one */
+static void put_row(twin_table *t, const table_field *row, size_t count, int is_told)
 {
-    json_t *object = json_object();
     for (size_t f = 0; f < count && !t->is_begun; f++) {
         fprintf(t->stream, "%s%s", f ? "," : "", row[f].name);
     }
     fputs(t->is_begun ? "" : "\n", t->stream);
     t->is_begun = 1;
+    if (!is_told) {
+        return;
+    }
+    json_t *object = json_object();
     for (size_t f = 0; f < count; f++) {
         fputs(f ? "," : "", t->stream);
         if (row[f].text) {
@@ -76,9 +80,7 @@ static void put_spread(writer *w, size_t n, size_t m, const char *name, ms_colum
                                {"lower_quartile", NULL, s.lower / over},
                                {"median", NULL, s.median / over},
                                {"upper_quartile", NULL, s.upper / over}};
-    if (s.count) {
-        put_row(&w->spread, row, sizeof row / sizeof *row);
-    }
+    put_row(&w->spread, row, sizeof row / sizeof *row, s.count > 0);
 }
 
 static void put_spreads(writer *w)
@@ -117,9 +119,7 @@ static ms_status put_standings(writer *w, size_t n, const char *by, ms_column co
                                    {"factor", NULL, s->factor},
                                    {"factor_low", NULL, s->low},
                                    {"factor_high", NULL, s->high}};
-        if (s->shapes) {
-            put_row(&w->best, row, sizeof row / sizeof *row);
-        }
+        put_row(&w->best, row, sizeof row / sizeof *row, s->shapes > 0);
     }
     return status;
 }

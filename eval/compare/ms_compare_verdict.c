@@ -19,16 +19,22 @@ static size_t find_winner(const ms_compare_standing *standing, size_t n_methods)
     return winner;
 }
 
-/* The factor with its interval, or why it means little. */
+/*
+ * The factor with its interval, or why it means little. The others are each shape's best, so that who wins most often may
+ * lose more where it loses than it gains where it wins.
+ */
 static void say_factor(FILE *stream, const ms_compare_standing *s, const char *what)
 {
+    const int is_known = isfinite(s->low);
+    fputs(is_known && s->high < 1 ? ", but loses by more than it wins" : "", stream);
     fprintf(stream, "; the best of the others has %.3g times its %s", s->factor, what);
-    if (isfinite(s->low)) {
+    fputs(s->shapes > 1 ? " on average" : "", stream);
+    if (is_known) {
         fprintf(stream, " (95 %%: %.3g to %.3g)", s->low, s->high);
     }
-    if (isfinite(s->low) ? s->low <= 1 : s->factor <= 1) {
-        fputs(": not to be told apart", stream);
-    } else if (!isfinite(s->low) && s->shapes > 1) {
+    if (is_known ? s->low <= 1 && s->high >= 1 : s->factor <= 1) {
+        fputs(": by this not to be told apart", stream);
+    } else if (!is_known && s->shapes > 1) {
         fprintf(stream, "; fewer than %d shapes give no interval", MS_COMPARE_SPREAD_LEAST);
     }
 }
@@ -59,6 +65,9 @@ static ms_status say_winner(FILE *stream, const ms_compare_population *p, size_t
             column == MS_COLUMN_DICE ? "has the least D" : "is the quickest");
     if (p->n_shapes > 1) {
         fprintf(stream, " on %zu of %zu shapes", best->best, best->shapes);
+    }
+    if (best->shapes < p->n_shapes) {
+        fprintf(stream, " (of %zu; on the rest it or all others have none)", p->n_shapes);
     }
     say_factor(stream, best, column == MS_COLUMN_DICE ? "D" : "time");
     fputs(column == MS_COLUMN_GENERATE && is_beside(p, number) ? " (times of runs side by side; -j 1: in turn)\n"

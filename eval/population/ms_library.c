@@ -71,7 +71,8 @@ static ms_status make_classes(ms_library *l, ms_error *err)
 {
     const size_t n = l->table->count, classes = l->goal.classes;
     if (classes > n) {
-        return ms_fail(err, MS_ERR_ARG, "%zu grains make no %zu classes of size", n, classes);
+        return ms_fail(err, MS_ERR_ARG, "%zu grains make no %zu classes of size; ask for --classes %zu or fewer", n,
+                       classes, n);
     }
     double *volume = malloc(n * sizeof *volume);
     l->size = calloc(classes, sizeof *l->size);

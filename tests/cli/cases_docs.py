@@ -29,9 +29,15 @@ def keys(value):
 
 class Documents(Case):
     def test_commands_of_the_guide(self):
-        """In order, in one folder, which holds an open mesh, a scan with two labels and the guide's manifest."""
+        """In order, in one folder, which holds an open mesh, a scan with two labels, the guide's manifest and two grains
+        with a coarse clump each."""
         self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))
         self.write("scan.npy", npy([1] * 50 + [2] * 950, (10, 10, 10)))
+        os.mkdir(self.path("grains"))
+        os.mkdir(self.path("coarse"))
+        for k in (1, 2):
+            self.write(f"grains/box-{k}.obj", box_obj((0, 0, 0), (3, 2, k)))
+            self.write(f"coarse/box-{k}.csv", "1,1,0.5,0.5\n2,1,0.5,0.5\n")
         guide = document("guide.md")
         manifest = re.search(r"(?m)^    shape,count\n(    .+\n)+", guide).group(0)
         self.write("scene.csv", manifest.replace("    ", ""))

@@ -100,12 +100,13 @@ class Clumps(Population):
     def test_clumps_of_a_folder(self):
         self.clumps()
         self.write("clumps/other.csv", "not read: it goes with no shape")
-        for word in ("clumps", "clumps/box-*.csv"):
+        for word in ("clumps", "clumps/box-*.csv", "./clumps/*-tool.csv"):
             self.mskit("compare", "shapes", "-g", "mss", "-n", "4", "--cells", "8", "-j", "1", "--clump", f"tool={word}",
                        "-o", "c.csv", "--population", "pop")
             rows = [row for row in self.table("c.csv") if row["generator"] == "tool"]
             self.assertEqual([(r["shape"], r["options"], r["n"], r["seconds_generate"]) for r in rows],
-                             [(f"shapes/box-{k}.obj", f"clumps/box-{k}-tool.csv", "2", "") for k in range(6)])
+                             [(f"shapes/box-{k}.obj", f"{word.split('clumps')[0]}clumps/box-{k}-tool.csv", "2", "")
+                              for k in range(6)])
             scores = self.mskit("score", "clumps/box-3-tool.csv", "--target", "shapes/box-3.obj", "--cells", "8",
                                 "--json").json["scores"]
             self.assertEqual(float(rows[3]["dice"]), scores["dice"])
@@ -152,6 +153,7 @@ class Refusals(Population):
         os.mkdir(self.path("pop"))
         self.refused("shapes", "--population", "pop", "-o", "pop/best.csv", says=("pop/best.csv",), code=1)
         self.refused("shapes", "shapes/box-0.obj", says=("shapes/box-0.obj is there twice",))
+        self.refused("shapes", "./shapes/box-0.obj", says=("./shapes/box-0.obj is there twice, as shapes/box-0.obj",))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 /* A population of shapes: numbers found by hand, the interval by other means. */
 #include "compare/ms_compare_population.h"
+#include "compare/ms_compare_verdict.h"
 #include "support/test_support.h"
 
 #include <math.h>
@@ -189,12 +190,60 @@ static void clumps_stand_at_the_next_number(void **state)
     free_all(&p, &all, &l);
 }
 
+static void expect_verdict(lines *l, const char *says)
+{
+    char text[1024] = {0};
+    ms_compare_records all;
+    ms_error err;
+    const ms_csv csv = {.n_rows = l->count, .row = l->row};
+    FILE *stream = fmemopen(text, sizeof text, "w");
+    assert_non_null(stream);
+    assert_int_equal(ms_compare_records_cut(&all, &csv, &err), MS_OK);
+    assert_int_equal(ms_compare_verdict_say(stream, &all, &err), MS_OK);
+    fclose(stream);
+    ms_compare_records_free(&all);
+    while (l->count) {
+        free(l->row[--l->count]);
+    }
+    if (!strstr(text, says)) {
+        fail_msg("'%s' should hold '%s'", text, says);
+    }
+}
+
+/* Nine shapes: x wins on `wins` of them by 1 part in 1000, and on the others has `worse` times the D of y. */
+static void add_contest(lines *l, int wins, double worse)
+{
+    char shape[] = "a";
+    for (int k = 0; k < 9; k++, shape[0]++) {
+        add_line(l, shape, "x", 10, 10, k < wins ? 0.1 : 0.1 * worse, (double)NAN);
+        add_line(l, shape, "y", 10, 10, k < wins ? 0.1001 : 0.1, (double)NAN);
+    }
+}
+
+static void the_verdict_does_not_mislead(void **state)
+{
+    lines l = {.count = 0};
+    (void)state;
+    add_contest(&l, 5, 5); /* of 9 drawn none is lost in 0.5 % of the samples: (5/9)^9, so the interval lies below 1 */
+    expect_verdict(&l,
+                   "x has the least D on 5 of 9 shapes, but loses by more than it wins; the best of the others has ");
+    add_contest(&l, 8, 5);
+    expect_verdict(&l, "on 8 of 9 shapes; the best of the others has 0.837 times its D on average (95 %: ");
+    add_contest(&l, 8, 5);
+    expect_verdict(&l, "): by this not to be told apart");
+    add_contest(&l, 9, 1);
+    expect_verdict(&l, "on 9 of 9 shapes; the best of the others has 1 times its D on average (95 %: 1 to 1)\n");
+    add_contest(&l, 9, 1);
+    add_line(&l, "z", "y", 10, 10, 0.1, (double)NAN);
+    expect_verdict(&l, "x has the least D on 9 of 9 shapes (of 10; on the rest it or all others have none);");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(quartiles_are_those_by_hand),     cmocka_unit_test(the_interval_is_that_of_the_binomial),
         cmocka_unit_test(standings_are_those_by_hand),     cmocka_unit_test(equal_factors_have_no_spread),
-        cmocka_unit_test(clumps_stand_at_the_next_number),
+        cmocka_unit_test(clumps_stand_at_the_next_number), cmocka_unit_test(the_verdict_does_not_mislead),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
