@@ -48,7 +48,7 @@ typedef struct ms_raster {
  * @param[out] raster the caller frees it; empty on failure
  * @param      grid   the target; borrowed until ms_raster_free
  * @return MS_OK; MS_ERR_NOMEM. Two bytes and a bit a voxel, and by the rule HALF some 24 for each that a ball's
- * surface passes through and that is not covered.
+ *         surface passes through and that is not covered.
  */
 MS_API ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule rule, ms_error *err);
 

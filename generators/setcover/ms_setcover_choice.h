@@ -18,8 +18,7 @@ typedef struct ms_setcover_choice {
     int dropped;                  /* nonzero: some were smaller */
 } ms_setcover_choice;
 
-/** Starts with none fitted; the pool and the cover are borrowed. Spheres of less than the least radius are not taken.
- * */
+/** Starts with none fitted; the pool and the cover are borrowed. Spheres below the least radius are not taken. */
 ms_setcover_choice ms_setcover_choice_start(const ms_setcover_pool *pool, ms_cover *cover, double least);
 
 /**

@@ -127,8 +127,8 @@ static uint64_t find_end_cell(const ms_setcover_field *f, const double centre[3]
 }
 
 /* Of n spheres leaves in front the largest of each cell. @return how many they are */
-static size_t keep_largest(cell_entry *entry, size_t n, const ms_setcover_start *start, const ms_setcover_field *f,
-                           double side)
+static size_t gather_largest(cell_entry *entry, size_t n, const ms_setcover_start *start, const ms_setcover_field *f,
+                             double side)
 {
     size_t found = 0;
     for (size_t e = 0; e < n; e++) {
@@ -155,7 +155,7 @@ static void rank_largest(ms_setcover_start *start, size_t *count, cell_entry *en
         start[i].scale = 0;
     }
     for (double side = CELL; n > 0; side = side < LEVEL ? LEVEL : 2 * side) {
-        n = keep_largest(entry, n, start, f, side);
+        n = gather_largest(entry, n, start, f, side);
         for (size_t e = 0; e < n; e++) {
             start[entry[e].index].scale = side * f->h;
         }

@@ -453,9 +453,8 @@ ms_status ms_cover_build(ms_cover **out, const ms_grid *grid, const ms_ball *can
     *out = NULL;
     if (count >= UINT32_MAX) {
         return ms_fail(err, MS_ERR_LIMIT,
-                       "%zu candidates for spheres, and fewer than %u can be compared; use fewer "
-                       "cells",
-                       count, (unsigned)UINT32_MAX);
+                       "%zu candidates for spheres, and fewer than %u can be compared; use fewer cells", count,
+                       (unsigned)UINT32_MAX);
     }
     ms_cover *cover = calloc(1, sizeof *cover);
     if (cover) {
