@@ -164,6 +164,23 @@ static ms_status fill_rows(ms_contact *c, const ms_support *clump, const ms_cont
     return status;
 }
 
+static ms_status fill_sleds(ms_contact *c, const ms_support *clump, const ms_contact_options *options, ms_error *err)
+{
+    const double friction[MS_CONTACT_N_FRICTIONS] = {0, 0.3};
+    ms_status status = MS_OK;
+    c->face = c->clump.pose;
+    for (size_t p = 1; p < c->clump.n_poses; p++) {
+        c->face = c->clump.pose[p].share > c->face->share ? &c->clump.pose[p] : c->face;
+    }
+    for (size_t o = 0; o < options->n_overlaps && status == MS_OK; o++) {
+        ms_contact_sled *s = &c->sled[c->n_sleds++];
+        s->overlap = options->overlap[o];
+        status = ms_sled_drag(s->sled, friction, MS_CONTACT_N_FRICTIONS, clump, c->face->direction, c->r_eq,
+                              s->overlap * c->r_eq, options->orientations, options->seed, err);
+    }
+    return status;
+}
+
 /* The support function of a body, and its poses. */
 static ms_status fill_form(ms_contact_form *form, double *height, const ms_support *body, const ms_directions *d,
                            double r_eq, ms_error *err)
@@ -203,6 +220,9 @@ ms_status ms_contact_study(ms_contact *contact, const ms_support *clump, const m
     ms_status status = fill_forms(contact, clump, shape, err);
     if (status == MS_OK) {
         status = fill_rows(contact, clump, options, err);
+    }
+    if (status == MS_OK) {
+        status = fill_sleds(contact, clump, options, err);
     }
     if (status != MS_OK) {
         ms_contact_free(contact);

@@ -3,6 +3,7 @@
 #define MS_CONTACT_H
 
 #include "ms_poses.h"
+#include "ms_sled.h"
 #include "ms_touch.h"
 
 enum { MS_CONTACT_MAX_OVERLAPS = 16 };
@@ -42,6 +43,15 @@ typedef struct ms_contact_row {
     double overdamped; /* part of which nothing rebounds */
 } ms_contact_row;
 
+/* Frictions of the sled: none, and 0.3. */
+enum { MS_CONTACT_N_FRICTIONS = 2 };
+
+/** The clump dragged over its like, both on the face that most directions roll to. */
+typedef struct ms_contact_sled {
+    double overlap; /* part of r_eq */
+    ms_sled sled[MS_CONTACT_N_FRICTIONS];
+} ms_contact_sled;
+
 /** What the support function says of a body. */
 typedef struct ms_contact_form {
     double mean_width;
@@ -55,6 +65,9 @@ typedef struct ms_contact {
     double rms;                   /* of the difference of the two support functions */
     size_t n_rows;
     ms_contact_row row[4 * MS_CONTACT_MAX_OVERLAPS];
+    const ms_pose *face; /* of the sled: one of the clump's */
+    size_t n_sleds;
+    ms_contact_sled sled[MS_CONTACT_MAX_OVERLAPS];
 } ms_contact;
 
 /**

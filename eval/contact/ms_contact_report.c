@@ -61,6 +61,22 @@ static void print_poses(FILE *stream, const ms_contact *c, const ms_contact_form
     }
 }
 
+static void print_sleds(FILE *stream, const ms_contact *c)
+{
+    fprintf(stream,
+            "\n  dragged over its like, on pose %d     T/N               (mu + tan t)/(1 - mu tan t)\n"
+            "  mu       overlap  jammed missed      mean    most      mean    most\n",
+            (int)(c->face - c->clump.pose) + 1);
+    for (size_t s = 0; s < c->n_sleds; s++) {
+        for (int f = 0; f < MS_CONTACT_N_FRICTIONS; f++) {
+            const ms_sled *sled = &c->sled[s].sled[f];
+            fprintf(stream, "  %-8.3g %-8.3g %6.3f %6.3f  %8.3f %7.3f  %8.3f %7.3f\n", sled->friction,
+                    c->sled[s].overlap, sled->jammed, sled->missed, sled->mean, sled->largest, sled->slope_mean,
+                    sled->slope_largest);
+        }
+    }
+}
+
 void ms_contact_report_print(FILE *stream, const ms_contact *c)
 {
     print_forms(stream, c);
@@ -77,6 +93,7 @@ void ms_contact_report_print(FILE *stream, const ms_contact *c)
             fprintf(stream, "  (of these %.3g pass without touching and are left out)\n", row->missed);
         }
     }
+    print_sleds(stream, c);
     print_poses(stream, c, &c->clump, "clump");
     if (c->shape.pose) {
         print_poses(stream, c, &c->shape, "shape");
@@ -124,6 +141,23 @@ static json_t *row_json(const ms_contact_row *row)
     return json;
 }
 
+static json_t *sleds_json(const ms_contact *c)
+{
+    json_t *list = json_array();
+    for (size_t s = 0; s < c->n_sleds; s++) {
+        for (int f = 0; f < MS_CONTACT_N_FRICTIONS; f++) {
+            const ms_sled *sled = &c->sled[s].sled[f];
+            ms_json_object_append(&list,
+                                  json_pack("{s:f,s:f,s:f,s:f,s:o,s:o,s:o,s:o}", "friction", sled->friction, "overlap",
+                                            c->sled[s].overlap, "jammed", sled->jammed, "missed", sled->missed, "mean",
+                                            ms_report_number(sled->mean), "most", ms_report_number(sled->largest),
+                                            "slope_mean", ms_report_number(sled->slope_mean), "slope_most",
+                                            ms_report_number(sled->slope_largest)));
+        }
+    }
+    return json_pack("{s:I,s:o}", "pose", (json_int_t)(c->face - c->clump.pose), "drags", list);
+}
+
 static json_t *pose_json(const ms_contact *c, const ms_pose *pose, const ms_contact_form *other)
 {
     json_t *json = json_pack("{s:[f,f,f],s:f,s:o,s:f}", "down", pose->direction[0], pose->direction[1],
@@ -153,8 +187,8 @@ json_t *ms_contact_report_json(const ms_contact *c)
     for (size_t r = 0; r < c->n_rows; r++) {
         ms_json_object_append(&rows, row_json(&c->row[r]));
     }
-    json_t *json =
-        json_pack("{s:f,s:o,s:o}", "r_eq", c->r_eq, "contacts", rows, "clump", form_json(c, &c->clump, &c->shape));
+    json_t *json = json_pack("{s:f,s:o,s:o,s:o}", "r_eq", c->r_eq, "contacts", rows, "sled", sleds_json(c), "clump",
+                             form_json(c, &c->clump, &c->shape));
     if (c->shape.pose) {
         ms_json_object_set(&json, "shape", form_json(c, &c->shape, &c->clump));
         ms_json_object_set(&json, "support_rms", json_real(c->rms));

@@ -56,6 +56,18 @@ class Contact(Case):
         self.assertAlmostEqual(sum(n * part for n, part in row["counts"]), row["contacts"])
         self.assertLessEqual(row["contacts_most"], 12)
 
+    def test_sled(self):
+        found = self.contact("six.csv", "--target", "box.obj", "--overlap", "0.0001,0.001")
+        sled = found["sled"]
+        self.assertIn(sled["pose"], (0, 1))
+        self.assertEqual([(d["friction"], d["overlap"]) for d in sled["drags"]],
+                         [(0, 0.0001), (0.3, 0.0001), (0, 0.001), (0.3, 0.001)])
+        for drag in sled["drags"]:
+            # Between four spheres that touch their neighbours the next one leans by 45 degrees at most.
+            self.assertLess(drag["slope_most"], (drag["friction"] + 1) / (1 - drag["friction"]) + 0.01)
+            self.assertGreater(drag["most"], drag["friction"] + 0.1)
+            self.assertEqual((drag["missed"], drag["jammed"]), (0, 0))
+
     def test_shape_and_support(self):
         found = self.contact("six.csv", "--target", "box.obj", "--overlap", "0.001")
         self.assert_close(found["shape"]["mean_width"], 3, 1e-3, "(a + b + c) / 2 of a cuboid")
