@@ -20,8 +20,8 @@ static size_t find_winner(const ms_compare_standing *standing, size_t n_methods)
 }
 
 /*
- * The factor with its interval, or why it means little. The others are each shape's best, so that who wins most often may
- * lose more where it loses than it gains where it wins.
+ * The factor with its interval, or why it means little. The others are each shape's best, so that who wins most often
+ * may lose more where it loses than it gains where it wins.
  */
 static void say_factor(FILE *stream, const ms_compare_standing *s, const char *what)
 {
