@@ -25,8 +25,7 @@ typedef struct twin_table {
     int is_begun; /* the header is written */
 } twin_table;
 
-/* @param is_told 0: there is nothing to tell, and no more than the header is written, so that no table is without one
- * */
+/* @param is_told 0: there is nothing to tell; the header is written even so, so that no table is without one */
 static void put_row(twin_table *t, const table_field *row, size_t count, int is_told)
 {
     for (size_t f = 0; f < count && !t->is_begun; f++) {

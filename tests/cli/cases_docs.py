@@ -48,7 +48,7 @@ class Documents(Case):
                 print(f"gnuplot is not installed (package gnuplot-nox): not run: mskit {command}")
                 continue
             with self.subTest(command=command):
-                self.mskit(*shlex.split(command))
+                self.mskit(*shlex.split(command, comments=True))
         self.assertEqual(self.read("one.csv"), self.read("two.csv"))
         self.assertEqual(self.read("c.csv"), self.read("d.csv"))
 
