@@ -91,12 +91,12 @@ static void place_rows(ms_compare_population *p, const ms_compare_records *all, 
 ms_status ms_compare_population_make(ms_compare_population *p, const ms_compare_records *all, const char *cells,
                                      ms_error *err)
 {
-    *p = (ms_compare_population){.shape = calloc(all->count + 1, sizeof *p->shape),
-                                 .method = calloc(all->count + 1, sizeof *p->method),
+    *p = (ms_compare_population){.shape = calloc(all->count + 1, sizeof(const char *)),
+                                 .method = calloc(all->count + 1, sizeof(const char *)),
                                  .number = calloc(all->count + 1, sizeof *p->number)};
     if (p->shape && p->method && p->number) {
         list_axes(p, all, cells);
-        p->row = calloc(p->n_numbers * p->n_methods + 1, (p->n_shapes + 1) * sizeof *p->row);
+        p->row = calloc(p->n_numbers * p->n_methods + 1, (p->n_shapes + 1) * sizeof(const ms_compare_record *));
     }
     if (!p->row) {
         ms_compare_population_free(p);

@@ -201,8 +201,7 @@ static double draw(uint32_t *state)
     return (*state >> 8) / 16777216.0;
 }
 
-/* The direction in which three spheres reach equally far, h; `sign` chooses one of two. @return 0 where there is none
- * */
+/* The direction in which three spheres reach equally far, h; `sign` chooses one of two. @return 0 for none */
 static int solve_three(double u[3], double *h, const ms_sphere *a, const ms_sphere *b, const ms_sphere *c, int sign)
 {
     double ab[3], ac[3], normal[3], side[2][3], base[3];
@@ -233,7 +232,7 @@ static void test_lowest_of_heaps(void **state)
         found f;
         ms_sphere s[9];
         uint32_t at = seed;
-        double lowest = INFINITY;
+        double lowest = (double)INFINITY;
         for (int i = 0; i < 9; i++) { /* on all sides, so that the origin is within the hull of the centres */
             double way[3], length = 0;
             for (int k = 0; k < 3; k++) {
