@@ -128,32 +128,31 @@ static ms_status take_compare_flag(void *context, const char *name, const char *
     return MS_OK;
 }
 
-/* What can be known before the work. */
-static ms_status check_files(const ms_comparison *c, const char *output, const char *report, ms_error *err)
+/* What can be known before the work. The folders are there as long as `files` is. */
+static ms_status check_files(ms_files *files, const ms_comparison *c, const char *output, const char *report,
+                             ms_error *err)
 {
-    ms_files files = {0};
     for (size_t s = 0; s < c->n_shapes; s++) {
         if (access(c->shape[s], R_OK) != 0) {
             return ms_file_fail_open(err, c->shape[s], errno);
         }
     }
-    ms_status status = c->charts ? ms_files_add_folder(&files, c->charts, err) : MS_OK;
+    ms_status status = c->charts ? ms_files_add_folder(files, c->charts, err) : MS_OK;
     if (status == MS_OK && c->population) {
-        status = ms_files_add_folder(&files, c->population, err);
+        status = ms_files_add_folder(files, c->population, err);
     }
     if (status == MS_OK) {
-        status = ms_compare_list_files(&files, c, err);
+        status = ms_compare_list_files(files, c, err);
     }
     if (status == MS_OK) {
-        status = ms_files_add(&files, output, MS_FILE_WRITTEN, err);
+        status = ms_files_add(files, output, MS_FILE_WRITTEN, err);
     }
     if (status == MS_OK && report) {
-        status = ms_files_add(&files, report, MS_FILE_WRITTEN, err);
+        status = ms_files_add(files, report, MS_FILE_WRITTEN, err);
     }
     if (status == MS_OK) {
-        status = ms_files_check(&files, err);
+        status = ms_files_check(files, err);
     }
-    ms_files_free(&files);
     return status;
 }
 
@@ -195,8 +194,9 @@ static int execute_compare(const ms_command *command, const compare_arguments *a
 {
     ms_error err;
     ms_csv csv;
+    ms_files files = {0};
     char *header = ms_compare_header();
-    ms_status status = header ? check_files(&a->comparison, a->output, a->report, &err)
+    ms_status status = header ? check_files(&files, &a->comparison, a->output, a->report, &err)
                               : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
     if (status == MS_OK) {
         say_small_clumps(&a->comparison);
@@ -206,6 +206,7 @@ static int execute_compare(const ms_command *command, const compare_arguments *a
         }
         ms_csv_close(&csv);
     }
+    ms_files_free(&files);
     free(header);
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }

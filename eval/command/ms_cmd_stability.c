@@ -147,26 +147,25 @@ static ms_status resolve_stability(stability_arguments *a, const char *const *sh
     return status;
 }
 
-static ms_status check_stability_files(const stability_arguments *a, ms_error *err)
+/* The folder is there as long as `files` is. */
+static ms_status check_stability_files(ms_files *files, const stability_arguments *a, ms_error *err)
 {
-    ms_files files = {0};
-    ms_status status = a->charts ? ms_files_add_folder(&files, a->charts, err) : MS_OK;
+    ms_status status = a->charts ? ms_files_add_folder(files, a->charts, err) : MS_OK;
     for (size_t s = 0; s < a->plan.n_shapes && status == MS_OK; s++) {
-        status = ms_files_add(&files, a->plan.shape[s], MS_FILE_READ, err); /* a mesh: no data file */
+        status = ms_files_add(files, a->plan.shape[s], MS_FILE_READ, err); /* a mesh: no data file */
     }
     if (status == MS_OK) {
-        status = ms_methods_list_files(&files, &a->methods, err);
+        status = ms_methods_list_files(files, &a->methods, err);
     }
     if (status == MS_OK && a->charts) {
-        status = ms_stability_charts_list(&files, a->charts, &a->methods, err);
+        status = ms_stability_charts_list(files, a->charts, &a->methods, err);
     }
     if (status == MS_OK) {
-        status = ms_files_add(&files, a->output, MS_FILE_WRITTEN, err);
+        status = ms_files_add(files, a->output, MS_FILE_WRITTEN, err);
     }
     if (status == MS_OK) {
-        status = ms_files_check(&files, err);
+        status = ms_files_check(files, err);
     }
-    ms_files_free(&files);
     return status;
 }
 
@@ -244,13 +243,15 @@ static ms_status try_all(const stability_arguments *a, ms_error *err)
 static int execute_stability(const ms_command *command, const stability_arguments *a)
 {
     ms_error err;
+    ms_files files = {0};
     ms_status status = ms_stability_try_shapes(&a->plan, &err);
     if (status == MS_OK) {
-        status = check_stability_files(a, &err);
+        status = check_stability_files(&files, a, &err);
     }
     if (status == MS_OK) {
         status = try_all(a, &err);
     }
+    ms_files_free(&files);
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 

@@ -12,6 +12,7 @@ typedef struct records {
     size_t count;
     ms_compare_record *record; /* borrowed */
     const char *folder;
+    FILE *words;
 } records;
 
 /* One kind of chart. */
@@ -188,7 +189,7 @@ static void name_shape(char *out, size_t size, const ms_compare_record *shape)
     ms_compare_name(out, size, shape->field[MS_COLUMN_SHAPE], shape->field[MS_COLUMN_LABEL]);
 }
 
-ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, ms_error *err)
+ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, FILE *words, ms_error *err)
 {
     ms_status status = ms_chart_write(chart, stem, err);
     if (status == MS_ERR_ARG) { /* every run failed: the rows say why */
@@ -196,7 +197,7 @@ ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, ms_err
         return MS_OK;
     }
     if (status == MS_OK && (status = ms_chart_draw(stem, err)) == MS_OK) {
-        printf("drew %s.svg, .png\n", stem);
+        fprintf(words, "drew %s.svg, .png\n", stem);
     }
     return status;
 }
@@ -224,7 +225,7 @@ static ms_status draw_compare_chart(const records *all, const ms_compare_record 
                                 .n_series = d.n_series,
                                 .series = d.series};
         snprintf(stem, room, "%s/%s-%s", all->folder, name, k->name);
-        status = ms_compare_charts_draw(&chart, stem, err);
+        status = ms_compare_charts_draw(&chart, stem, all->words, err);
     }
     free_draft(&d);
     free(stem);
@@ -277,8 +278,8 @@ ms_status ms_compare_charts_list(ms_files *files, const char *folder, const char
     return status;
 }
 
-ms_status ms_compare_charts(const ms_compare_records *all, const char *folder, ms_error *err)
+ms_status ms_compare_charts(const ms_compare_records *all, const char *folder, FILE *words, ms_error *err)
 {
-    const records drawn = {.count = all->count, .record = all->record, .folder = folder};
+    const records drawn = {.count = all->count, .record = all->record, .folder = folder, .words = words};
     return draw_compare_charts(&drawn, err);
 }

@@ -2,6 +2,8 @@
 #ifndef MS_COMPARE_CHARTS_H
 #define MS_COMPARE_CHARTS_H
 
+#include <stdio.h>
+
 #include "chart/ms_chart.h"
 #include "cli/ms_files.h"
 #include "ms_compare_records.h"
@@ -17,12 +19,13 @@
  * - resolution: D by cells at the largest number of spheres, if there are several resolutions.
  *
  * @param folder exists
+ * @param words  where it says what it drew
  * @return MS_OK; as ms_chart_write, ms_chart_draw
  */
-ms_status ms_compare_charts(const ms_compare_records *all, const char *folder, ms_error *err);
+ms_status ms_compare_charts(const ms_compare_records *all, const char *folder, FILE *words, ms_error *err);
 
 /** Writes and draws one, and says so; of one without a point it says that, and is done. @return as above */
-ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, ms_error *err);
+ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, FILE *words, ms_error *err);
 
 /** Adds the files of all charts that there can be of a shape, by its name (ms_compare_name). */
 ms_status ms_compare_charts_list(ms_files *files, const char *folder, const char *shape, ms_error *err);

@@ -258,7 +258,7 @@ static void fill_curves(curves *d, const ms_compare_population *p, ms_column col
 }
 
 static ms_status draw_population(const ms_compare_population *p, curves *d, const char *stem, const char *label,
-                                 ms_column column, ms_error *err)
+                                 ms_column column, FILE *words, ms_error *err)
 {
     char title[80];
     const double over = column == MS_COLUMN_GENERATE ? ms_compare_population_time(p, d->room) : 1;
@@ -271,7 +271,7 @@ static ms_status draw_population(const ms_compare_population *p, curves *d, cons
                             .y_least = 1e-6,
                             .n_series = 2 * p->n_methods,
                             .series = d->series};
-    return ms_compare_charts_draw(&chart, stem, err);
+    return ms_compare_charts_draw(&chart, stem, words, err);
 }
 
 static void free_curves(curves *d, const ms_compare_population *p)
@@ -315,7 +315,7 @@ static int describe_kind(int kind, const char **name, const char **label, ms_col
 }
 
 /* All charts; without gnuplot their scripts are written nevertheless, and the first failure is reported. */
-static ms_status draw_charts(const ms_compare_population *p, const char *folder, ms_error *err)
+static ms_status draw_charts(const ms_compare_population *p, const char *folder, FILE *words, ms_error *err)
 {
     const char *name, *label;
     ms_column column;
@@ -326,7 +326,7 @@ static ms_status draw_charts(const ms_compare_population *p, const char *folder,
         char file[64];
         snprintf(file, sizeof file, "population-%s", name);
         char *stem = label ? make_path(folder, file, err) : NULL;
-        const ms_status drawn = stem ? draw_population(p, &d, stem, label, column, &why) : MS_OK;
+        const ms_status drawn = stem ? draw_population(p, &d, stem, label, column, words, &why) : MS_OK;
         if (label && !stem) {
             status = MS_ERR_NOMEM;
         } else if (status == MS_OK && drawn != MS_OK) {
@@ -349,7 +349,7 @@ ms_status ms_compare_population_write(const ms_compare_records *all, const char 
     fprintf(words, "wrote %s/population.csv, best.csv, population.json\n", folder);
     status = ms_compare_population_make(&p, all, all->record[all->count - 1].field[MS_COLUMN_CELLS], err);
     if (status == MS_OK) {
-        status = draw_charts(&p, folder, err);
+        status = draw_charts(&p, folder, words, err);
         ms_compare_population_free(&p);
     }
     return status;

@@ -39,7 +39,8 @@ static const size_t SHOWN[] = {MS_COLUMN_SHAPE,
 typedef struct row_subject {
     size_t shape, method;
     double asked;
-    char *clump; /* path of the clump kept; NULL: there is none */
+    char *clump;           /* path of the clump kept; NULL: there is none */
+    const ms_clump *given; /* that of another tool; borrowed; NULL likewise */
 } row_subject;
 
 typedef struct report_work {
@@ -69,6 +70,13 @@ static int is_text(const char *field, const char *text, ms_error *err, ms_status
     return same;
 }
 
+/* As in the row: of another tool the file of this shape. */
+static const char *find_options(const report_work *w, const row_subject *subject)
+{
+    const ms_method *method = &w->a->methods.method[subject->method];
+    return method->generator ? method->options : ms_file_name(method->clump[subject->shape].file);
+}
+
 static ms_compare_sheet sheet_of(const report_work *w, size_t shape, char name[256])
 {
     const ms_comparison *a = w->a;
@@ -77,7 +85,8 @@ static ms_compare_sheet sheet_of(const report_work *w, size_t shape, char name[2
         .folder = a->charts, .shape = name, .methods = &a->methods, .asked = a->asked.value, .n_asked = a->asked.count};
 }
 
-/* Clumps were kept of the finest resolution; those of other tools are the methods' own. */
+/* Clumps were kept of the finest resolution; those of other tools are the methods' own. A run that failed kept none:
+ * what stands there is of a run before. */
 static ms_status find_subject(report_work *w, size_t r, char **field, ms_error *err)
 {
     const ms_comparison *a = w->a;
@@ -88,21 +97,24 @@ static ms_status find_subject(report_work *w, size_t r, char **field, ms_error *
     while (subject->shape < a->n_shapes && !is_text(field[MS_COLUMN_SHAPE], a->shape[subject->shape], err, &status)) {
         subject->shape++;
     }
-    while (subject->method < a->methods.count &&
+    while (subject->shape < a->n_shapes && subject->method < a->methods.count &&
            !(strcmp(field[MS_COLUMN_GENERATOR], a->methods.method[subject->method].name) == 0 &&
-             is_text(field[MS_COLUMN_OPTIONS], a->methods.method[subject->method].options, err, &status))) {
+             is_text(field[MS_COLUMN_OPTIONS], find_options(w, subject), err, &status))) {
         subject->method++;
     }
     if (status != MS_OK || subject->shape == a->n_shapes || subject->method == a->methods.count ||
-        cells < a->cells.value[a->cells.count - 1]) {
+        cells < a->cells.value[a->cells.count - 1] || !field[MS_COLUMN_SPHERES][0]) {
         return status;
     }
     subject->asked = ms_csv_number(field[MS_COLUMN_ASKED]);
     const ms_method *method = &a->methods.method[subject->method];
+    if (!method->generator) {
+        subject->given = &method->clump[subject->shape].clump;
+        return MS_OK;
+    }
     const ms_compare_sheet sheet = sheet_of(w, subject->shape, name);
-    subject->clump =
-        method->generator ? ms_compare_sheet_path(&sheet, method, subject->asked, err) : strdup(method->options);
-    return subject->clump ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for the report");
+    subject->clump = ms_compare_sheet_path(&sheet, method, subject->asked, err);
+    return subject->clump ? MS_OK : MS_ERR_NOMEM;
 }
 
 static ms_status find_scenes(report_work *w, ms_error *err)
@@ -118,7 +130,7 @@ static ms_status find_scenes(report_work *w, ms_error *err)
         if (ms_csv_split(field, MS_COLUMNS, line) == MS_COLUMNS) {
             status = find_subject(w, r, field, err);
         }
-        if (w->subject[r].clump && access(w->subject[r].clump, R_OK) == 0) {
+        if (w->subject[r].given || (w->subject[r].clump && access(w->subject[r].clump, R_OK) == 0)) {
             w->scene[r] = scenes++;
         }
         free(line);
@@ -130,21 +142,23 @@ static ms_status put_scene(FILE *stream, const report_work *w, const row_subject
                            ms_error *err)
 {
     char name[512];
-    ms_clump clump;
+    ms_clump kept = {0};
     const ms_method *method = &w->a->methods.method[subject->method];
-    ms_status status = ms_read_spheres(&clump, subject->clump, err);
+    const char *options = find_options(w, subject);
+    const ms_clump *clump = subject->given ? subject->given : &kept;
+    ms_status status = subject->given ? MS_OK : ms_read_spheres(&kept, subject->clump, err);
     if (status == MS_OK) {
         snprintf(name, sizeof name, "%.200s, %.80s%s%.120s, %zu spheres", w->a->shape[subject->shape], method->name,
-                 method->options[0] ? ":" : "", method->options, clump.n_spheres);
+                 options[0] ? ":" : "", options, clump->n_spheres);
         const ms_view_scene scene = {.name = name,
-                                     .clump = &clump,
+                                     .clump = clump,
                                      .target = target,
                                      .ordered = method->generator &&
                                                 ms_generator_is_nested(method->generator, &method->settings),
                                      .most_triangles = TRIANGLES};
         status = ms_view_scene_write(stream, &scene, err);
-        ms_clump_free(&clump);
     }
+    ms_clump_free(&kept);
     return status;
 }
 

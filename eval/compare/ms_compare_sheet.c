@@ -172,7 +172,7 @@ static ms_status write_script(const ms_compare_sheet *sheet, const ms_picture *p
     return status;
 }
 
-ms_status ms_compare_sheet_draw(const ms_compare_sheet *sheet, const ms_target *target, ms_error *err)
+ms_status ms_compare_sheet_draw(const ms_compare_sheet *sheet, const ms_target *target, FILE *words, ms_error *err)
 {
     ms_picture picture = {0};
     char *tiles = make_path(sheet, "tiles.png", err), *stem = make_path(sheet, "sheet", err);
@@ -192,7 +192,7 @@ ms_status ms_compare_sheet_draw(const ms_compare_sheet *sheet, const ms_target *
         status = ms_chart_draw(stem, err);
     }
     if (status == MS_OK) {
-        printf("drew %s.png\n", stem);
+        fprintf(words, "drew %s.png\n", stem);
     }
     ms_render_picture_free(&picture);
     free(tiles);

@@ -2,6 +2,8 @@
 #ifndef MS_COMPARE_SHEET_H
 #define MS_COMPARE_SHEET_H
 
+#include <stdio.h>
+
 #include "cli/ms_files.h"
 #include "cli/ms_methods.h"
 #include "voxel/ms_target.h"
@@ -29,8 +31,9 @@ ms_status ms_compare_sheet_list(ms_files *files, const ms_compare_sheet *sheet, 
  * Draws FOLDER/SHAPE-sheet.png: the shape, then a column for each method, a row for each number of spheres, four rows
  * at most. A clump that was not kept, as that of a run that failed, leaves its place empty.
  *
+ * @param words where it says what it drew
  * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM; as ms_chart_draw
  */
-ms_status ms_compare_sheet_draw(const ms_compare_sheet *sheet, const ms_target *target, ms_error *err);
+ms_status ms_compare_sheet_draw(const ms_compare_sheet *sheet, const ms_target *target, FILE *words, ms_error *err);
 
 #endif

@@ -110,7 +110,7 @@ static void draw_sheet(compare_walk *w, const ms_compare_stage *stage)
     if (stage->shared.status == MS_OK) {
         ms_compare_name(name, sizeof name, stage->shape, w->a->label);
         const ms_compare_sheet sheet = plan_sheet(w->a, name, stage->at);
-        note_drawn(w, ms_compare_sheet_draw(&sheet, &stage->shared.input.target, &err), &err);
+        note_drawn(w, ms_compare_sheet_draw(&sheet, &stage->shared.input.target, w->a->words, &err), &err);
     }
 }
 
@@ -330,7 +330,7 @@ static void conclude(compare_walk *w)
     const ms_status cut = ms_compare_records_cut(&all, w->csv, &why);
     note_drawn(w, cut, &why);
     if (cut == MS_OK && a->charts) {
-        note_drawn(w, ms_compare_charts(&all, a->charts, &why), &why);
+        note_drawn(w, ms_compare_charts(&all, a->charts, a->words, &why), &why);
     }
     if (cut == MS_OK && a->population) {
         note_drawn(w, ms_compare_population_write(&all, a->population, a->words, &why), &why);

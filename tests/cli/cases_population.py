@@ -2,6 +2,7 @@
 import csv
 import json
 import os
+import re
 import shutil
 import statistics
 import unittest
@@ -71,6 +72,21 @@ class Tables(Population):
                 self.assertEqual((int(row["shapes"]), int(row["best"])), (6, sum(r >= 1 for r in ratios)))
                 self.assert_close(float(row["factor"]), statistics.geometric_mean(ratios), 1e-9)
                 self.assertTrue(float(row["factor_low"]) <= float(row["factor"]) <= float(row["factor_high"]))
+
+    def test_report_of_other_tools(self):
+        """A clump of a folder, in a format that is no text; all into a folder that is not there, the sums on stdout."""
+        os.mkdir(self.path("given"))
+        self.write("two.csv", "1,1,0.5,0.5\n2,1,0.5,0.5\n")
+        self.mskit("convert", "two.csv", "-o", "given/box-0.json")
+        run = self.mskit("compare", "shapes/box-0.obj", "-g", "mss", "-n", "1", "--cells", "6", "-j", "1", "--clump",
+                         "tool=given", "-o", "out/c.csv", "--charts", "out", "--report", "out/r.html", "--json")
+        self.assertEqual([row["generator"] for row in run.json], ["mss", "tool"])
+        self.assertIn("drew out/box-0-dice.svg", run.err)
+        page = self.read("out/r.html").decode()
+        scenes = json.loads(re.search(r'id="scenes">(.*?)</script>', page, re.S).group(1))
+        self.assertEqual([scene["name"] for scene in scenes], ["shapes/box-0.obj, mss, 1 spheres",
+                                                               "shapes/box-0.obj, tool:given/box-0.json, 2 spheres"])
+        self.assertEqual(re.findall(r'data-scene="(\d+)"', page), ["0", "1"])
 
     def test_the_verdict(self):
         result = self.mskit("compare", "shapes", *RUN, "--population", "pop")
