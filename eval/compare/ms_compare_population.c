@@ -91,8 +91,8 @@ static void place_rows(ms_compare_population *p, const ms_compare_records *all, 
 ms_status ms_compare_population_make(ms_compare_population *p, const ms_compare_records *all, const char *cells,
                                      ms_error *err)
 {
-    *p = (ms_compare_population){.shape = calloc(all->count + 1, sizeof(const char *)),
-                                 .method = calloc(all->count + 1, sizeof(const char *)),
+    *p = (ms_compare_population){.shape = calloc(all->count + 1, sizeof(const ms_compare_record *)),
+                                 .method = calloc(all->count + 1, sizeof(const ms_compare_record *)),
                                  .number = calloc(all->count + 1, sizeof *p->number)};
     if (p->shape && p->method && p->number) {
         list_axes(p, all, cells);
