@@ -7,7 +7,7 @@
 #include "base/ms_vector.h"
 
 /* No direction leads there yet. */
-enum { NOWHERE = UINT32_MAX };
+static const uint32_t NOWHERE = UINT32_MAX;
 
 /* A minimum of the lattice. */
 typedef struct basin {
