@@ -47,7 +47,7 @@ ms_status ms_support_from_mesh(ms_support *body, const ms_mesh *mesh, const doub
 
 double ms_support_height(const ms_support *body, const double u[3])
 {
-    double height = -INFINITY;
+    double height = -(double)INFINITY;
     for (size_t i = 0; i < body->count; i++) {
         height = fmax(height, ms_dot(body->sphere[i].centre, u) + body->sphere[i].radius);
     }

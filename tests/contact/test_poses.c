@@ -233,7 +233,7 @@ static void test_lowest_of_heaps(void **state)
         found f;
         ms_sphere s[9];
         uint32_t at = seed;
-        double lowest = INFINITY;
+        double lowest = (double)INFINITY;
         for (int i = 0; i < 9; i++) { /* on all sides, so that the origin is within the hull of the centres */
             double way[3], length = 0;
             for (int k = 0; k < 3; k++) {

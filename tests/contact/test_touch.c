@@ -110,7 +110,7 @@ static double find_overlap(size_t *count, const ms_support *body, const ms_touch
     const double turn[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
                                {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
                                {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
-    double largest = -INFINITY;
+    double largest = -(double)INFINITY;
     *count = 0;
     for (size_t j = 0; j < body->count; j++) {
         double at[3];
