@@ -77,7 +77,7 @@ static ms_status take_number(contact_arguments *a, const char *name, const char 
         return ms_flags_number(&a->options.restitution, name, value, 1e-6, 1, err);
     }
     if (strcmp(name, "poses") == 0) {
-        status = ms_flags_whole(&number, name, value, 1, 1e7, err);
+        status = ms_flags_whole(&number, name, value, 1, 1e6, err);
         a->options.orientations = (size_t)number;
     } else {
         status = ms_flags_whole(&number, name, value, 0, 4294967295.0, err);

@@ -90,6 +90,17 @@ class Contact(Case):
         self.assertNotIn("shape", found)
         self.assertIsNone(found["target"])
 
+    def test_missed(self):
+        """Two balls far from each other: others pass between them, and are left out."""
+        self.write("apart.csv", "x,y,z,r\n-5,0,0,0.5\n5,0,0,0.5\n")
+        row = self.row(self.contact("apart.csv", "--overlap", "0.001"), "particle", "random")
+        self.assertEqual(row["counts"], [[0, row["missed"]], [1, row["counts"][1][1]]])
+        self.assertGreater(row["missed"], 0.3)
+        self.assertAlmostEqual(row["missed"] + row["counts"][1][1], 1)
+        self.assertEqual((row["contacts"], row["contacts_median"]), (1, 1))
+        self.assert_close(row["restitution"], 0.5, 1e-9, "restitution")
+        self.assertIn("pass without touching", self.mskit("contact", "apart.csv", "--poses", "50").out)
+
     def test_carriers_touch_nothing(self):
         """A clump with masses knows its centre and volume; its carriers change no contact."""
         self.mskit("correct", "six.csv", "--target", "box.obj", "--density", "2000", "-o", "plain.json")

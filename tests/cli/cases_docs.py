@@ -127,6 +127,8 @@ class Documents(Case):
                        self.mskit("score", "c.csv", "--target", shape, *grid, "--json").json,
                        self.mskit("scene", shape, *grid, "-g", "mss", "--tolerance", "dice=0.5", "--json").json]
             records += records[-1]["shapes"]
+            contact = self.mskit("contact", "c.csv", "--target", shape, "--poses", "2", "--json").json
+            records += [contact, *contact["contacts"], *contact["sled"]["drags"], *contact["clump"]["poses"]]
             about, command = (self.mskit("help", name, "--json").json for name in ("mss", "score"))
             records += about["options"] + [about, command] + command["flags"] + self.mskit("generators", "--json").json
             kinds = self.mskit("shape", "--list", "--json").json

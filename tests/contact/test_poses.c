@@ -201,8 +201,7 @@ static double draw(uint32_t *state)
     return (*state >> 8) / 16777216.0;
 }
 
-/* The direction in which three spheres reach equally far, h; `sign` chooses one of two. @return 0 where there is none
- * */
+/* The direction in which three spheres reach equally far, h; `sign` chooses one of two. @return 0 for none */
 static int solve_three(double u[3], double *h, const ms_sphere *a, const ms_sphere *b, const ms_sphere *c, int sign)
 {
     double ab[3], ac[3], normal[3], side[2][3], base[3];
