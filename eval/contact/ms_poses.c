@@ -75,14 +75,31 @@ static void move(double out[3], const double u[3], const double way[3], double s
     }
 }
 
-/* Those spheres alone that can reach farthest within an angle of u: h changes by less than reach times the angle. */
+/* How fast a sphere's part of h rises away from u at most: its centre's distance from the line along u. */
+static double find_steepness(const ms_sphere *sphere, const double u[3])
+{
+    const double along = ms_dot(sphere->centre, u);
+    return sqrt(fmax(0, ms_dot(sphere->centre, sphere->centre) - along * along));
+}
+
+/* Those spheres alone that can reach farthest within an angle of u: the farthest one falls no faster than its
+ * steepness, others rise no faster than theirs, and what is bent adds less than reach angle^2. */
 static void gather_near(flooding *s, const double u[3], double angle)
 {
-    const double least = ms_support_height(s->body, u) - 2 * s->reach * angle;
+    const double height = ms_support_height(s->body, u);
+    double falls = (double)INFINITY;
+    for (size_t i = 0; i < s->body->count; i++) {
+        const ms_sphere *sphere = &s->body->sphere[i];
+        if (ms_dot(sphere->centre, u) + sphere->radius >= height) {
+            falls = fmin(falls, find_steepness(sphere, u));
+        }
+    }
     s->near.count = 0;
     for (size_t i = 0; i < s->body->count; i++) {
-        if (ms_dot(s->body->sphere[i].centre, u) + s->body->sphere[i].radius >= least) {
-            s->near.sphere[s->near.count++] = s->body->sphere[i];
+        const ms_sphere *sphere = &s->body->sphere[i];
+        const double rises = find_steepness(sphere, u);
+        if (ms_dot(sphere->centre, u) + sphere->radius >= height - (falls + rises + s->reach * angle) * angle) {
+            s->near.sphere[s->near.count++] = *sphere;
         }
     }
 }
