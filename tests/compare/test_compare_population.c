@@ -18,7 +18,10 @@ typedef struct lines {
 
 static void put(char *text, size_t room, double number)
 {
-    snprintf(text, room, isnan(number) ? "" : "%.17g", number);
+    text[0] = '\0';
+    if (!isnan(number)) {
+        snprintf(text, room, "%.17g", number);
+    }
 }
 
 /* @param asked NAN: a clump of another tool, of n spheres */
