@@ -155,9 +155,10 @@ class Columns(Case):
         run = self.mskit("stability", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10, "--runs", 1, "--perturb",
                          "seed", "--json").json
         spread = "count min median max deviation"
-        self.assertEqual(keys(run), "shape method perturbation runs identical failed short unusable not_reached".split() +
+        self.assertEqual(keys(run), "shape method perturbation runs identical failed short unusable not_reached "
+                         "remarked".split() +
                          under("dice", spread) + under("inertia_error_spread", spread) + under("n_until", spread) +
-                         ["worst", "cause"])
+                         ["worst", "cause", "remark"])
 
     def test_json_of_scene(self):
         run = self.mskit("scene", "grain.stl", "-g", "mss", "--knee", 0.3, "--max-spheres", 4, "--cells", 10,
