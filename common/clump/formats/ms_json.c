@@ -211,12 +211,12 @@ ms_status ms_json_write(FILE *stream, const ms_content *content, ms_error *err)
         failed |= json_object_set_new(root, "particle", ms_json_from_particle(content->particle)) != 0;
     }
     failed |= json_object_set_new(root, "columns", columns_to_json(masses)) != 0;
-    for (size_t s = 0; s < ms_clump_count_masses(content->clump); s++) {
+    for (size_t s = 0; s < ms_fields_count(content); s++) {
         json_t *list = s < content->clump->n_spheres ? spheres : carriers;
         failed |= json_array_append_new(list, sphere_to_json(content, s, masses)) != 0;
     }
     failed |= json_object_set_new(root, "spheres", spheres) != 0;
-    if (content->clump->n_carriers > 0) {
+    if (json_array_size(carriers) > 0) {
         failed |= json_object_set(root, "carriers", carriers) != 0;
     }
     json_decref(carriers);
