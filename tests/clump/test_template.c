@@ -434,6 +434,7 @@ static void bad_files_are_refused(void **state)
                    "x, y, z stand in other columns");
     expect_refused(folder, "a.json", "{\"columns\": [\"x\",\"y\",\"z\",\"d\"], \"spheres\": [[0,0,0,1]]}",
                    "called 'd'");
+    expect_refused(folder, "a.json", "{\"spheres\": [[0,0,0,1]], \"carriers\": [[0,0,0,0.1]]}", "tells of no masses");
     expect_refused(folder, "a.json", "{\"columns\": [0,0,0,0], \"spheres\": [[0,0,0,1]]}", "called ''");
     expect_refused(folder, "a.json", "{\"columns\": [\"x\"], \"spheres\": [[0,0,0,1]]}", "no list that begins with x");
     expect_refused(folder, "a.json", "{\"columns\": \"xyzr\", \"spheres\": [[0,0,0,1]]}", "no list that begins with x");
