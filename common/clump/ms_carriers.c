@@ -105,6 +105,7 @@ static ms_status find_at_depth(ms_clump *clump, int *found, const ms_particle *p
     ms_mass_equations e = {0};
     size_t *pick = NULL, picked = 0;
     *found = 0;
+    ms_clump_drop_masses(clump);
     ms_status status = ms_mass_equations_make(&e, clump, particle, 0, err);
     if (status == MS_OK) {
         status = list_candidates(&all, clump, depth, overlap, e.axis, err);
@@ -194,7 +195,6 @@ static ms_status add_carriers(ms_clump *clump, ms_density_report *report, const 
     const ms_density_report alone = *report;
     const double overlap = MS_CARRIERS_OVERLAP * equal_ball_radius(particle);
     int found;
-    ms_clump_drop_masses(clump);
     ms_status status = find_at_depth(clump, &found, particle, &options->masses, options->depth, overlap, err);
     if (status == MS_OK && found) {
         status = ms_density_solve(clump, report, particle, &options->masses, err);

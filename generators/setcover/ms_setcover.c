@@ -134,7 +134,7 @@ static ms_status generate_by_setcover(ms_clump *clump, ms_stop_reason *reason, c
     if (status == MS_OK) {
         const double least = run->stop.radius / run->target->grid.h;
         ms_generator_stage(run, "what each candidate covers", (double)NAN);
-        choice.dropped = !lattice.later && drop_small(&choice.pool, least);
+        choice.dropped = !choice.pool.start && drop_small(&choice.pool, least);
         status = by_voxels ? start_by_voxels(&choice, run, least, err) : start_by_cells(&choice, run, err);
     }
     if (status == MS_OK) {

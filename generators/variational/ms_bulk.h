@@ -40,7 +40,8 @@ ms_status ms_bulk_cluster(ms_ball *ball, size_t *count, const ms_coarse_view *vo
  * @return MS_OK; MS_ERR_NOMEM. D, and the price of what of the surface is too far, are together never larger than
  * before
  *
- * Source: Dinkelbach, Management Science 13 (1967) 492. Cost: 140 steps of the fit and ten times ms_dice_compute.
+ * Source: Dinkelbach, Management Science 13 (1967) 492. Cost: 140 steps of the fit (within bounds 200)
+ * and some ten times ms_dice_compute.
  */
 ms_status ms_bulk_improve(ms_ball *ball, size_t *count, size_t room, const ms_bulk_other *other, ms_surface_fit *fit,
                           ms_error *err);

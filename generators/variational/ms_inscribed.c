@@ -151,7 +151,7 @@ static void move_marked(inscribed *s, uint8_t *ever, double first, double last)
 static size_t list_offers(ms_ball *offer, size_t most, const inscribed *s, size_t shift)
 {
     const ms_grid *grid = s->o.grid;
-    const size_t nx = (size_t)grid->n[0], ny = (size_t)grid->n[1], voxels = ms_grid_voxels(grid);
+    const size_t voxels = ms_grid_voxels(grid);
     size_t bare = 0, passed = 0, count = 0;
     for (size_t v = 0; v < voxels; v++) {
         bare += grid->inside[v] && !s->o.covers[v];
@@ -159,7 +159,9 @@ static size_t list_offers(ms_ball *offer, size_t most, const inscribed *s, size_
     const size_t each = bare / most + 1;
     for (size_t v = 0; v < voxels; v++) {
         if (grid->inside[v] && !s->o.covers[v] && passed++ % each == shift % each) {
-            const ms_ball at = {.centre = {(double)(v % nx), (double)(v / nx % ny), (double)(v / nx / ny)}};
+            int voxel[3];
+            ms_grid_voxel(voxel, grid->n, v);
+            const ms_ball at = {.centre = {voxel[0], voxel[1], voxel[2]}};
             offer[count++] = ms_coarse_view_target_ball(&s->view, &at);
         }
     }

@@ -9,7 +9,7 @@ int ms_inscribed_applies(const ms_surface_fit *fit);
 
 /**
  * Inscribed spheres have no freedom but their places on the medial axis. Each is moved along the axes and from there to
- * the medial axis (ms_climb.h) as long as more is covered. Then, several times, a tenth as many are added: of the
+ * the medial axis (ms_climb.h) as long as more is covered. Then, twice, a tenth as many are added: of the
  * spheres in which places are that nothing covers those that cover most; all about them are moved, and those of least
  * loss are dropped again. What covers no more is taken back.
  *

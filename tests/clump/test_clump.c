@@ -175,6 +175,7 @@ static const struct {
     {"x,y,z,radius of gyration\n1,2,3,4\n", "line 1: the fourth column is called 'radius of gyration'"},
     {"#version = 1\nx,y,z,rel_d,rel_sa\n1,2,3,4,5\n", "line 2: the fourth column is called 'rel_d'"}, /* MFiX */
     {"# x,y,z,diameter\n1,2,3,4\n", "line 1: the fourth column is called 'diameter'"},
+    {"x,y,z,r,carrier\n1,2,3,4,0\n", "line 1: a column 'carrier' must be the seventh"},
     {"# a bed\n\n# r x y z\n1 2 3 4\n", "line 3: x, y, z stand in other columns"},
     {"#format id_x_y_z_r_matId\n1 2 3 4 5 6\n", "line 1: x, y, z stand in other columns"}, /* YADE's textExt */
     {"#format x_y_z_r_clumpId\n1 2 3 4 7\n1 2 3 4 8\n", "line 3: this sphere is of clump 8, those before of clump 7"},

@@ -291,6 +291,12 @@ static void carriers_go_with_masses(void **state)
         assert_true(!got.mass || memcmp(got.mass + 6, clump.mass + 6, 2 * sizeof *got.mass) == 0);
         ms_clump_free(&got);
     }
+    for (size_t f = 0; f < 2; f++) { /* without the particle no masses are written, and so no carriers */
+        read_again(&got, &known, folder, FORMATS[f].format, &clump, NULL);
+        expect_equal_clumps(&got, &clump, 0);
+        assert_int_equal(got.n_carriers, 0);
+        ms_clump_free(&got);
+    }
     /* Engines that take mass and inertia as given, and MFiX, which takes no masses, get what touches alone. */
     const struct {
         const char *format;
@@ -428,6 +434,7 @@ static void bad_files_are_refused(void **state)
                    "x, y, z stand in other columns");
     expect_refused(folder, "a.json", "{\"columns\": [\"x\",\"y\",\"z\",\"d\"], \"spheres\": [[0,0,0,1]]}",
                    "called 'd'");
+    expect_refused(folder, "a.json", "{\"spheres\": [[0,0,0,1]], \"carriers\": [[0,0,0,0.1]]}", "tells of no masses");
     expect_refused(folder, "a.json", "{\"columns\": [0,0,0,0], \"spheres\": [[0,0,0,1]]}", "called ''");
     expect_refused(folder, "a.json", "{\"columns\": [\"x\"], \"spheres\": [[0,0,0,1]]}", "no list that begins with x");
     expect_refused(folder, "a.json", "{\"columns\": \"xyzr\", \"spheres\": [[0,0,0,1]]}", "no list that begins with x");

@@ -44,7 +44,7 @@ static void spheres_are_inscribed(void **state)
 }
 
 /* Of a ball among voxels no sphere holds the centre of a voxel outside; the lattice takes every
- * third voxel. */
+ * third voxel. A least radius holds, too. */
 static void volumes_have_inscribed_spheres(void **state)
 {
     (void)state;
@@ -58,6 +58,9 @@ static void volumes_have_inscribed_spheres(void **state)
     ms_target target;
     ms_error err;
     assert_int_equal(ms_target_from_volume(&target, &volume, 0, &err), MS_OK);
+    ms_clump large = run_generator(&ms_generator_setcover, &target, (ms_stop){.spheres = 60, .radius = 10}, "", NULL);
+    assert_true(large.n_spheres > 1 && ms_clump_smallest_radius(&large) >= 10);
+    ms_clump_free(&large);
     for (int align = 0; align < 2; align++) {
         ms_clump clump = run_setcover(&target, 30, align ? "skeleton-deq=20 align" : "skeleton-deq=20");
         assert_true(clump.sphere[0].radius > 28 && clump.sphere[0].radius < 30.5);

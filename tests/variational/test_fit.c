@@ -446,6 +446,9 @@ static void tally_is_the_volume(void **state)
     assert_int_equal(ms_surface_tally(worth, &mismatch, NULL, &fit, ball, 2, &err), MS_OK);
     assert_int_equal(ms_surface_tally(NULL, &alone, NULL, &fit, ball, 2, &err), MS_OK);
     assert_true(alone == mismatch);
+    ms_surface_worth some[2] = {{-7, -7}};
+    assert_int_equal(ms_surface_tally(some, NULL, (const uint8_t[]){0, 1}, &fit, ball, 2, &err), MS_OK);
+    assert_true(some[0].loss == -7 && some[0].mismatch == -7 && some[1].loss == worth[1].loss);
     const double lune = pi * (0.99 * 0.99 * 0.05 - 0.05 * 0.05 * 0.05 / 12);
     assert_true(-worth[1].loss * cell < lune && -worth[1].loss * cell > lune - 2 * 2 * pi * 0.01);
     assert_true(worth[0].loss * cell > 0.95 * lune && worth[0].loss * cell < 1.01 * lune);

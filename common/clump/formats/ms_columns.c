@@ -87,7 +87,14 @@ ms_status ms_columns_read(ms_columns *columns, const ms_word *name, size_t n, ms
                        ms_text_quote(&name[3]).text);
     }
     columns->mass |= n > 4 && ms_text_word_is(&name[4], "mass");
-    columns->carrier |= n > 6 && columns->mass && ms_text_word_is(&name[6], "carrier");
+    for (size_t c = 4; c < n; c++) {
+        if (ms_text_word_is(&name[c], "carrier")) { /* not to be taken for spheres that touch */
+            if (c != 6 || !columns->mass) {
+                return ms_fail(cause, MS_ERR_FORMAT, "a column 'carrier' must be the seventh, behind mass and density");
+            }
+            columns->carrier = 1;
+        }
+    }
     columns->clump |= n > 4 && ms_text_word_is(&name[4], "clumpid");
     return MS_OK;
 }

@@ -28,7 +28,8 @@ int ms_columns_name_axes(const ms_word *name, size_t n);
 
 /**
  * Is what the first four columns are called x, y, z, r? Names of places may be any words that do not contradict this
- * order, the fourth must be that of a radius: r, rad or radius, with or without a unit in brackets.
+ * order, the fourth must be that of a radius: r, rad or radius, with or without a unit in brackets. Masses and
+ * carriers have their places behind; what else stands there may be anything.
  *
  * @param      n     fewer than four say nothing
  * @param[out] cause what is wrong, without file and place

@@ -38,6 +38,11 @@ int ms_fields_has_masses(const ms_content *content)
     return content->clump->mass && content->particle;
 }
 
+size_t ms_fields_count(const ms_content *content)
+{
+    return ms_fields_has_masses(content) ? ms_clump_count_masses(content->clump) : content->clump->n_spheres;
+}
+
 ms_status ms_fields_add_sphere(ms_clump *clump, int is_carrier, const double v[4], const char *name, ms_error *err)
 {
     const ms_sphere sphere = {.centre = {v[0], v[1], v[2]}, .radius = v[3]};

@@ -18,6 +18,9 @@ void ms_fields_moments(FILE *stream, const ms_particle *particle, double over, c
 /** Are masses and densities known? */
 int ms_fields_has_masses(const ms_content *content);
 
+/** How many are written where carriers are: spheres, and with masses, without which these are nothing, carriers. */
+size_t ms_fields_count(const ms_content *content);
+
 /** Density of a sphere of the clump, kg/m^3. */
 double ms_fields_density(const ms_content *content, size_t sphere);
 

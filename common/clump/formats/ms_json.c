@@ -106,7 +106,6 @@ static ms_status take_list(ms_clump *clump, const json_t *list, int are_carriers
     return status;
 }
 
-/* Carriers are nothing without masses. */
 static ms_status take_spheres(ms_clump *clump, const json_t *root, const char *name, ms_error *err)
 {
     const json_t *list = json_object_get(root, "spheres"), *carriers = json_object_get(root, "carriers");
@@ -117,10 +116,13 @@ static ms_status take_spheres(ms_clump *clump, const json_t *root, const char *n
     if (status == MS_OK && json_array_size(list) == 0) {
         status = ms_fail(err, MS_ERR_FORMAT, "%s: holds no list 'spheres'", name);
     }
+    if (status == MS_OK && columns == 4 && json_array_size(carriers) > 0) {
+        status = ms_fail(err, MS_ERR_FORMAT, "%s: has carriers, but 'columns' tells of no masses", name);
+    }
     if (status == MS_OK) {
         status = take_list(clump, list, 0, columns, name, err);
     }
-    if (status == MS_OK && columns == 5) {
+    if (status == MS_OK) {
         status = take_list(clump, carriers, 1, columns, name, err);
     }
     if (status == MS_OK && columns == 5) {
@@ -211,12 +213,12 @@ ms_status ms_json_write(FILE *stream, const ms_content *content, ms_error *err)
         failed |= json_object_set_new(root, "particle", ms_json_from_particle(content->particle)) != 0;
     }
     failed |= json_object_set_new(root, "columns", columns_to_json(masses)) != 0;
-    for (size_t s = 0; s < ms_clump_count_masses(content->clump); s++) {
+    for (size_t s = 0; s < ms_fields_count(content); s++) {
         json_t *list = s < content->clump->n_spheres ? spheres : carriers;
         failed |= json_array_append_new(list, sphere_to_json(content, s, masses)) != 0;
     }
     failed |= json_object_set_new(root, "spheres", spheres) != 0;
-    if (content->clump->n_carriers > 0) {
+    if (json_array_size(carriers) > 0) {
         failed |= json_object_set(root, "carriers", carriers) != 0;
     }
     json_decref(carriers);

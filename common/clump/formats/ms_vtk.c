@@ -12,7 +12,7 @@ static void write_scalars(FILE *stream, const char *name)
 ms_status ms_vtk_write(FILE *stream, const ms_content *content, ms_error *err)
 {
     const ms_clump *clump = content->clump;
-    const size_t n = ms_clump_count_masses(clump);
+    const size_t n = ms_fields_count(content);
     (void)err;
     fputs("# vtk DataFile Version 3.0\nclump by mskit " MS_VERSION "\nASCII\nDATASET POLYDATA\n", stream);
     fprintf(stream, "POINTS %zu double\n", n);
@@ -37,7 +37,7 @@ ms_status ms_vtk_write(FILE *stream, const ms_content *content, ms_error *err)
             fprintf(stream, "%s\n", ms_text_of_number(value).text);
         }
     }
-    if (clump->n_carriers > 0) {
+    if (n > clump->n_spheres) {
         write_scalars(stream, "carrier");
         for (size_t s = 0; s < n; s++) {
             fputs(s < clump->n_spheres ? "0\n" : "1\n", stream);

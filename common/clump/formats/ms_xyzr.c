@@ -269,18 +269,19 @@ ms_status ms_xyzr_read_yade(ms_clump *clump, ms_particle *particle, ms_bytes *by
 ms_status ms_xyzr_write(FILE *stream, const ms_content *content, ms_error *err)
 {
     const ms_clump *clump = content->clump;
+    const size_t n = ms_fields_count(content);
     (void)err;
     fputs("x,y,z,r", stream);
     fputs(ms_fields_has_masses(content) ? ",mass,density" : "", stream);
-    fputs(clump->n_carriers ? ",carrier\n" : "\n", stream);
-    for (size_t s = 0; s < ms_clump_count_masses(clump); s++) {
+    fputs(n > clump->n_spheres ? ",carrier\n" : "\n", stream);
+    for (size_t s = 0; s < n; s++) {
         const ms_sphere *b = &clump->sphere[s];
         ms_fields_numbers(stream, (const double[]){b->centre[0], b->centre[1], b->centre[2], b->radius}, 4, ",");
         if (ms_fields_has_masses(content)) {
             fputc(',', stream);
             ms_fields_numbers(stream, (const double[]){clump->mass[s], ms_fields_density(content, s)}, 2, ",");
         }
-        fputs(clump->n_carriers == 0 ? "\n" : s < clump->n_spheres ? ",0\n" : ",1\n", stream);
+        fputs(n == clump->n_spheres ? "\n" : s < clump->n_spheres ? ",0\n" : ",1\n", stream);
     }
     return MS_OK;
 }
