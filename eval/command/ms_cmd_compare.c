@@ -310,8 +310,8 @@ static int run_compare(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_compare = {
     .name = "compare",
     .summary = "methods x shapes x resolutions x numbers of spheres, as CSV and charts",
-    .usage = "SHAPE... [-g NAME[:OPTION=VALUE,...]]... [-n N,N,...] [--cells N,N,...] [-o FILE] [--charts DIR "
-             "[--report FILE]] [--json]",
+    .usage = "SHAPE... [-g NAME[:OPTION=VALUE,...]]... [-n N,N,...] [--cells N,N,...] [-o FILE] [--population DIR] "
+             "[--charts DIR [--report FILE]] [--json]",
     .example = "mskit compare grain.stl -g mss -g mss:variant=paper -g setcover -n 5,10,20,50 --charts charts",
     .flags = FLAGS,
     .run = run_compare,

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/ms_file.h"
 #include "base/ms_text.h"
 #include "cli/ms_files.h"
 #include "cli/ms_input.h"
@@ -186,10 +187,10 @@ static ms_status read_bodies(contact_bodies *b, const contact_arguments *a, ms_e
 
 static json_t *contact_json(const contact_arguments *a, const ms_contact *contact, size_t spheres)
 {
-    json_t *json = json_pack("{s:o,s:o,s:I,s:I,s:f,s:I}", "path", ms_report_text(a->clump), "target",
-                             a->target ? ms_report_text(a->target) : json_null(), "spheres", (json_int_t)spheres,
-                             "orientations", (json_int_t)a->options.orientations, "single_restitution",
-                             a->options.restitution, "seed", (json_int_t)a->options.seed);
+    json_t *json = json_pack("{s:o,s:o,s:I,s:I,s:f,s:I}", "path", ms_report_text(ms_file_name(a->clump)), "target",
+                             a->target ? ms_report_text(ms_file_name(a->target)) : json_null(), "spheres",
+                             (json_int_t)spheres, "orientations", (json_int_t)a->options.orientations,
+                             "single_restitution", a->options.restitution, "seed", (json_int_t)a->options.seed);
     ms_json_object_merge(&json, ms_contact_report_json(contact));
     return json;
 }
@@ -211,7 +212,7 @@ static ms_status execute_contact(const contact_arguments *a, ms_error *err)
         } else if (a->csv) {
             ms_contact_report_csv(stdout, &contact);
         } else {
-            printf("%s, %zu spheres\n", a->clump, b.spheres.n_spheres);
+            printf("%s, %zu spheres\n", ms_file_name(a->clump), b.spheres.n_spheres);
             ms_contact_report_print(stdout, &contact);
         }
         ms_contact_free(&contact);

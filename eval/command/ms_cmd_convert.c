@@ -23,7 +23,8 @@ static const ms_flag FLAGS[] = {
 
 typedef struct convert_arguments {
     const char *clump, *frame, *target;
-    const char *of_target; /* a flag that was given and is of use with a target alone; NULL: none */
+    const char *of_target;  /* a flag that was given and is of use with a target alone; NULL: none */
+    const char *of_surface; /* likewise, with what shows a clump alone */
     ms_mass_flags mass;
     ms_outputs outputs;
     ms_input_flags input;
@@ -50,6 +51,8 @@ static ms_status take_convert_flag(void *context, const char *name, const char *
     ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
     if (taken && !is_of_surface(name)) {
         a->of_target = name;
+    } else if (taken && strcmp(name, "threads") != 0 && strcmp(name, "max-memory") != 0) {
+        a->of_surface = name;
     }
     if (!taken) {
         status = ms_mass_flag(&taken, &a->mass, name, value, err);
@@ -199,8 +202,9 @@ static ms_status resolve_convert(convert_arguments *a, ms_error *err)
     if (status == MS_OK) {
         status = ms_outputs_resolve(&a->outputs, a->clump, "", MS_NEED_MASSES, 0, err);
     }
-    return status == MS_OK && a->target && !ms_outputs_shown(&a->outputs)
-               ? ms_fail(err, MS_ERR_ARG, "--target is for pages, pictures and surfaces, and no output is one")
+    const char *of_shown = a->target ? "target" : a->of_surface;
+    return status == MS_OK && of_shown && !ms_outputs_shown(&a->outputs)
+               ? ms_fail(err, MS_ERR_ARG, "--%s is for pages, pictures and surfaces, and no output is one", of_shown)
                : status;
 }
 

@@ -474,7 +474,7 @@ function refuse(why) {
 if (!gl) {
   refuse('This browser shows no picture: it has no WebGL 2, or it is switched off. The tables on this page hold without it.');
 } else if (scenes.length === 0) {
-  refuse('There is no clump to show: the table says why.');
+  refuse('No clump of these results was kept, so that there is none to show.');
 } else {
   start();
   reset();

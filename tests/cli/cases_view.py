@@ -138,6 +138,7 @@ class Pages(Case):
         self.shape("ball", name="ball.stl")
         self.assert_refused("convert", "two.csv", "-o", "a.html", "--rule", "centre", code=2, says=("--rule", "--target"))
         self.assert_refused("convert", "two.csv", "-o", "a.csv", "--target", "ball.stl", code=2, says=("--target",))
+        self.assert_refused("convert", "two.csv", "-o", "a.csv", "--cells", 20, code=2, says=("--cells", "surfaces"))
         self.assert_refused("score", "two.csv", "--target", "ball.stl", "--json", "-o", "-", code=2, says=("choose one",))
         self.assert_refused("score", "two.csv", "--target", "ball.stl", "-o", "two.csv", code=1, says=("two.csv",))
         self.assert_refused("convert", "two.csv", "-o", "a.htm", code=2, says=("html", "stl"))

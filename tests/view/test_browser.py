@@ -168,6 +168,17 @@ class Browser(unittest.TestCase):
         self.assertGreater(min(charts), 100, "each chart is drawn")
         self.expect_no_error()
 
+    def test_report_without_clumps(self):
+        """Rows of a run that kept none: the table sorts even so."""
+        self.mskit("shape", "ball", "-o", "ball.stl")
+        run = ("compare", "ball.stl", "-g", "mss", "-n", "1,2", "--cells", 8)
+        self.mskit(*run)
+        self.mskit(*run, "--resume", "--charts", "charts", "--report", "r.html")
+        self.open("r.html")
+        self.assertIn("none to show", self.browser.find_element("id", "message").text)
+        self.expect_sorted()
+        self.expect_no_error()
+
     def expect_sorted(self):
         heading = self.browser.find_elements("css selector", "#rows th")[5]
         self.assertEqual(heading.text, "dice")
