@@ -50,7 +50,8 @@ IFS=$old
 # shellcheck disable=SC2086
 compare times "$@" $BASELINES $METHODS -j 1
 
-"$MSKIT" grains "$folder" -g mss -n 20 --cells 50 -o "$OUT/clumps" --resume >"$OUT/clumps.out" 2>&1
+"$MSKIT" grains "$folder" -g mss -n 20 --cells 50 -o "$OUT/clumps" --resume \
+    >"$OUT/clumps.out" 2>"$OUT/clumps.err" || { cat "$OUT/clumps.err" >&2; exit 1; }
 for k in 5 10 20 50; do
     [ "$k" -lt "$(wc -l <"$OUT/clumps/grains.csv")" ] || continue
     rm -rf "$OUT/library-$k"

@@ -71,6 +71,8 @@ def cell(shape, path, method, n, folder, causes):
 
 
 def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
     shared, methods = sys.argv[1], sys.argv[2:] or METHODS
     causes, worst = [], 0
     print("| shape | " + " | ".join(f"{m} {n}" for m in methods for n in SPHERES) + " |")

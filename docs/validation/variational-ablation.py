@@ -51,7 +51,7 @@ def run(*command):
     return done.stdout, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
-def build(source, folder, name):
+def build(folder, name):
     """The program as the copy of the source is now."""
     run("ninja", "-C", os.path.join(folder, "build"), "eval/mskit")
     return shutil.copy(os.path.join(folder, "build/eval/mskit"), os.path.join(folder, name))
@@ -69,7 +69,7 @@ def build_without(source, folder, which):
         text = text.replace(there, instead)
     with open(path, "w", encoding="utf-8") as f:
         f.write(text)
-    made = build(source, folder, f"without-{which}")
+    made = build(folder, f"without-{which}")
     with open(path, "w", encoding="utf-8") as f:
         f.write(whole)
     return made
@@ -108,7 +108,7 @@ def tabulate(data, folder):
     """Builds, runs and prints, each row as soon as it is measured."""
     source = os.path.join(folder, "source")
     run("meson", "setup", os.path.join(folder, "build"), source)
-    whole = build(source, folder, "whole")
+    whole = build(folder, "whole")
     shapes = [(name, find_shape(name, data, folder, whole), n) for name, n in SHAPES]
     shapes = [shape for shape in shapes if shape[1]]
     print_row("without", [f"{os.path.splitext(os.path.basename(name))[0]} {n}" for name, _, n in shapes])
