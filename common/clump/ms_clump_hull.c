@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_fibonacci.h"
 #include "base/ms_vector.h"
 #include "mesh/ms_hull.h"
 
@@ -11,16 +12,6 @@ enum { DIRECTIONS = 2048 };
 
 /* What a polyhedron with a corner in each direction lacks of the radius of its ball, on the average over volume. */
 static const double SHORT_BY = 1.935 / DIRECTIONS;
-
-/* Fibonacci lattice. */
-static void direct_support(double out[3], int which)
-{
-    const double pi = 3.14159265358979323846, turn = pi * (3 - sqrt(5.0)) * which;
-    const double z = 1 - (2 * which + 1.0) / DIRECTIONS, ring = sqrt(1 - z * z);
-    out[0] = ring * cos(turn);
-    out[1] = ring * sin(turn);
-    out[2] = z;
-}
 
 static void find_farthest(double out[3], const ms_clump *clump, const double direction[3])
 {
@@ -51,7 +42,7 @@ ms_status ms_clump_hull_build(ms_mesh *hull, const ms_clump *clump, ms_error *er
 #pragma omp parallel for schedule(static) if (clump->n_spheres >= 64)
     for (int d = 0; d < DIRECTIONS; d++) {
         double direction[3];
-        direct_support(direction, d);
+        ms_fibonacci(direction, d, DIRECTIONS);
         find_farthest(point[d], clump, direction);
     }
     const ms_status status = ms_hull_build(hull, (const double(*)[3])point, DIRECTIONS, err);

@@ -3,17 +3,17 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/ms_fibonacci.h"
 #include "base/ms_vector.h"
 #include "ms_union.h"
 
 double ms_equal_volume_width(const ms_clump *clump)
 {
     enum { DIRECTIONS = 2048 };
-    const double pi = acos(-1.0);
     double sum = 0;
-    for (int d = 0; d < DIRECTIONS; d++) { /* a Fibonacci lattice */
-        const double turn = pi * (3 - sqrt(5.0)) * d, z = 1 - (2 * d + 1.0) / DIRECTIONS, ring = sqrt(1 - z * z);
-        const double u[3] = {ring * cos(turn), ring * sin(turn), z};
+    for (int d = 0; d < DIRECTIONS; d++) {
+        double u[3];
+        ms_fibonacci(u, d, DIRECTIONS);
         double ahead = -HUGE_VAL, behind = -HUGE_VAL;
         for (size_t s = 0; s < clump->n_spheres; s++) {
             const double along = ms_dot(clump->sphere[s].centre, u);

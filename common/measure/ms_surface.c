@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_fibonacci.h"
 #include "base/ms_vector.h"
 #include "mesh/ms_closest.h"
 
@@ -107,15 +108,14 @@ static part sphere_part(ms_normals_tally *tally, const exposed_job *job, size_t 
     const ms_sphere *sphere = &clump->sphere[s];
     const double h = job->target->grid.h, area = 4 * PI * sphere->radius * sphere->radius;
     const int samples = (int)fmin(1000, fmax(32, ceil(area / (4 * h * h))));
-    const double golden = PI * (3 - sqrt(5.0));
     const size_t count = find_touching(neighbour, clump, s);
     part sum = {0};
     for (int m = 0; m < samples; m++) {
-        const double z = 1 - (2 * m + 1.0) / samples, ring = sqrt(1 - z * z), turn = golden * m;
-        const double normal[3] = {ring * cos(turn), ring * sin(turn), z};
-        const double point[3] = {sphere->centre[0] + sphere->radius * ring * cos(turn),
-                                 sphere->centre[1] + sphere->radius * ring * sin(turn),
-                                 sphere->centre[2] + sphere->radius * z};
+        double normal[3], point[3];
+        ms_fibonacci(normal, m, samples);
+        for (int k = 0; k < 3; k++) {
+            point[k] = sphere->centre[k] + sphere->radius * normal[k];
+        }
         if (!is_hidden(point, clump, s, neighbour, count)) {
             add_exposed(&sum, tally, job, point, normal, area / samples);
         }

@@ -9,24 +9,21 @@ are those of mskit's own measures, times are user times of one thread, reading a
 """
 import json
 import os
-import resource
-import subprocess
 import sys
+
+from timing import run
 
 MSKIT = os.environ.get("MSKIT", "mskit")
 
 
 def generate(mesh, n, *options):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    done = subprocess.run([MSKIT, "generate", mesh, "-g", "variational", "-n", str(n), "-o", "/dev/null", "--format", "csv",
-                           "--json", *options], capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
-    if done.returncode:
-        sys.exit(done.stderr)
-    told = json.loads(done.stdout)
+    text, seconds = run(MSKIT, "generate", mesh, "-g", "variational", "-n", n, "-o", "/dev/null", "--format", "csv",
+                        "--json", *options)
+    told = json.loads(text)
     scores = told["scores"]
     return {"n": scores["spheres"], "dice": scores["dice"], "pieces": scores["pieces"],
             "gap": scores["gap_max"] / told["input"]["voxel_size"],
-            "seconds": resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before}
+            "seconds": seconds}
 
 
 def main():

@@ -12,11 +12,11 @@ the whole one take turns, and of two runs the least time counts: its ratio tells
 import glob
 import json
 import os
-import resource
 import shutil
-import subprocess
 import sys
 import tempfile
+
+from timing import run
 
 ROOM = "generators/variational/"
 SOLVE, FIT, SOLVER, PRUNE = (ROOM + f for f in ("ms_variational_solve.c", "ms_surface_fit.c", "ms_variational_solver.c",
@@ -39,16 +39,6 @@ MADE = {"oblate": ["ellipsoid", "a=2", "b=2", "c=1", "fineness=100"],
 SHAPES = [("oblate", 100), ("prolate", 30), ("torus", 40), ("bunny.ply", 100), ("human_femur.stl", 70),
           ("open-clumps/bowl.*", 20)]
 REPEATS = 2
-
-
-def run(*command):
-    """What it prints, and its user time."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True,
-                          env={**os.environ, "OMP_NUM_THREADS": "1"})
-    if done.returncode:
-        sys.exit(f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
-    return done.stdout, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
 def build(folder, name):

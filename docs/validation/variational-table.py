@@ -9,10 +9,10 @@ counts: its ratio tells more than itself.
 """
 import json
 import os
-import resource
-import subprocess
 import sys
 import tempfile
+
+from timing import run
 
 MADE = {"oblate": ["ellipsoid", "a=2", "b=2", "c=1", "fineness=100"],
         "prolate": ["ellipsoid", "a=2", "b=1", "c=1", "fineness=100"],
@@ -21,16 +21,6 @@ ROWS = [("bunny.ply", 30, []), ("bunny.ply", 100, []), ("bunny.ply", 150, []), (
         ("human_femur.stl", 70, []), ("human_femur.stl", 70, ["--protrusion", "0"]), ("oblate", 200, []),
         ("oblate", 400, []), ("prolate", 10, []), ("prolate", 100, []), ("torus", 20, []), ("torus", 40, [])]
 REPEATS = 3
-
-
-def run(*command):
-    """What it prints, and its user time."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True,
-                          env={**os.environ, "OMP_NUM_THREADS": "1"})
-    if done.returncode:
-        sys.exit(f"{' '.join(map(str, command))}\n{done.stderr}")
-    return done.stdout, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
 def measure(builds, path, n, options, folder):

@@ -1,6 +1,7 @@
 /* Clumps of other tools: which goes with which shape. */
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/ms_file.h"
 #include "clump/formats/ms_read.h"
@@ -36,10 +37,12 @@ static size_t find_shape(const char *file, char *const *shape, size_t n_shapes)
     return best;
 }
 
+/* Folders are passed over: templates that are folders are written and not read. */
 static ms_status pair_file(ms_method *method, char *file, char *const *shape, ms_error *err)
 {
+    struct stat info;
     const size_t at = find_shape(file, shape, method->n_clumps);
-    if (at == method->n_clumps) {
+    if (at == method->n_clumps || (stat(file, &info) == 0 && S_ISDIR(info.st_mode))) {
         return MS_OK;
     }
     if (method->clump[at].file) {

@@ -194,6 +194,27 @@ ms_status ms_outputs_list(ms_files *files, const ms_outputs *outputs, ms_error *
     return status;
 }
 
+ms_status ms_outputs_check(const ms_outputs *outputs, const char *clump, const char *frame, const char *target,
+                           ms_error *err)
+{
+    ms_files files = {0};
+    ms_status status = ms_files_add(&files, clump, MS_FILE_READ, err);
+    if (status == MS_OK && frame) {
+        status = ms_files_add(&files, frame, MS_FILE_READ, err);
+    }
+    if (status == MS_OK && target) {
+        status = ms_files_add_shape(&files, target, err);
+    }
+    if (status == MS_OK) {
+        status = ms_outputs_list(&files, outputs, err);
+    }
+    if (status == MS_OK) {
+        status = ms_files_check(&files, err);
+    }
+    ms_files_free(&files);
+    return status;
+}
+
 /* Of all formats, those that cannot hold this clump are passed over. */
 static int pass_over(const ms_outputs *outputs, const ms_output_file *file, const ms_content *content)
 {

@@ -58,6 +58,17 @@ int ms_outputs_to_stdout(const ms_outputs *outputs);
  * name that a script cannot hold; MS_ERR_IO; MS_ERR_NOMEM */
 ms_status ms_outputs_list(ms_files *files, const ms_outputs *outputs, ms_error *err);
 
+/**
+ * Holds the files of a command that reads a clump and writes it elsewhere against each other, and tries the outputs,
+ * before the work.
+ *
+ * @param frame  another clump that is read; NULL for none
+ * @param target a shape that is read; NULL for none
+ * @return as ms_outputs_list and ms_files_check
+ */
+ms_status ms_outputs_check(const ms_outputs *outputs, const char *clump, const char *frame, const char *target,
+                           ms_error *err);
+
 /** Where the clump goes if none of the outputs can be written for lack of masses: as CSV, behind the first output's
   * name or to standard output. The caller frees it; NULL without memory. */
 char *ms_outputs_spare(const ms_outputs *outputs, ms_error *err);

@@ -70,7 +70,11 @@ static ms_status add_pattern(ms_paths *paths, const char *pattern, ms_paths_choi
     glob_t found;
     ms_status status = MS_OK;
     const size_t before = paths->count;
-    if (glob(pattern, 0, NULL, &found) != 0) {
+    const int failed = glob(pattern, 0, NULL, &found);
+    if (failed == GLOB_NOSPACE) {
+        return ms_fail(err, MS_ERR_NOMEM, "%s: no memory for the files that fit this pattern", pattern);
+    }
+    if (failed) {
         return ms_fail(err, MS_ERR_IO, "%s: no file has this name or fits this pattern", pattern);
     }
     for (size_t p = 0; p < found.gl_pathc && status == MS_OK; p++) {

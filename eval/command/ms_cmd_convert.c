@@ -106,26 +106,6 @@ static ms_status read_clump(ms_clump *clump, ms_particle *particle, const conver
     return status == MS_OK ? complete_particle(particle, a, clump, err) : status;
 }
 
-static ms_status check_convert_files(const convert_arguments *a, ms_error *err)
-{
-    ms_files files = {0};
-    ms_status status = ms_files_add(&files, a->clump, MS_FILE_READ, err);
-    if (status == MS_OK && a->frame) {
-        status = ms_files_add(&files, a->frame, MS_FILE_READ, err);
-    }
-    if (status == MS_OK && a->target) {
-        status = ms_files_add_shape(&files, a->target, err);
-    }
-    if (status == MS_OK) {
-        status = ms_outputs_list(&files, &a->outputs, err);
-    }
-    if (status == MS_OK) {
-        status = ms_files_check(&files, err);
-    }
-    ms_files_free(&files);
-    return status;
-}
-
 /* The lattice of surfaces without a target: so many cells along the shortest side of the clump. */
 static double find_lattice(const convert_arguments *a, const ms_clump *clump)
 {
@@ -181,7 +161,7 @@ static ms_status execute_convert(convert_arguments *a, ms_error *err)
         ms_view_about about = {.h = find_lattice(a, &clump)};
         status = ms_outputs_resolve(&a->outputs, a->clump, "", need, 0, err);
         if (status == MS_OK) {
-            status = check_convert_files(a, err);
+            status = ms_outputs_check(&a->outputs, a->clump, a->frame, a->target, err);
         }
         if (status == MS_OK) {
             status = a->target ? write_with_target(a, &content, err) : write_converted(a, &content, &about, err);

@@ -101,23 +101,6 @@ static ms_status report_correct(const correct_arguments *a, const ms_clump *clum
     return status;
 }
 
-static ms_status check_correct_files(const correct_arguments *a, ms_error *err)
-{
-    ms_files files = {0};
-    ms_status status = ms_files_add(&files, a->clump, MS_FILE_READ, err);
-    if (status == MS_OK && a->target) {
-        status = ms_files_add_shape(&files, a->target, err);
-    }
-    if (status == MS_OK) {
-        status = ms_outputs_list(&files, &a->outputs, err);
-    }
-    if (status == MS_OK) {
-        status = ms_files_check(&files, err);
-    }
-    ms_files_free(&files);
-    return status;
-}
-
 static ms_status execute_correct(const correct_arguments *a, ms_error *err)
 {
     ms_clump clump;
@@ -132,7 +115,7 @@ static ms_status execute_correct(const correct_arguments *a, ms_error *err)
     if (status != MS_OK) {
         return status;
     }
-    status = check_correct_files(a, err);
+    status = ms_outputs_check(&a->outputs, a->clump, NULL, a->target, err);
     if (status == MS_OK && a->target) {
         status = body_of_target(&body, a, err);
     }

@@ -419,6 +419,7 @@ static ms_status execute_grains(grains_arguments *a, char *const *words, size_t 
         return status;
     }
     a->grains.list = &list;
+    /* Rows of a run with the flag and of one without are no one run. */
     a->grains.run = ms_grain_list_checksum(&list) ^ (uint64_t)a->grains.equal_volume;
     status = a->assembly ? ms_grain_assembly_check(&a->grains, words, count, err) : MS_OK;
     if (status == MS_OK) {

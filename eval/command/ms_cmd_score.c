@@ -114,22 +114,8 @@ static ms_status check_score_files(score_arguments *a, const char *path, const m
 {
     const int known = particle->mass > 0 && particle->density > 0;
     const ms_need need = !known ? MS_NEED_SPHERES : clump->mass ? MS_NEED_MASSES : MS_NEED_PARTICLE;
-    ms_files files = {0};
-    ms_status status = ms_outputs_resolve(&a->outputs, path, "", need, 0, err);
-    if (status == MS_OK) {
-        status = ms_files_add(&files, path, MS_FILE_READ, err);
-    }
-    if (status == MS_OK) {
-        status = ms_files_add_shape(&files, a->target, err);
-    }
-    if (status == MS_OK) {
-        status = ms_outputs_list(&files, &a->outputs, err);
-    }
-    if (status == MS_OK) {
-        status = ms_files_check(&files, err);
-    }
-    ms_files_free(&files);
-    return status;
+    const ms_status status = ms_outputs_resolve(&a->outputs, path, "", need, 0, err);
+    return status == MS_OK ? ms_outputs_check(&a->outputs, path, NULL, a->target, err) : status;
 }
 
 static ms_status execute_score(score_arguments *a, const char *path, ms_error *err)

@@ -1,6 +1,7 @@
 #include "ms_compare_sheet.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,6 +49,17 @@ ms_status ms_compare_sheet_keep(const ms_compare_sheet *sheet, const ms_method *
     char *path = ms_compare_sheet_path(sheet, method, asked, err);
     const ms_status status =
         path ? ms_write_clump(&content, path, ms_write_format_find("csv", err), err) : MS_ERR_NOMEM;
+    free(path);
+    return status;
+}
+
+ms_status ms_compare_sheet_drop(const ms_compare_sheet *sheet, const ms_method *method, double asked, ms_error *err)
+{
+    char *path = ms_compare_sheet_path(sheet, method, asked, err);
+    ms_status status = path ? MS_OK : MS_ERR_NOMEM;
+    if (path && remove(path) != 0 && errno != ENOENT) {
+        status = ms_fail(err, MS_ERR_IO, "%s: the clump of a run before cannot be removed: %s", path, strerror(errno));
+    }
     free(path);
     return status;
 }

@@ -21,6 +21,10 @@ typedef struct ms_compare_sheet {
 ms_status ms_compare_sheet_keep(const ms_compare_sheet *sheet, const ms_method *method, double asked,
                                 const ms_clump *clump, ms_error *err);
 
+/** Removes the one that a run before kept there, so that none stands for a run that fails. @return MS_OK; MS_ERR_IO;
+ * MS_ERR_NOMEM */
+ms_status ms_compare_sheet_drop(const ms_compare_sheet *sheet, const ms_method *method, double asked, ms_error *err);
+
 /** Where that is; the caller frees it; NULL without memory. */
 char *ms_compare_sheet_path(const ms_compare_sheet *sheet, const ms_method *method, double asked, ms_error *err);
 

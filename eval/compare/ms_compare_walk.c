@@ -89,17 +89,21 @@ static ms_compare_sheet plan_sheet(const ms_comparison *a, const char *name, siz
                               .n_asked = a->asked.count};
 }
 
-/* For the contact sheet: charts are drawn of runs in turn, so that no other run is at it. */
+/* For the contact sheet: charts are drawn of runs in turn, so that no other run is at it.
+ * @param clump of n spheres; NULL, before a run: none, and none of a run before either */
 static void keep_clump(compare_walk *w, const ms_compare_run *run, double asked, const ms_clump *clump, size_t n)
 {
     char name[256];
     ms_error err;
-    const ms_clump prefix = {.n_spheres = n, .capacity = n, .sphere = clump->sphere};
     const double finest = w->a->cells.value[w->a->cells.count - 1];
     if (w->a->charts && run->method->generator && !(run->stage->cells < finest)) {
         ms_compare_name(name, sizeof name, run->stage->shape, w->a->label);
         const ms_compare_sheet sheet = plan_sheet(w->a, name, run->stage->at);
-        note_drawn(w, ms_compare_sheet_keep(&sheet, run->method, asked, &prefix, &err), &err);
+        const ms_clump prefix = {.n_spheres = n, .capacity = n, .sphere = clump ? clump->sphere : NULL};
+        note_drawn(w,
+                   clump ? ms_compare_sheet_keep(&sheet, run->method, asked, &prefix, &err)
+                         : ms_compare_sheet_drop(&sheet, run->method, asked, &err),
+                   &err);
     }
 }
 
@@ -186,6 +190,9 @@ static void make_rows(compare_walk *w, compare_result *result, const ms_compare_
     ms_trial trial = {0};
     ms_error cause = shared->cause;
     ms_status made = shared->status;
+    for (size_t k = run->there; k < run->count; k++) {
+        keep_clump(w, run, run->asked[k], NULL, 0);
+    }
     if (made == MS_OK) {
         made = need_expected(run->stage, &cause);
     }

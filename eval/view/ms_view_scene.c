@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/ms_escape.h"
+#include "base/ms_fibonacci.h"
 #include "base/ms_vector.h"
 #include "ms_view_base64.h"
 #include "ms_view_shape.h"
@@ -121,14 +122,14 @@ static int is_hidden(const double point[3], const ms_clump *clump, size_t s)
 /* At points of a Fibonacci lattice; 0 of a sphere that is inside. */
 static double find_protrusion(const ms_view_shape *shape, const ms_clump *clump, size_t s)
 {
-    const double golden = acos(-1.0) * (3 - sqrt(5.0));
     const ms_sphere *sphere = &clump->sphere[s];
     double most = 0;
     for (int m = 0; m < SAMPLES; m++) {
-        const double z = 1 - (2 * m + 1.0) / SAMPLES, ring = sqrt(1 - z * z);
-        const double point[3] = {sphere->centre[0] + sphere->radius * ring * cos(golden * m),
-                                 sphere->centre[1] + sphere->radius * ring * sin(golden * m),
-                                 sphere->centre[2] + sphere->radius * z};
+        double u[3], point[3];
+        ms_fibonacci(u, m, SAMPLES);
+        for (int k = 0; k < 3; k++) {
+            point[k] = sphere->centre[k] + sphere->radius * u[k];
+        }
         if (!is_hidden(point, clump, s)) {
             most = fmax(most, ms_closest_signed_distance(shape->closest, point));
         }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_fibonacci.h"
 #include "base/ms_random.h"
 #include "base/ms_vector.h"
 
@@ -12,16 +13,6 @@
 enum { GROUP = 16, SIDE = 4 };
 
 static const double PI = 3.14159265358979323846;
-
-/* Points of equal areas along a spiral. */
-static void find_direction(double out[3], int p, int points)
-{
-    const double turn = PI * (3 - sqrt(5.0)) * p;
-    const double z = 1 - (2 * p + 1.0) / points, r = sqrt(1 - z * z);
-    out[0] = r * cos(turn);
-    out[1] = r * sin(turn);
-    out[2] = z;
-}
 
 /* Coarse groups: bands of equal areas between parallels, cut into sectors about as wide as high. Fine ones: these cut
  * into so many bands and sectors each. */
@@ -102,7 +93,7 @@ static void fill_level(ms_lattice_level *level, const cells *c)
     const int fines = c->side * c->side;
     double at[3];
     for (int p = 0; p < level->points; p++) {
-        find_direction(at, p, level->points);
+        ms_fibonacci(at, p, level->points);
         level->fine[find_fine(at, c)].count++;
     }
     for (int g = 0, first = 0; g < level->fines; g++) {
@@ -111,7 +102,7 @@ static void fill_level(ms_lattice_level *level, const cells *c)
         level->fine[g].count = 0;
     }
     for (int p = 0; p < level->points; p++) {
-        find_direction(at, p, level->points);
+        ms_fibonacci(at, p, level->points);
         ms_lattice_group *group = &level->fine[find_fine(at, c)];
         float *to = level->direction[group->first + group->count++];
         for (int k = 0; k < 3; k++) {

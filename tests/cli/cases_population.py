@@ -88,6 +88,15 @@ class Tables(Population):
                                                                "shapes/box-0.obj, tool:given/box-0.json, 2 spheres"])
         self.assertEqual(re.findall(r'data-scene="(\d+)"', page), ["0", "1"])
 
+    def test_no_clump_of_a_run_before(self):
+        """A run that fails in a folder of charts leaves its place empty: the clump that was kept there is not its own."""
+        run = ("compare", "shapes/box-0.obj", "-g", "mss", "-n", "2", "--cells", "8", "--charts", "out")
+        self.mskit(*run, "-o", "a.csv")
+        self.assertTrue(os.path.exists(self.path("out/box-0-mss-2.csv")))
+        failed = self.mskit(*run, "-o", "b.csv", "--min-radius", "1e6", code=1)
+        self.assertIn("its place on the contact sheet is empty", failed.err)
+        self.assertFalse(os.path.exists(self.path("out/box-0-mss-2.csv")))
+
     def test_the_verdict(self):
         result = self.mskit("compare", "shapes", *RUN, "--population", "pop")
         lines = [line for line in result.err.split("\n") if line.startswith("n = ")]
@@ -116,6 +125,7 @@ class Clumps(Population):
     def test_clumps_of_a_folder(self):
         self.clumps()
         self.write("clumps/other.csv", "not read: it goes with no shape")
+        os.mkdir(self.path("clumps/box-1.mercury"))  # a template that is a folder, which is written and not read
         for word in ("clumps", "clumps/box-*.csv", "./clumps/*-tool.csv"):
             self.mskit("compare", "shapes", "-g", "mss", "-n", "4", "--cells", "8", "-j", "1", "--clump", f"tool={word}",
                        "-o", "c.csv", "--population", "pop")
