@@ -135,6 +135,17 @@ ms_compare_spread ms_compare_population_spread(const ms_compare_population *p, s
     return ms_compare_spread_of(room, count);
 }
 
+int ms_compare_population_is_beside(const ms_compare_population *p, size_t number)
+{
+    int found = 0;
+    for (size_t m = 0; m < p->n_methods; m++) {
+        for (size_t s = 0; s < p->n_shapes; s++) {
+            found |= ms_compare_population_value(p, number, m, s, MS_COLUMN_BESIDE) > 0;
+        }
+    }
+    return found;
+}
+
 double ms_compare_population_time(const ms_compare_population *p, double *room)
 {
     return p->n_numbers ? ms_compare_population_spread(p, 0, 0, MS_COLUMN_GENERATE, room).mean : (double)NAN;

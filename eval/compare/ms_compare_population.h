@@ -38,6 +38,9 @@ double ms_compare_population_value(const ms_compare_population *p, size_t number
 ms_compare_spread ms_compare_population_spread(const ms_compare_population *p, size_t number, size_t method,
                                                ms_column column, double *room);
 
+/** Nonzero if a run of this number, by its index, had others at work beside it, so that its time says less. */
+int ms_compare_population_is_beside(const ms_compare_population *p, size_t number);
+
 /** What times are put over, as in fig. 11 of the MSS paper: the mean time of the first method at the least number of
  * spheres; NAN if it has none. @param room n_shapes values */
 double ms_compare_population_time(const ms_compare_population *p, double *room);

@@ -260,9 +260,14 @@ static void fill_curves(curves *d, const ms_compare_population *p, ms_column col
 static ms_status draw_population(const ms_compare_population *p, curves *d, const char *stem, const char *label,
                                  ms_column column, FILE *words, ms_error *err)
 {
-    char title[80];
+    char title[120];
+    int is_beside = 0;
+    for (size_t n = 0; n < p->n_numbers && column == MS_COLUMN_GENERATE; n++) {
+        is_beside |= ms_compare_population_is_beside(p, n);
+    }
     const double over = column == MS_COLUMN_GENERATE ? ms_compare_population_time(p, d->room) : 1;
-    snprintf(title, sizeof title, "%zu shapes: mean, and a band from quartile to quartile", p->n_shapes);
+    snprintf(title, sizeof title, "%zu shapes: mean, and a band from quartile to quartile%s", p->n_shapes,
+             is_beside ? "; runs side by side" : "");
     fill_curves(d, p, column, over);
     const ms_chart chart = {.title = title,
                             .x_label = "number of spheres",

@@ -39,18 +39,6 @@ static void say_factor(FILE *stream, const ms_compare_standing *s, const char *w
     }
 }
 
-/* Nonzero if a row of these times had others at work beside it. */
-static int is_beside(const ms_compare_population *p, size_t number)
-{
-    int found = 0;
-    for (size_t m = 0; m < p->n_methods; m++) {
-        for (size_t s = 0; s < p->n_shapes; s++) {
-            found |= ms_compare_population_value(p, number, m, s, MS_COLUMN_BESIDE) > 0;
-        }
-    }
-    return found;
-}
-
 static ms_status say_winner(FILE *stream, const ms_compare_population *p, size_t number, ms_column column,
                             ms_compare_standing *standing, ms_error *err)
 {
@@ -70,8 +58,9 @@ static ms_status say_winner(FILE *stream, const ms_compare_population *p, size_t
         fprintf(stream, " (of %zu; on the rest it or all others have none)", p->n_shapes);
     }
     say_factor(stream, best, column == MS_COLUMN_DICE ? "D" : "time");
-    fputs(column == MS_COLUMN_GENERATE && is_beside(p, number) ? " (times of runs side by side; -j 1: in turn)\n"
-                                                               : "\n",
+    fputs(column == MS_COLUMN_GENERATE && ms_compare_population_is_beside(p, number)
+              ? " (times of runs side by side; -j 1: in turn)\n"
+              : "\n",
           stream);
     free(name);
     return MS_OK;
