@@ -52,7 +52,7 @@ static ms_status choose_meetings(meetings *p, ms_contact_against against, ms_con
         return ms_fail(err, MS_ERR_NOMEM, "no memory to draw orientations");
     }
     for (size_t i = 0; i < p->count; i++) {
-        p->weight[i] = one_each ? form->pose[i].share : 1.0 / (double)p->count;
+        p->weight[i] = one_each ? form->pose[i].share : 1;
         if (one_each) {
             memcpy(p->place[i].u, form->pose[i].direction, sizeof p->place[i].u);
         } else if (where == MS_CONTACT_RANDOM) {
@@ -90,6 +90,7 @@ static void sum_up(ms_contact_row *row, double single)
     for (size_t i = 0; i < row->samples; i++) {
         const ms_touch *t = &row->sample[i].touch;
         const double weight = row->sample[i].weight;
+        row->whole += weight;
         if (t->count == 0) {
             row->missed += weight;
             continue;
@@ -106,6 +107,7 @@ static void sum_up(ms_contact_row *row, double single)
         row->most_damping = fmax(row->most_damping, t->damping);
         row->least_restitution = fmin(row->least_restitution, e);
     }
+    row->missed /= row->whole;
     double *const mean[] = {&row->mean, &row->stiffness, &row->damping, &row->restitution, &row->overdamped};
     for (size_t k = 0; k < sizeof mean / sizeof *mean; k++) {
         *mean[k] /= touching;

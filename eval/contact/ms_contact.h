@@ -25,7 +25,7 @@ typedef enum ms_contact_where { MS_CONTACT_RANDOM, MS_CONTACT_POSES } ms_contact
 /** One orientation. */
 typedef struct ms_contact_sample {
     ms_touch touch;
-    double weight; /* those of a row sum to 1 */
+    double weight; /* part of ms_contact_row.whole */
 } ms_contact_sample;
 
 /** The contacts against one thing at one overlap. Means are over those that touch, NAN where none does. */
@@ -35,6 +35,7 @@ typedef struct ms_contact_row {
     double overlap; /* part of r_eq */
     size_t samples;
     ms_contact_sample *sample; /* fewest contacts first */
+    double whole;              /* sum of their weights, in this order, so that parts of it are 1 at most */
     double missed;             /* part that passed without touching */
     double mean;               /* number of contacts */
     size_t median, most;

@@ -10,28 +10,28 @@
 static const char *const AGAINST[] = {[MS_CONTACT_PLANE] = "plane", [MS_CONTACT_PARTICLE] = "particle"};
 static const char *const WHERE[] = {[MS_CONTACT_RANDOM] = "random", [MS_CONTACT_POSES] = "poses"};
 
-/* The numbers of a row, in the order of the columns. */
-#define MS_CONTACT_COLUMNS(X)                      \
-    X("overlap", row->overlap)                     \
-    X("orientations", (double)row->samples)        \
-    X("missed", row->missed)                       \
-    X("contacts", row->mean)                       \
-    X("contacts_median", (double)row->median)      \
-    X("contacts_most", (double)row->most)          \
-    X("stiffness", row->stiffness)                 \
-    X("stiffness_most", row->most_stiffness)       \
-    X("damping", row->damping)                     \
-    X("damping_most", row->most_damping)           \
-    X("restitution", row->restitution)             \
-    X("restitution_least", row->least_restitution) \
-    X("overdamped", row->overdamped)
+/* The numbers of a row, in the order of the columns: X of those that are whole, Y of others. */
+#define MS_CONTACT_COLUMNS(X, Y)                   \
+    Y("overlap", row->overlap)                     \
+    X("orientations", row->samples)                \
+    Y("missed", row->missed)                       \
+    Y("contacts", row->mean)                       \
+    X("contacts_median", row->median)              \
+    X("contacts_most", row->most)                  \
+    Y("stiffness", row->stiffness)                 \
+    Y("stiffness_most", row->most_stiffness)       \
+    Y("damping", row->damping)                     \
+    Y("damping_most", row->most_damping)           \
+    Y("restitution", row->restitution)             \
+    Y("restitution_least", row->least_restitution) \
+    Y("overdamped", row->overdamped)
 
 static void print_forms(FILE *stream, const ms_contact *c)
 {
     fprintf(stream, "  %-22s %.9g\n", "r_eq", c->r_eq);
     fprintf(stream, "  %-22s %.6g", "mean width", c->clump.mean_width);
     if (c->shape.pose) {
-        fprintf(stream, ", of the shape %.6g\n  %-22s %.6g, of r_eq %.3g", c->shape.mean_width, "rms of the support",
+        fprintf(stream, ", of the shape %.6g\n  %-22s %.6g, %.3g r_eq", c->shape.mean_width, "rms of the support",
                 c->rms, c->rms / c->r_eq);
     }
     fputc('\n', stream);
@@ -70,10 +70,29 @@ static void print_sleds(FILE *stream, const ms_contact *c)
     for (size_t s = 0; s < c->n_sleds; s++) {
         for (int f = 0; f < MS_CONTACT_N_FRICTIONS; f++) {
             const ms_sled *sled = &c->sled[s].sled[f];
-            fprintf(stream, "  %-8.3g %-8.3g %6.3f %6.3f  %8.3f %7.3f  %8.3f %7.3f\n", sled->friction,
-                    c->sled[s].overlap, sled->jammed, sled->missed, sled->mean, sled->largest, sled->slope_mean,
-                    sled->slope_largest);
+            fprintf(stream, "  %-8.3g %-8.3g %6.3f %6.3f", sled->friction, c->sled[s].overlap, sled->jammed,
+                    sled->missed);
+            if (isfinite(sled->mean)) {
+                fprintf(stream, "  %8.3f %7.3f  %8.3f %7.3f", sled->mean, sled->largest, sled->slope_mean,
+                        sled->slope_largest);
+            }
+            fputc('\n', stream);
         }
+    }
+}
+
+static void print_row(FILE *stream, const ms_contact_row *row)
+{
+    fprintf(stream, "  %-8s %-6s %-8.3g ", AGAINST[row->against], WHERE[row->where], row->overlap);
+    if (row->most == 0) {
+        fputs("all pass without touching\n", stream);
+        return;
+    }
+    fprintf(stream, "%7.2f %6zu %4zu   %8.2f %5.4g  %8.2f %5.4g  %8.3f %6.3f %5.3f\n", row->mean, row->median,
+            row->most, row->stiffness, row->most_stiffness, row->damping, row->most_damping, row->restitution,
+            row->least_restitution, row->overdamped);
+    if (row->missed > 0) {
+        fprintf(stream, "  (of these %.3g pass without touching and are left out)\n", row->missed);
     }
 }
 
@@ -84,14 +103,7 @@ void ms_contact_report_print(FILE *stream, const ms_contact *c)
           "  what     where  overlap     mean median most       mean  most      mean  most      mean  least  none\n",
           stream);
     for (size_t r = 0; r < c->n_rows; r++) {
-        const ms_contact_row *row = &c->row[r];
-        fprintf(stream, "  %-8s %-6s %-8.3g %7.2f %6zu %4zu   %8.2f %5.4g  %8.2f %5.4g  %8.3f %6.3f %5.3f\n",
-                AGAINST[row->against], WHERE[row->where], row->overlap, row->mean, row->median, row->most,
-                row->stiffness, row->most_stiffness, row->damping, row->most_damping, row->restitution,
-                row->least_restitution, row->overdamped);
-        if (row->missed > 0) {
-            fprintf(stream, "  (of these %.3g pass without touching and are left out)\n", row->missed);
-        }
+        print_row(stream, &c->row[r]);
     }
     print_sleds(stream, c);
     print_poses(stream, c, &c->clump, "clump");
@@ -104,13 +116,13 @@ void ms_contact_report_print(FILE *stream, const ms_contact *c)
 void ms_contact_report_csv(FILE *stream, const ms_contact *c)
 {
 #define NAME(name, value) "," name
-    fputs("against,where" MS_CONTACT_COLUMNS(NAME) "\n", stream);
+    fputs("against,where" MS_CONTACT_COLUMNS(NAME, NAME) "\n", stream);
 #undef NAME
     for (size_t r = 0; r < c->n_rows; r++) {
         const ms_contact_row *row = &c->row[r];
         fprintf(stream, "%s,%s", AGAINST[row->against], WHERE[row->where]);
-#define PUT(name, value) ms_csv_put_number(stream, value);
-        MS_CONTACT_COLUMNS(PUT)
+#define PUT(name, value) ms_csv_put_number(stream, (double)(value));
+        MS_CONTACT_COLUMNS(PUT, PUT)
 #undef PUT
         fputc('\n', stream);
     }
@@ -126,7 +138,7 @@ static json_t *counts_json(const ms_contact_row *row)
         for (; i < row->samples && row->sample[i].touch.count == count; i++) {
             part += row->sample[i].weight;
         }
-        ms_json_object_append(&list, json_pack("[I,f]", (json_int_t)count, part));
+        ms_json_object_append(&list, json_pack("[I,f]", (json_int_t)count, part / row->whole));
     }
     return list;
 }
@@ -134,9 +146,11 @@ static json_t *counts_json(const ms_contact_row *row)
 static json_t *row_json(const ms_contact_row *row)
 {
     json_t *json = json_pack("{s:s,s:s}", "against", AGAINST[row->against], "where", WHERE[row->where]);
+#define SET_WHOLE(name, value) ms_json_object_set(&json, name, json_integer((json_int_t)(value)));
 #define SET(name, value) ms_json_object_set(&json, name, ms_report_number(value));
-    MS_CONTACT_COLUMNS(SET)
+    MS_CONTACT_COLUMNS(SET_WHOLE, SET)
 #undef SET
+#undef SET_WHOLE
     ms_json_object_set(&json, "counts", counts_json(row));
     return json;
 }

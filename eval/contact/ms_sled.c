@@ -114,9 +114,9 @@ static void sum_up_sled(ms_sled *sled, const outcome *found, size_t step, size_t
     for (size_t i = 0; i < places; i++) {
         const double ratio = found[i * step].ratio, slope = found[i * step].slope, mu = sled->friction;
         if (isnan(ratio)) {
-            sled->missed += 1.0 / (double)places;
+            sled->missed++;
         } else if (isinf(ratio) || mu * slope >= 1) {
-            sled->jammed += 1.0 / (double)places;
+            sled->jammed++;
         } else {
             const double single = (mu + slope) / (1 - mu * slope);
             slid++;
@@ -126,6 +126,8 @@ static void sum_up_sled(ms_sled *sled, const outcome *found, size_t step, size_t
             sled->slope_largest = fmax(sled->slope_largest, single);
         }
     }
+    sled->missed /= (double)places;
+    sled->jammed /= (double)places;
     sled->mean /= slid;
     sled->slope_mean /= slid;
 }

@@ -101,6 +101,21 @@ class Contact(Case):
         self.assert_close(row["restitution"], 0.5, 1e-9, "restitution")
         self.assertIn("pass without touching", self.mskit("contact", "apart.csv", "--poses", "50").out)
 
+    def test_too_small_to_touch(self):
+        """Two spheres of less than the overlap together never have it: nothing is known, and no part is above 1."""
+        self.write("dust.csv", "x,y,z,r\n1,1,0.5,0.001\n2,1,0.5,0.001\n")
+        args = ("dust.csv", "--target", "box.obj", "--overlap", "0.1")
+        found = self.contact(*args)
+        for where in ("random", "poses"):
+            row = self.row(found, "particle", where)
+            self.assertEqual((row["missed"], row["counts"], row["contacts_most"]), (1, [[0, 1]], 0))
+            self.assertIsNone(row["contacts"])
+        for drag in found["sled"]["drags"]:
+            self.assertEqual((drag["missed"], drag["jammed"], drag["mean"], drag["most"]), (1, 0, None, None))
+        table = self.mskit("contact", *args, "--poses", "50").out
+        self.assertIn("all pass without touching", table)
+        self.assertNotIn("nan", table)
+
     def test_carriers_touch_nothing(self):
         """A clump with masses knows its centre and volume; its carriers change no contact."""
         self.mskit("correct", "six.csv", "--target", "box.obj", "--density", "2000", "-o", "plain.json")
@@ -119,6 +134,8 @@ class Contact(Case):
         rows = list(csv.DictReader(io.StringIO(self.mskit(*args, "--csv").out)))
         self.assertEqual(len(rows), 8)
         for row, other in zip(rows, found.json["contacts"]):
+            for name in ("orientations", "contacts_median", "contacts_most"):
+                self.assertIsInstance(other[name], int)
             self.assertEqual(set(row) | {"counts"}, set(other))
             for name, value in row.items():
                 self.assertEqual(value if name in ("against", "where") else float(value), other[name])
