@@ -161,6 +161,24 @@ static ms_status read_shape(contact_bodies *b, ms_body *body, const contact_argu
     return status;
 }
 
+/* Spheres in another unit than the shape, or far off, would have poses and overlaps that mean nothing. */
+static ms_status check_reach(const contact_bodies *b, const contact_arguments *a, ms_error *err)
+{
+    enum { FACTOR = 500 }; /* a needle 27000 times as long as it is wide, and less than mm are m */
+    double reach = 0;
+    for (int side = 0; side < 6; side++) {
+        double u[3] = {0};
+        u[side / 2] = side % 2 ? 1 : -1;
+        reach = fmax(reach, ms_support_height(&b->clump, u));
+    }
+    return reach < FACTOR * b->r_eq && b->r_eq < FACTOR * reach
+               ? MS_OK
+               : ms_fail(err, MS_ERR_LIMIT,
+                         "%s reaches %g from a centre of mass about which r_eq is %g; check units and frame of the "
+                         "spheres",
+                         ms_file_name(a->clump), reach, b->r_eq);
+}
+
 /* Volume and centre of mass: of the shape, of the particle that the file knows, or of the union of the spheres. */
 static ms_status read_bodies(contact_bodies *b, const contact_arguments *a, ms_error *err)
 {
@@ -182,7 +200,7 @@ static ms_status read_bodies(contact_bodies *b, const contact_arguments *a, ms_e
         b->r_eq = cbrt(3 * body.volume / (4 * PI));
         status = ms_support_from_clump(&b->clump, &b->spheres, body.centroid, err);
     }
-    return status;
+    return status == MS_OK ? check_reach(b, a, err) : status;
 }
 
 static json_t *contact_json(const contact_arguments *a, const ms_contact *contact, size_t spheres)

@@ -159,6 +159,8 @@ class Contact(Case):
         self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))
         self.write("bad.csv", "x,y,z,r\n1,2,3\n")
         box = ("--target", "box.obj")
+        for name, unit in (("metres", 1e-3), ("micrometres", 1e3), ("beyond", 1e200)):  # of a shape in millimetres
+            self.write(name + ".csv", f"x,y,z,r\n1.5,1,0.5,{unit}\n{1.5 + unit},1,0.5,{unit}\n")
         for args, code, says in (
                 ((), 2, ("one clump file",)), (("six.csv", "six.csv"), 2, ("one clump file",)),
                 (("six.csv", "--overlap", "0.5"), 2, ("--overlap", "0.1")),
@@ -170,6 +172,8 @@ class Contact(Case):
                 (("six.csv", "--seed", "-1"), 2, ("seed",)), (("six.csv", "--json", "--csv"), 2, ("--csv",)),
                 (("six.csv", "--weld", "0"), 2, ("--weld", "--target")), (("-", "--target", "-"), 2, ("-",)),
                 (("none.csv", *box), 1, ("none.csv",)), (("bad.csv", *box), 1, ("bad.csv", "2")),
+                (("metres.csv", *box), 1, ("metres.csv", "units")), (("beyond.csv", *box), 1, ("beyond.csv", "units")),
+                (("micrometres.csv", *box), 1, ("micrometres.csv", "units")),
                 (("six.csv", "--target", "none.obj"), 1, ("none.obj",)),
                 (("six.csv", "--target", "open.obj"), 1, ("open.obj", "not closed"))):
             with self.subTest(args=args):
