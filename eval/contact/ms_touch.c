@@ -28,16 +28,24 @@ ms_touch ms_touch_plane(const ms_support *body, const double u[3], double r_eq, 
     return touch;
 }
 
-/* How far along u the second body is when the first pair overlaps so much; -INFINITY if none ever does. */
-static double find_distance(const ms_support *body, const ms_sphere *turned, const double u[3], double overlap)
+/* How far along u the second body is when the first pair overlaps so much; -INFINITY if none ever does.
+ * @param reach of the second body against u: no pair meets farther than both reach */
+static double find_distance(const ms_support *body, const ms_sphere *turned, const double u[3], double reach,
+                            double overlap)
 {
     double distance = -(double)INFINITY;
     for (size_t i = 0; i < body->count; i++) {
         const ms_sphere *a = &body->sphere[i];
+        if (ms_dot(a->centre, u) + a->radius + reach - overlap <= distance) {
+            continue;
+        }
         for (size_t j = 0; j < body->count; j++) {
             const ms_sphere *b = &turned[j];
             const double d[3] = {a->centre[0] - b->centre[0], a->centre[1] - b->centre[1], a->centre[2] - b->centre[2]};
             const double along = ms_dot(d, u), apart = a->radius + b->radius - overlap;
+            if (along + apart <= distance) {
+                continue;
+            }
             const double square = apart * apart - (ms_dot(d, d) - along * along);
             if (square >= 0 && apart > 0) {
                 distance = fmax(distance, along + sqrt(square));
@@ -79,9 +87,14 @@ ms_touch ms_touch_second(ms_touch_pair *pair, size_t most, ms_sphere *turned, co
             turned[j].centre[k] += place->aside[k];
         }
     }
-    const double distance = find_distance(body, turned, place->u, overlap);
+    const double back[3] = {-place->u[0], -place->u[1], -place->u[2]};
+    const double reach = ms_support_height(&(ms_support){body->count, turned}, back);
+    const double distance = find_distance(body, turned, place->u, reach, overlap);
     const double moved[3] = {distance * place->u[0], distance * place->u[1], distance * place->u[2]};
     for (size_t i = 0; isfinite(distance) && i < body->count; i++) {
+        if (ms_dot(body->sphere[i].centre, place->u) + body->sphere[i].radius + reach <= distance) {
+            continue;
+        }
         for (size_t j = 0; j < body->count; j++) {
             ms_touch_pair one;
             if (take_pair(&one, &body->sphere[i], &turned[j], moved)) {

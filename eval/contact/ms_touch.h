@@ -41,7 +41,7 @@ typedef struct ms_touch_place {
  * @param[out] pair  those that touch, at most `most` of them; may be NULL with 0
  * @param      turned room for the spheres of the second body
  * @return count is 0 where it passes the first without that much overlap
- * Cost: O(count^2)
+ * Cost: O(count^2) at worst; spheres that lie too deep to meet are passed over
  */
 ms_touch ms_touch_second(ms_touch_pair *pair, size_t most, ms_sphere *turned, const ms_support *body,
                          const ms_touch_place *place, double r_eq, double overlap);
