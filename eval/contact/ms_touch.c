@@ -14,13 +14,19 @@ static void add_contact(ms_touch *touch, double ratio)
     touch->damping += sqrt(sqrt(ratio));
 }
 
+/* How far a sphere reaches along u. */
+static double find_reach(const ms_sphere *sphere, const double u[3])
+{
+    return ms_dot(sphere->centre, u) + sphere->radius;
+}
+
 ms_touch ms_touch_plane(const ms_support *body, const double u[3], double r_eq, double overlap)
 {
     ms_touch touch = {0};
     const double plane = ms_support_height(body, u) - overlap;
     for (size_t i = 0; i < body->count; i++) {
         const ms_sphere *s = &body->sphere[i];
-        const double own = ms_dot(s->centre, u) + s->radius - plane;
+        const double own = find_reach(s, u) - plane;
         if (own > 0) {
             add_contact(&touch, s->radius * own / (r_eq * overlap));
         }
@@ -28,28 +34,38 @@ ms_touch ms_touch_plane(const ms_support *body, const double u[3], double r_eq, 
     return touch;
 }
 
-/* How far along u the second body is when the first pair overlaps so much; -INFINITY if none ever does.
- * @param reach of the second body against u: no pair meets farther than both reach */
+/* How far along u the second body is when one of its spheres overlaps `a` so much; `least` if none does farther off. */
+static double meet_sphere(const ms_sphere *a, const ms_sphere *turned, size_t count, const double u[3], double overlap,
+                          double least)
+{
+    for (size_t j = 0; j < count; j++) {
+        const ms_sphere *b = &turned[j];
+        const double d[3] = {a->centre[0] - b->centre[0], a->centre[1] - b->centre[1], a->centre[2] - b->centre[2]};
+        const double along = ms_dot(d, u), apart = a->radius + b->radius - overlap;
+        if (along + apart <= least) {
+            continue;
+        }
+        const double square = apart * apart - (ms_dot(d, d) - along * along);
+        if (square >= 0 && apart > 0) {
+            least = fmax(least, along + sqrt(square));
+        }
+    }
+    return least;
+}
+
+/* The same of all pairs; -INFINITY if none ever does. The sphere that reaches farthest is the first, as then few others
+ * reach far enough. @param reach of the second body against u */
 static double find_distance(const ms_support *body, const ms_sphere *turned, const double u[3], double reach,
                             double overlap)
 {
-    double distance = -(double)INFINITY;
+    size_t first = 0;
+    for (size_t i = 1; i < body->count; i++) {
+        first = find_reach(&body->sphere[i], u) > find_reach(&body->sphere[first], u) ? i : first;
+    }
+    double distance = meet_sphere(&body->sphere[first], turned, body->count, u, overlap, -(double)INFINITY);
     for (size_t i = 0; i < body->count; i++) {
-        const ms_sphere *a = &body->sphere[i];
-        if (ms_dot(a->centre, u) + a->radius + reach - overlap <= distance) {
-            continue;
-        }
-        for (size_t j = 0; j < body->count; j++) {
-            const ms_sphere *b = &turned[j];
-            const double d[3] = {a->centre[0] - b->centre[0], a->centre[1] - b->centre[1], a->centre[2] - b->centre[2]};
-            const double along = ms_dot(d, u), apart = a->radius + b->radius - overlap;
-            if (along + apart <= distance) {
-                continue;
-            }
-            const double square = apart * apart - (ms_dot(d, d) - along * along);
-            if (square >= 0 && apart > 0) {
-                distance = fmax(distance, along + sqrt(square));
-            }
+        if (find_reach(&body->sphere[i], u) + reach - overlap > distance) {
+            distance = meet_sphere(&body->sphere[i], turned, body->count, u, overlap, distance);
         }
     }
     return distance;
@@ -92,7 +108,7 @@ ms_touch ms_touch_second(ms_touch_pair *pair, size_t most, ms_sphere *turned, co
     const double distance = find_distance(body, turned, place->u, reach, overlap);
     const double moved[3] = {distance * place->u[0], distance * place->u[1], distance * place->u[2]};
     for (size_t i = 0; isfinite(distance) && i < body->count; i++) {
-        if (ms_dot(body->sphere[i].centre, place->u) + body->sphere[i].radius + reach <= distance) {
+        if (find_reach(&body->sphere[i], place->u) + reach <= distance) {
             continue;
         }
         for (size_t j = 0; j < body->count; j++) {
