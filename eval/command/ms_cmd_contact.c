@@ -164,7 +164,7 @@ static ms_status read_shape(contact_bodies *b, ms_body *body, const contact_argu
 /* Spheres in another unit than the shape, or far off, would have poses and overlaps that mean nothing. */
 static ms_status check_reach(const contact_bodies *b, const contact_arguments *a, ms_error *err)
 {
-    enum { FACTOR = 500 }; /* a needle 27000 times as long as it is wide, and less than mm are m */
+    enum { FACTOR = 500 }; /* that of a cylinder 27000 times as long as its radius, and below the 1000 of mm for m */
     double reach = 0;
     for (int side = 0; side < 6; side++) {
         double u[3] = {0};

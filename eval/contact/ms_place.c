@@ -7,7 +7,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-void ms_place_direction(double u[3], gsl_rng *random)
+static void draw_direction(double u[3], gsl_rng *random)
 {
     const double z = 2 * gsl_rng_uniform(random) - 1, angle = 2 * PI * gsl_rng_uniform(random);
     const double across = sqrt(1 - z * z);
@@ -26,7 +26,7 @@ ms_touch_place ms_place_anywhere(gsl_rng *random)
     place.turn[1] = sqrt(1 - part) * sin(other);
     place.turn[2] = sqrt(1 - part) * cos(other);
     place.turn[3] = sqrt(part) * sin(one);
-    ms_place_direction(place.u, random);
+    draw_direction(place.u, random);
     return place;
 }
 

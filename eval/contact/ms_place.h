@@ -7,9 +7,6 @@
 #include "ms_poses.h"
 #include "ms_touch.h"
 
-/** A direction, all alike. */
-void ms_place_direction(double u[3], gsl_rng *random);
-
 /** A direction and a turn, all alike; the second body is led at the centre of the first. */
 ms_touch_place ms_place_anywhere(gsl_rng *random);
 
