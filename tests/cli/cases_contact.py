@@ -38,7 +38,7 @@ class Contact(Case):
         for pose in poses:
             self.assert_close(abs(pose["down"][2]), 1, 1e-12)
             self.assert_close(pose["height"], 0.5 / r_eq, 1e-9, "height")
-            self.assert_close(pose["barrier"], 0.5 / r_eq, 1e-9, "over a row of three; the pass is a direction of the lattice")
+            self.assert_close(pose["barrier"], 0.5 / r_eq, 1e-9, "over a row, on the lattice")
             self.assertAlmostEqual(pose["share"], 0.5, delta=0.01)
             self.assertLess(pose["angle"], 1e-6)
         self.assertEqual(len(row["counts"]), 1)
