@@ -40,16 +40,46 @@ static ms_status make_surface(ms_mesh *mesh, const ms_content *content, ms_error
     return ms_clump_surface(mesh, content->clump, h, about->max_points ? about->max_points : MAX_POINTS, err);
 }
 
+/* What the surface does not show; its mesh is linked anew for that. */
+static ms_status remark_on(char remark[MS_WRITE_REMARK], ms_mesh *mesh, const ms_clump *clump, ms_error *err)
+{
+    ms_mesh_report report;
+    ms_body body;
+    double volume, area;
+    size_t pieces;
+    ms_status status = ms_mesh_repair(mesh, &report, err);
+    if (status == MS_OK) {
+        status = ms_inertia_mesh(&body, mesh, err);
+    }
+    if (status == MS_OK) {
+        status = ms_union_measure(&volume, &area, clump, err);
+    }
+    if (status == MS_OK) {
+        status = ms_clump_pieces(&pieces, clump, err);
+    }
+    if (status == MS_OK && (report.bodies != pieces || body.volume < 0.98 * volume)) {
+        snprintf(remark, MS_WRITE_REMARK,
+                 "the surface has %zu pieces and %.1f %% of the volume of the spheres, which are %zu pieces; more "
+                 "--cells show more of them",
+                 report.bodies, 100 * body.volume / volume, pieces);
+    }
+    return status;
+}
+
 static ms_status write_surface(FILE *stream, const ms_content *content, const char *ending, ms_error *err)
 {
     ms_mesh mesh;
+    char *remark = about_of(content)->remark;
     ms_status status = make_surface(&mesh, content, err);
-    if (status == MS_OK) {
-        status = ms_mesh_write_stream(&mesh, stream, ending, err);
-        ms_mesh_free(&mesh);
+    if (status != MS_OK) {
+        return status;
     }
-    return status == MS_ERR_IO ? ms_fail(err, MS_ERR_IO, "%s: could not be written; is the disk full?", content->name)
-                               : status;
+    status = ms_mesh_write_stream(&mesh, stream, ending, err);
+    if (status == MS_OK && remark) {
+        status = remark_on(remark, &mesh, content->clump, err);
+    }
+    ms_mesh_free(&mesh);
+    return status == MS_ERR_IO ? MS_OK : status; /* who closes the stream says why it failed */
 }
 
 static ms_status write_stl(FILE *stream, const ms_content *content, ms_error *err)
@@ -184,42 +214,4 @@ const ms_format *ms_view_format_of_path(const char *path, ms_error *err)
 int ms_view_format_is(const ms_format *format)
 {
     return format >= ms_view_formats && format < ms_view_formats + sizeof ms_view_formats / sizeof *ms_view_formats;
-}
-
-int ms_view_format_is_surface(const ms_format *format)
-{
-    return format->part[0].write == write_stl || format->part[0].write == write_ply ||
-           format->part[0].write == write_obj;
-}
-
-ms_status ms_view_surface_remark(char text[MS_WRITE_REMARK], const ms_content *content, ms_error *err)
-{
-    ms_mesh mesh;
-    ms_mesh_report report;
-    ms_body body;
-    double volume, area;
-    size_t pieces;
-    text[0] = '\0';
-    ms_status status = make_surface(&mesh, content, err);
-    if (status != MS_OK) {
-        return status;
-    }
-    status = ms_mesh_repair(&mesh, &report, err);
-    if (status == MS_OK) {
-        status = ms_inertia_mesh(&body, &mesh, err);
-    }
-    ms_mesh_free(&mesh);
-    if (status == MS_OK) {
-        status = ms_union_measure(&volume, &area, content->clump, err);
-    }
-    if (status == MS_OK) {
-        status = ms_clump_pieces(&pieces, content->clump, err);
-    }
-    if (status == MS_OK && (report.bodies != pieces || body.volume < 0.98 * volume)) {
-        snprintf(text, MS_WRITE_REMARK,
-                 "the surface has %zu pieces and %.1f %% of the volume of the spheres, which are %zu pieces; more "
-                 "--cells show more of them",
-                 report.bodies, 100 * body.volume / volume, pieces);
-    }
-    return status;
 }
