@@ -16,8 +16,8 @@
 /* Triangles of a shape on a page at most, and pixels of a picture of the clump or the shape. */
 enum { PAGE_TRIANGLES = 100000, PIXELS = 600 };
 
-/* Cells along the shortest side where no one says how many, and points for a picture's frame. */
-static const double CELLS = 100, COARSE_CELLS = 30;
+/* Cells along the shortest side where no one says how many, and points of the lattice. */
+static const double CELLS = 100;
 static const size_t MAX_POINTS = (size_t)1 << 31;
 
 static const ms_view_about *about_of(const ms_content *content)
@@ -97,18 +97,6 @@ static ms_status write_obj(FILE *stream, const ms_content *content, ms_error *er
     return write_surface(stream, content, "obj", err);
 }
 
-/* Of a clump alone, the frame in which its own surface is seen. */
-static ms_status find_view(ms_view *view, const ms_clump *clump, ms_error *err)
-{
-    ms_mesh mesh;
-    ms_status status = ms_clump_surface(&mesh, clump, shortest_side(clump) / COARSE_CELLS, MAX_POINTS, err);
-    if (status == MS_OK) {
-        status = ms_render_mesh_view(view, &mesh, 0, 0, PIXELS, err);
-        ms_mesh_free(&mesh);
-    }
-    return status;
-}
-
 /* The shape, if it is known, and beside it the clump, seen alike. */
 static ms_status write_png(FILE *stream, const ms_content *content, ms_error *err)
 {
@@ -119,7 +107,8 @@ static ms_status write_png(FILE *stream, const ms_content *content, ms_error *er
     if (status != MS_OK) {
         return status;
     }
-    status = target ? ms_render_view(&view, target, 0, 0, PIXELS, err) : find_view(&view, content->clump, err);
+    status = target ? ms_render_view(&view, target, 0, 0, PIXELS, err)
+                    : ms_render_clump_view(&view, content->clump, 0, 0, PIXELS, err);
     if (status == MS_OK) {
         if (target) {
             ms_render_target(&picture, &view, target);

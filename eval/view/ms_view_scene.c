@@ -255,22 +255,31 @@ static ms_status put_shape(FILE *stream, const ms_view_scene *scene, const placi
                : status;
 }
 
+static ms_status put_scene(FILE *stream, const ms_view_scene *scene, const ms_view_shape *shape, ms_error *err)
+{
+    const placing f = find_placing(scene->clump, shape->mesh);
+    if (!isfinite(f.scale)) {
+        return ms_fail(err, MS_ERR_ARG, "what is to be shown reaches too far; choose another unit");
+    }
+    fprintf(stream, "{\"ordered\":%s,\"scale\":%.9g", scene->ordered ? "true" : "false", f.scale);
+    put_vector(stream, "centre", f.centre);
+    ms_status status = put_name(stream, scene->name, err);
+    if (status == MS_OK) {
+        status = put_spheres(stream, &f, scene->clump, err);
+    }
+    if (status == MS_OK && scene->target) {
+        status = put_shape(stream, scene, &f, shape, err);
+    }
+    putc('}', stream);
+    return status;
+}
+
 ms_status ms_view_scene_write(FILE *stream, const ms_view_scene *scene, ms_error *err)
 {
     ms_view_shape shape = {0};
     ms_status status = scene->target ? ms_view_shape_make(&shape, scene->target, scene->most_triangles, err) : MS_OK;
     if (status == MS_OK) {
-        const placing f = find_placing(scene->clump, shape.mesh);
-        fprintf(stream, "{\"ordered\":%s,\"scale\":%.9g", scene->ordered ? "true" : "false", f.scale);
-        put_vector(stream, "centre", f.centre);
-        status = put_name(stream, scene->name, err);
-        if (status == MS_OK) {
-            status = put_spheres(stream, &f, scene->clump, err);
-        }
-        if (status == MS_OK && scene->target) {
-            status = put_shape(stream, scene, &f, &shape, err);
-        }
-        putc('}', stream);
+        status = put_scene(stream, scene, &shape, err);
     }
     ms_view_shape_free(&shape);
     return status;
