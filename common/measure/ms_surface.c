@@ -38,8 +38,7 @@ static void join_parts(ms_standout *out, const part *parts, size_t count)
     out->rms = sum.area > 0 ? sqrt(sum.square / sum.area) : 0;
 }
 
-/* The spheres that may hide a part of sphere s, as indices. */
-static size_t find_touching(uint32_t *neighbour, const ms_clump *clump, size_t s)
+size_t ms_surface_touching(uint32_t *neighbour, const ms_clump *clump, size_t s)
 {
     const ms_sphere *sphere = &clump->sphere[s];
     size_t count = 0;
@@ -53,8 +52,8 @@ static size_t find_touching(uint32_t *neighbour, const ms_clump *clump, size_t s
     return count;
 }
 
-/* Of equal spheres the first counts as exposed. */
-static int is_hidden(const double point[3], const ms_clump *clump, size_t s, const uint32_t *neighbour, size_t count)
+int ms_surface_is_hidden(const double point[3], const ms_clump *clump, size_t s, const uint32_t *neighbour,
+                         size_t count)
 {
     for (size_t at = 0; at < count; at++) {
         const ms_sphere *other = &clump->sphere[neighbour[at]];
@@ -108,7 +107,7 @@ static part sphere_part(ms_normals_tally *tally, const exposed_job *job, size_t 
     const ms_sphere *sphere = &clump->sphere[s];
     const double h = job->target->grid.h, area = 4 * PI * sphere->radius * sphere->radius;
     const int samples = (int)fmin(1000, fmax(32, ceil(area / (4 * h * h))));
-    const size_t count = find_touching(neighbour, clump, s);
+    const size_t count = ms_surface_touching(neighbour, clump, s);
     part sum = {0};
     for (int m = 0; m < samples; m++) {
         double normal[3], point[3];
@@ -116,7 +115,7 @@ static part sphere_part(ms_normals_tally *tally, const exposed_job *job, size_t 
         for (int k = 0; k < 3; k++) {
             point[k] = sphere->centre[k] + sphere->radius * normal[k];
         }
-        if (!is_hidden(point, clump, s, neighbour, count)) {
+        if (!ms_surface_is_hidden(point, clump, s, neighbour, count)) {
             add_exposed(&sum, tally, job, point, normal, area / samples);
         }
     }

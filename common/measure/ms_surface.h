@@ -14,6 +14,13 @@ typedef struct ms_standout {
     double rms; /* root of the mean square over the whole surface */
 } ms_standout;
 
+/** The spheres that may hide a part of sphere s. @param[out] neighbour room for all @return how many. Cost: O(n) */
+size_t ms_surface_touching(uint32_t *neighbour, const ms_clump *clump, size_t s);
+
+/** Is a point of sphere s within one of these others? Of equal spheres the first counts as exposed. */
+int ms_surface_is_hidden(const double point[3], const ms_clump *clump, size_t s, const uint32_t *neighbour,
+                         size_t count);
+
 /**
  * The exposed surface of the spheres (what lies in no other sphere): how far it is outside the mesh, and the angle
  * between its normal and that of the shape where that is nearest. Sampled by a Fibonacci lattice on each sphere, about

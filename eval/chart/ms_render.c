@@ -7,6 +7,7 @@
 
 #include "base/ms_file.h"
 #include "base/ms_vector.h"
+#include "clump/ms_particle.h"
 
 ms_status ms_render_picture_alloc(ms_picture *picture, int width, int height, ms_error *err)
 {
@@ -55,56 +56,84 @@ static void project(double out[3], const ms_view *view, const double point[3])
     }
 }
 
-/* All of a mesh, or without one of a box. */
-static ms_status view_body(ms_view *view, const ms_body *body, const ms_mesh *mesh, const double lo[3],
-                           const double hi[3], ms_error *err)
+/* Turned as the principal axes of a body are, about the middle of a box. */
+static ms_status turn_view(ms_view *view, const ms_body *body, const double lo[3], const double hi[3], ms_error *err)
 {
     ms_principal principal;
-    double reach = 0;
     const ms_status status = ms_inertia_principal(&principal, body, err);
-    if (status != MS_OK) {
-        return status;
-    }
     memcpy(view->axis, principal.axis, sizeof view->axis);
     turn(view->axis[0], view->axis[2], -25);
     turn(view->axis[1], view->axis[2], 30);
     for (int k = 0; k < 3; k++) {
         view->centre[k] = (lo[k] + hi[k]) / 2;
     }
-    const size_t count = mesh ? mesh->n_vertices : 8;
-    for (size_t v = 0; v < count; v++) {
-        const double corner[3] = {v & 1 ? hi[0] : lo[0], v & 2 ? hi[1] : lo[1], v & 4 ? hi[2] : lo[2]};
-        double at[3];
-        project(at, view, mesh ? mesh->vertex[v] : corner);
-        reach = fmax(reach, fmax(fabs(at[0]), fabs(at[1])));
-    }
-    view->scale = 0.46 * view->size / reach;
-    return MS_OK;
+    return status;
+}
+
+/* How far a ball reaches from the middle of a view of scale 1, to a side or up and down. */
+static double find_reach(const ms_view *view, const double centre[3], double radius)
+{
+    double at[3];
+    project(at, view, centre);
+    return fmax(fabs(at[0]), fabs(at[1])) + radius;
 }
 
 ms_status ms_render_view(ms_view *view, const ms_target *target, int x, int y, int size, ms_error *err)
 {
     const ms_grid *g = &target->grid;
-    double lo[3], hi[3];
+    const ms_mesh *mesh = target->mesh;
+    double lo[3], hi[3], reach = 0;
     *view = (ms_view){.scale = 1, .x = x, .y = y, .size = size};
     for (int k = 0; k < 3; k++) {
         lo[k] = g->origin[k];
         hi[k] = g->origin[k] + g->h * (g->n[k] - 1);
     }
-    if (target->mesh) {
-        ms_mesh_box(lo, hi, target->mesh);
+    if (mesh) {
+        ms_mesh_box(lo, hi, mesh);
     }
-    return view_body(view, &target->body, target->mesh, lo, hi, err);
+    const ms_status status = turn_view(view, &target->body, lo, hi, err);
+    const size_t count = mesh ? mesh->n_vertices : 8; /* or the corners of the box */
+    for (size_t v = 0; v < count; v++) {
+        const double corner[3] = {v & 1 ? hi[0] : lo[0], v & 2 ? hi[1] : lo[1], v & 4 ? hi[2] : lo[2]};
+        reach = fmax(reach, find_reach(view, mesh ? mesh->vertex[v] : corner, 0));
+    }
+    view->scale = 0.46 * size / reach;
+    return status;
 }
 
-ms_status ms_render_mesh_view(ms_view *view, const ms_mesh *mesh, int x, int y, int size, ms_error *err)
+/* Sums of solid spheres, in which what overlaps counts more than once: that turns the axes but a little. */
+static ms_status find_inertia(ms_body *body, const ms_clump *clump, ms_error *err)
 {
-    ms_body body;
-    double lo[3], hi[3];
+    ms_particle sum;
+    ms_clump solid = {.n_spheres = clump->n_spheres, .sphere = clump->sphere};
+    ms_status status = ms_clump_alloc_masses(&solid, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        solid.mass[s] = pow(clump->sphere[s].radius, 3);
+    }
+    status = ms_particle_from_spheres(&sum, &solid, 1, err);
+    memcpy(body->inertia, sum.inertia, sizeof body->inertia);
+    free(solid.mass);
+    return status;
+}
+
+ms_status ms_render_clump_view(ms_view *view, const ms_clump *clump, int x, int y, int size, ms_error *err)
+{
+    ms_body body = {0};
+    double lo[3], hi[3], reach = 0;
     *view = (ms_view){.scale = 1, .x = x, .y = y, .size = size};
-    ms_mesh_box(lo, hi, mesh);
-    const ms_status status = ms_inertia_mesh(&body, mesh, err);
-    return status == MS_OK ? view_body(view, &body, mesh, lo, hi, err) : status;
+    ms_clump_box(lo, hi, clump);
+    ms_status status = find_inertia(&body, clump, err);
+    if (status == MS_OK) {
+        status = turn_view(view, &body, lo, hi, err);
+    }
+    for (size_t s = 0; status == MS_OK && s < clump->n_spheres; s++) {
+        reach = fmax(reach, find_reach(view, clump->sphere[s].centre, clump->sphere[s].radius));
+    }
+    view->scale = 0.46 * size / reach;
+    return status;
 }
 
 /* Lit from the upper left, in front of whatever was there; what is turned from the light is darker still. */

@@ -34,8 +34,8 @@ ms_status ms_render_picture_alloc(ms_picture *picture, int width, int height, ms
  */
 ms_status ms_render_view(ms_view *view, const ms_target *target, int x, int y, int size, ms_error *err);
 
-/** The same of a closed mesh alone. */
-ms_status ms_render_mesh_view(ms_view *view, const ms_mesh *mesh, int x, int y, int size, ms_error *err);
+/** The same of a clump alone. @return as above; MS_ERR_NOMEM; as ms_particle_from_spheres */
+ms_status ms_render_clump_view(ms_view *view, const ms_clump *clump, int x, int y, int size, ms_error *err);
 
 /** The mesh of the target, or the faces of its voxels. Cost: triangles + pixels. */
 void ms_render_target(ms_picture *picture, const ms_view *view, const ms_target *target);

@@ -229,14 +229,17 @@ static int pass_over(const ms_outputs *outputs, const ms_output_file *file, cons
 static ms_status write_file(const ms_content *content, const char *path, const ms_format *format, FILE *words,
                             ms_error *err)
 {
-    char remark[MS_WRITE_REMARK];
-    ms_status status = ms_write_clump(content, path, format, err);
+    char remark[MS_WRITE_REMARK] = "";
+    ms_view_about about = content->more ? *(const ms_view_about *)content->more : (ms_view_about){0};
+    ms_content with_remark = *content;
+    about.remark = remark;
+    with_remark.more = &about;
+    ms_status status = ms_write_clump(&with_remark, path, format, err);
     if (status == MS_OK && strcmp(path, "-") != 0) {
         fprintf(words, "wrote %s\n", path);
     }
-    if (status == MS_OK) {
-        status = ms_view_format_is_surface(format) ? ms_view_surface_remark(remark, content, err)
-                                                   : ms_write_remark(remark, content, format, err);
+    if (status == MS_OK && !ms_view_format_is(format)) {
+        status = ms_write_remark(remark, content, format, err);
     }
     if (status == MS_OK && remark[0]) {
         fprintf(stderr, "%s: %s\n", path, remark);

@@ -16,8 +16,8 @@
 /* Triangles of a shape on a page at most, and pixels of a picture of the clump or the shape. */
 enum { PAGE_TRIANGLES = 100000, PIXELS = 600 };
 
-/* Cells along the shortest side where no one says how many, and points for a picture's frame. */
-static const double CELLS = 100, COARSE_CELLS = 30;
+/* Cells along the shortest side where no one says how many, and points of the lattice. */
+static const double CELLS = 100;
 static const size_t MAX_POINTS = (size_t)1 << 31;
 
 static const ms_view_about *about_of(const ms_content *content)
@@ -40,16 +40,46 @@ static ms_status make_surface(ms_mesh *mesh, const ms_content *content, ms_error
     return ms_clump_surface(mesh, content->clump, h, about->max_points ? about->max_points : MAX_POINTS, err);
 }
 
+/* What the surface does not show; its mesh is linked anew for that. */
+static ms_status remark_on(char remark[MS_WRITE_REMARK], ms_mesh *mesh, const ms_clump *clump, ms_error *err)
+{
+    ms_mesh_report report;
+    ms_body body;
+    double volume, area;
+    size_t pieces;
+    ms_status status = ms_mesh_repair(mesh, &report, err);
+    if (status == MS_OK) {
+        status = ms_inertia_mesh(&body, mesh, err);
+    }
+    if (status == MS_OK) {
+        status = ms_union_measure(&volume, &area, clump, err);
+    }
+    if (status == MS_OK) {
+        status = ms_clump_pieces(&pieces, clump, err);
+    }
+    if (status == MS_OK && (report.bodies != pieces || body.volume < 0.98 * volume)) {
+        snprintf(remark, MS_WRITE_REMARK,
+                 "the surface has %zu pieces and %.1f %% of the volume of the spheres, which are %zu pieces; more "
+                 "--cells show more of them",
+                 report.bodies, 100 * body.volume / volume, pieces);
+    }
+    return status;
+}
+
 static ms_status write_surface(FILE *stream, const ms_content *content, const char *ending, ms_error *err)
 {
     ms_mesh mesh;
+    char *remark = about_of(content)->remark;
     ms_status status = make_surface(&mesh, content, err);
-    if (status == MS_OK) {
-        status = ms_mesh_write_stream(&mesh, stream, ending, err);
-        ms_mesh_free(&mesh);
+    if (status != MS_OK) {
+        return status;
     }
-    return status == MS_ERR_IO ? ms_fail(err, MS_ERR_IO, "%s: could not be written; is the disk full?", content->name)
-                               : status;
+    status = ms_mesh_write_stream(&mesh, stream, ending, err);
+    if (status == MS_OK && remark) {
+        status = remark_on(remark, &mesh, content->clump, err);
+    }
+    ms_mesh_free(&mesh);
+    return status == MS_ERR_IO ? MS_OK : status; /* who closes the stream says why it failed */
 }
 
 static ms_status write_stl(FILE *stream, const ms_content *content, ms_error *err)
@@ -67,18 +97,6 @@ static ms_status write_obj(FILE *stream, const ms_content *content, ms_error *er
     return write_surface(stream, content, "obj", err);
 }
 
-/* Of a clump alone, the frame in which its own surface is seen. */
-static ms_status find_view(ms_view *view, const ms_clump *clump, ms_error *err)
-{
-    ms_mesh mesh;
-    ms_status status = ms_clump_surface(&mesh, clump, shortest_side(clump) / COARSE_CELLS, MAX_POINTS, err);
-    if (status == MS_OK) {
-        status = ms_render_mesh_view(view, &mesh, 0, 0, PIXELS, err);
-        ms_mesh_free(&mesh);
-    }
-    return status;
-}
-
 /* The shape, if it is known, and beside it the clump, seen alike. */
 static ms_status write_png(FILE *stream, const ms_content *content, ms_error *err)
 {
@@ -89,7 +107,8 @@ static ms_status write_png(FILE *stream, const ms_content *content, ms_error *er
     if (status != MS_OK) {
         return status;
     }
-    status = target ? ms_render_view(&view, target, 0, 0, PIXELS, err) : find_view(&view, content->clump, err);
+    status = target ? ms_render_view(&view, target, 0, 0, PIXELS, err)
+                    : ms_render_clump_view(&view, content->clump, 0, 0, PIXELS, err);
     if (status == MS_OK) {
         if (target) {
             ms_render_target(&picture, &view, target);
@@ -184,42 +203,4 @@ const ms_format *ms_view_format_of_path(const char *path, ms_error *err)
 int ms_view_format_is(const ms_format *format)
 {
     return format >= ms_view_formats && format < ms_view_formats + sizeof ms_view_formats / sizeof *ms_view_formats;
-}
-
-int ms_view_format_is_surface(const ms_format *format)
-{
-    return format->part[0].write == write_stl || format->part[0].write == write_ply ||
-           format->part[0].write == write_obj;
-}
-
-ms_status ms_view_surface_remark(char text[MS_WRITE_REMARK], const ms_content *content, ms_error *err)
-{
-    ms_mesh mesh;
-    ms_mesh_report report;
-    ms_body body;
-    double volume, area;
-    size_t pieces;
-    text[0] = '\0';
-    ms_status status = make_surface(&mesh, content, err);
-    if (status != MS_OK) {
-        return status;
-    }
-    status = ms_mesh_repair(&mesh, &report, err);
-    if (status == MS_OK) {
-        status = ms_inertia_mesh(&body, &mesh, err);
-    }
-    ms_mesh_free(&mesh);
-    if (status == MS_OK) {
-        status = ms_union_measure(&volume, &area, content->clump, err);
-    }
-    if (status == MS_OK) {
-        status = ms_clump_pieces(&pieces, content->clump, err);
-    }
-    if (status == MS_OK && (report.bodies != pieces || body.volume < 0.98 * volume)) {
-        snprintf(text, MS_WRITE_REMARK,
-                 "the surface has %zu pieces and %.1f %% of the volume of the spheres, which are %zu pieces; more "
-                 "--cells show more of them",
-                 report.bodies, 100 * body.volume / volume, pieces);
-    }
-    return status;
 }

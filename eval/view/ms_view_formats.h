@@ -15,6 +15,9 @@ typedef struct ms_view_about {
     size_t max_points;         /* of that lattice */
     int argc;                  /* the command, without the program's name */
     char *const *argv;
+    char
+        *remark; /* MS_WRITE_REMARK, empty: takes what a surface does not show, if that is a piece or 2 % of the volume;
+                   * NULL: not wanted */
 } ms_view_about;
 
 /** html, stl, ply, obj, vtp, png; a row with a NULL name ends them. */
@@ -28,16 +31,5 @@ const ms_format *ms_view_format_of_path(const char *path, ms_error *err);
 
 /** Nonzero if it is one of ms_view_formats. */
 int ms_view_format_is(const ms_format *format);
-
-/** Nonzero if the format is the mesh of a surface. */
-int ms_view_format_is_surface(const ms_format *format);
-
-/**
- * What the surface of a clump does not show of it.
- *
- * @param[out] text a sentence; empty where its pieces are those of the clump and it holds 98 % of the volume or more
- * @return MS_OK; as ms_clump_surface, ms_mesh_repair, ms_union_measure
- */
-ms_status ms_view_surface_remark(char text[MS_WRITE_REMARK], const ms_content *content, ms_error *err);
 
 #endif

@@ -73,7 +73,7 @@ static ms_status put_chart(FILE *stream, const char *path, ms_error *err)
         fputs("<img class=\"chart\" alt=\"", stream);
         ms_escape_html(stream, slash ? slash + 1 : path);
         fputs("\" src=\"data:image/svg+xml;base64,", stream);
-        ms_view_base64_put(stream, bytes.data, bytes.size);
+        ms_view_base64_put(stream, bytes.data, bytes.size, 1);
         fputs("\">\n", stream);
         ms_file_free(&bytes);
     }

@@ -9,6 +9,7 @@
 #include "base/ms_escape.h"
 #include "base/ms_fibonacci.h"
 #include "base/ms_vector.h"
+#include "measure/ms_surface.h"
 #include "ms_view_base64.h"
 #include "ms_view_shape.h"
 
@@ -20,11 +21,11 @@ typedef struct placing {
     double centre[3], scale;
 } placing;
 
-/* Little-endian, as all machines are for which this is built; the test of the program reads it back. */
-static void put_array(FILE *stream, const char *name, const void *data, size_t size)
+/* @param each bytes of a value */
+static void put_array(FILE *stream, const char *name, const void *values, size_t count, size_t each)
 {
     fprintf(stream, ",\"%s\":\"", name);
-    ms_view_base64_put(stream, data, size);
+    ms_view_base64_put(stream, values, count, each);
     putc('"', stream);
 }
 
@@ -97,40 +98,33 @@ static ms_status put_spheres(FILE *stream, const placing *f, const ms_clump *clu
         }
         value[4 * s + 3] = (float)(clump->sphere[s].radius / f->scale);
     }
-    put_array(stream, "spheres", value, 4 * clump->n_spheres * sizeof *value);
+    put_array(stream, "spheres", value, 4 * clump->n_spheres, sizeof *value);
     for (size_t s = 0; clump->mass && s < clump->n_spheres; s++) {
         value[s] = (float)clump->mass[s];
     }
     if (clump->mass) {
-        put_array(stream, "mass", value, clump->n_spheres * sizeof *value);
+        put_array(stream, "mass", value, clump->n_spheres, sizeof *value);
     }
     free(value);
     return MS_OK;
 }
 
-static int is_hidden(const double point[3], const ms_clump *clump, size_t s)
-{
-    for (size_t o = 0; o < clump->n_spheres; o++) {
-        const ms_sphere *other = &clump->sphere[o];
-        if (o != s && ms_squared_distance(point, other->centre) < other->radius * other->radius) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* At points of a Fibonacci lattice; 0 of a sphere that is inside. */
-static double find_protrusion(const ms_view_shape *shape, const ms_clump *clump, size_t s)
+/* At points of a Fibonacci lattice; 0 of a sphere that is inside. @param neighbour room for all spheres */
+static double find_protrusion(const ms_view_shape *shape, const ms_clump *clump, size_t s, uint32_t *neighbour)
 {
     const ms_sphere *sphere = &clump->sphere[s];
     double most = 0;
+    if (ms_closest_signed_distance(shape->closest, sphere->centre) + sphere->radius <= 0) {
+        return 0;
+    }
+    const size_t count = ms_surface_touching(neighbour, clump, s);
     for (int m = 0; m < SAMPLES; m++) {
         double u[3], point[3];
         ms_fibonacci(u, m, SAMPLES);
         for (int k = 0; k < 3; k++) {
             point[k] = sphere->centre[k] + sphere->radius * u[k];
         }
-        if (!is_hidden(point, clump, s)) {
+        if (!ms_surface_is_hidden(point, clump, s, neighbour, count)) {
             most = fmax(most, ms_closest_signed_distance(shape->closest, point));
         }
     }
@@ -139,17 +133,26 @@ static double find_protrusion(const ms_view_shape *shape, const ms_clump *clump,
 
 static ms_status put_protrusions(FILE *stream, const ms_view_shape *shape, const ms_clump *clump, ms_error *err)
 {
-    float *value = malloc(clump->n_spheres * sizeof *value);
-    if (!value) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory to show %zu spheres", clump->n_spheres);
+    const size_t n = clump->n_spheres;
+    float *value = malloc(n * sizeof *value);
+    int out_of_memory = 0;
+#pragma omp parallel reduction(| : out_of_memory)
+    {
+        uint32_t *neighbour = malloc(n * sizeof *neighbour);
+        out_of_memory = !value || !neighbour;
+#pragma omp for schedule(dynamic, 1)
+        for (size_t s = 0; s < n; s++) {
+            if (value && neighbour) {
+                value[s] = (float)find_protrusion(shape, clump, s, neighbour);
+            }
+        }
+        free(neighbour);
     }
-#pragma omp parallel for schedule(dynamic, 1)
-    for (size_t s = 0; s < clump->n_spheres; s++) {
-        value[s] = (float)find_protrusion(shape, clump, s);
+    if (!out_of_memory) {
+        put_array(stream, "protrusion", value, n, sizeof *value);
     }
-    put_array(stream, "protrusion", value, clump->n_spheres * sizeof *value);
     free(value);
-    return MS_OK;
+    return out_of_memory ? ms_fail(err, MS_ERR_NOMEM, "no memory to show %zu spheres", n) : MS_OK;
 }
 
 /* Corners as parts of the box; faces in as few bits as number them. */
@@ -173,14 +176,14 @@ static ms_status put_mesh(FILE *stream, const placing *f, const ms_view_shape *s
     fprintf(stream, ",\"mesh\":{\"of\":%zu", shape->mesh->n_triangles);
     put_vector(stream, "low", low);
     put_vector(stream, "high", high);
-    put_array(stream, "corners", part, corners * sizeof *part);
+    put_array(stream, "corners", part, corners, sizeof *part);
     for (size_t c = 0; c < faces && !is_wide; c++) {
         part[c] = (uint16_t)mesh->triangle[c / 3][c % 3];
     }
     if (is_wide) {
-        put_array(stream, "faces", mesh->triangle, faces * sizeof(uint32_t));
+        put_array(stream, "faces", mesh->triangle, faces, sizeof(uint32_t));
     } else {
-        put_array(stream, "faces", part, faces * sizeof *part);
+        put_array(stream, "faces", part, faces, sizeof *part);
     }
     putc('}', stream);
     free(part);
@@ -232,7 +235,7 @@ static ms_status put_field(FILE *stream, const placing *f, const ms_view_shape *
         fprintf(stream, ",\"field\":{\"n\":[%d,%d,%d],\"h\":%.9g,\"range\":[%.9g,%.9g]", n[0], n[1], n[2], h / f->scale,
                 least / f->scale, most / f->scale);
         put_vector(stream, "low", low);
-        put_array(stream, "values", part, points);
+        put_array(stream, "values", part, points, 1);
         putc('}', stream);
     }
     free(value);
@@ -252,22 +255,31 @@ static ms_status put_shape(FILE *stream, const ms_view_scene *scene, const placi
                : status;
 }
 
+static ms_status put_scene(FILE *stream, const ms_view_scene *scene, const ms_view_shape *shape, ms_error *err)
+{
+    const placing f = find_placing(scene->clump, shape->mesh);
+    if (!isfinite(f.scale)) {
+        return ms_fail(err, MS_ERR_ARG, "what is to be shown reaches too far; choose another unit");
+    }
+    fprintf(stream, "{\"ordered\":%s,\"scale\":%.9g", scene->ordered ? "true" : "false", f.scale);
+    put_vector(stream, "centre", f.centre);
+    ms_status status = put_name(stream, scene->name, err);
+    if (status == MS_OK) {
+        status = put_spheres(stream, &f, scene->clump, err);
+    }
+    if (status == MS_OK && scene->target) {
+        status = put_shape(stream, scene, &f, shape, err);
+    }
+    putc('}', stream);
+    return status;
+}
+
 ms_status ms_view_scene_write(FILE *stream, const ms_view_scene *scene, ms_error *err)
 {
     ms_view_shape shape = {0};
     ms_status status = scene->target ? ms_view_shape_make(&shape, scene->target, scene->most_triangles, err) : MS_OK;
     if (status == MS_OK) {
-        const placing f = find_placing(scene->clump, shape.mesh);
-        fprintf(stream, "{\"ordered\":%s,\"scale\":%.9g", scene->ordered ? "true" : "false", f.scale);
-        put_vector(stream, "centre", f.centre);
-        status = put_name(stream, scene->name, err);
-        if (status == MS_OK) {
-            status = put_spheres(stream, &f, scene->clump, err);
-        }
-        if (status == MS_OK && scene->target) {
-            status = put_shape(stream, scene, &f, &shape, err);
-        }
-        putc('}', stream);
+        status = put_scene(stream, scene, &shape, err);
     }
     ms_view_shape_free(&shape);
     return status;

@@ -31,7 +31,7 @@ typedef struct ms_view_scene {
  *     field       n, low, h: a lattice around the clump; values: signed distance to the shape, outside positive, parts
  *                 of range, 8 bits
  *
- * @return MS_OK; MS_ERR_NOMEM; as ms_view_shape_make
+ * @return MS_OK; MS_ERR_ARG where the radius of all is not finite; MS_ERR_NOMEM; as ms_view_shape_make
  * Cost: a search of the mesh for each of 70,000 points of the lattice and 256 of each sphere; all cores.
  */
 ms_status ms_view_scene_write(FILE *stream, const ms_view_scene *scene, ms_error *err);

@@ -62,6 +62,7 @@ class Surfaces(Case):
         fine = self.mskit("convert", "neck.csv", "-o", "neck.stl", "--cells", 80)
         self.assertEqual(fine.err, "")
         self.write("far.csv", "0,0,0,1\n1e9,0,0,1\n")
+        self.mskit("convert", "far.csv", "-o", "far.png", "-o", "far.html")
         self.assertIn("fewer cells", self.mskit("convert", "far.csv", "-o", "far.stl", code=1).err)
 
     def test_of_generate_and_score(self):
@@ -142,3 +143,5 @@ class Pages(Case):
         self.assert_refused("score", "two.csv", "--target", "ball.stl", "--json", "-o", "-", code=2, says=("choose one",))
         self.assert_refused("score", "two.csv", "--target", "ball.stl", "-o", "two.csv", code=1, says=("two.csv",))
         self.assert_refused("convert", "two.csv", "-o", "a.htm", code=2, says=("html", "stl"))
+        self.write("apart.csv", "0,0,0,1\n1e200,0,0,1\n")
+        self.assert_refused("convert", "apart.csv", "-o", "a.html", code=1, says=("too far",))
