@@ -36,6 +36,9 @@ static ms_status add_candidate(ms_clump *all, const ms_sphere *host, const doubl
     return ms_clump_add_carrier(all, &carrier, err);
 }
 
+/* Candidates in a sphere at most, where there are more than FEW_HOSTS. */
+enum { OF_A_HOST = 27 };
+
 /* The candidates in a sphere: in its middle, as far out as the depth lets them be, and half way; in the directions of
  * the outermost points of a cube's lattice of 2 fine + 1 a side. */
 static ms_status add_candidates(ms_clump *all, const ms_sphere *host, double depth, int fine, double axis[3][3],
@@ -80,6 +83,12 @@ static ms_status list_candidates(ms_clump *all, const ms_clump *clump, double de
                                  ms_error *err)
 {
     const size_t n = clump->n_spheres;
+    const int most = MS_CLUMP_MAX_SPHERES - HOSTS * OF_A_HOST;
+    if (n > (size_t)most) {
+        return ms_fail(err, MS_ERR_LIMIT,
+                       "carriers are looked for in up to %d spheres, and here are %zu; use fewer, or no carriers", most,
+                       n);
+    }
     host_rank *rank = malloc(n * sizeof *rank);
     ms_status status = rank ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory to sort %zu spheres", n);
     for (size_t s = 0; s < n && status == MS_OK; s++) {
@@ -97,14 +106,14 @@ static ms_status list_candidates(ms_clump *all, const ms_clump *clump, double de
     return status;
 }
 
-/* Carriers at that depth, found or not; those of the clump are set. */
-static ms_status find_at_depth(ms_clump *clump, int *found, const ms_particle *particle,
+/* Carriers at that depth, found or not; those of the clump are set. @param[out] all_do as ms_carriers_search */
+static ms_status find_at_depth(ms_clump *clump, int *found, int *all_do, const ms_particle *particle,
                                const ms_density_options *options, double depth, double overlap, ms_error *err)
 {
     ms_clump all = {0};
     ms_mass_equations e = {0};
     size_t *pick = NULL, picked = 0;
-    *found = 0;
+    *found = *all_do = 0;
     ms_clump_drop_masses(clump);
     ms_status status = ms_mass_equations_make(&e, clump, particle, 0, err);
     if (status == MS_OK) {
@@ -114,7 +123,7 @@ static ms_status find_at_depth(ms_clump *clump, int *found, const ms_particle *p
     if (status == MS_OK && all.n_carriers > 0) {
         status = ms_mass_equations_make(&e, &all, particle, 0, err);
         if (status == MS_OK) {
-            status = ms_carriers_search(&pick, &picked, &e, clump->n_spheres, options, err);
+            status = ms_carriers_search(&pick, &picked, all_do, &e, clump->n_spheres, options, err);
         }
         ms_mass_equations_free(&e);
     }
@@ -151,12 +160,13 @@ static ms_status explain(ms_clump *clump, const ms_density_report *alone, const 
                          const ms_density_options *options, double depth, ms_error *err)
 {
     enum { HALVINGS = 5 };
-    int found = 0;
+    int found = 0, all_do, ever_do = 0;
     ms_density_report report;
     ms_status status = MS_OK;
     for (int k = 0; k < HALVINGS && !found && status == MS_OK; k++) {
         depth /= 2;
-        status = find_at_depth(clump, &found, particle, options, depth, 0, err);
+        status = find_at_depth(clump, &found, &all_do, particle, options, depth, 0, err);
+        ever_do |= all_do;
     }
     if (status == MS_OK && found && (status = ms_density_solve(clump, &report, particle, options, err)) == MS_OK) {
         const size_t at = host_of_heaviest(clump);
@@ -170,6 +180,12 @@ static ms_status explain(ms_clump *clump, const ms_density_report *alone, const 
     }
     if (status != MS_OK) {
         return status;
+    }
+    if (ever_do) {
+        return ms_fail(err, MS_ERR_LIMIT,
+                       "no carriers were found that all have the least mass, %g of the particle's, though lighter ones "
+                       "would do; a smaller least mass (--least-mass), or more spheres, may help",
+                       ms_density_least(options, clump->n_spheres + MS_MASS_EQUATIONS_COUNT));
     }
     if (alone->centre > MS_DENSITY_CENTRE_TOLERANCE) {
         return ms_fail(err, MS_ERR_LIMIT,
@@ -194,8 +210,8 @@ static ms_status add_carriers(ms_clump *clump, ms_density_report *report, const 
 {
     const ms_density_report alone = *report;
     const double overlap = MS_CARRIERS_OVERLAP * equal_ball_radius(particle);
-    int found;
-    ms_status status = find_at_depth(clump, &found, particle, &options->masses, options->depth, overlap, err);
+    int found, all_do;
+    ms_status status = find_at_depth(clump, &found, &all_do, particle, &options->masses, options->depth, overlap, err);
     if (status == MS_OK && found) {
         status = ms_density_solve(clump, report, particle, &options->masses, err);
         found = is_exact(report);

@@ -35,8 +35,8 @@ typedef struct ms_carriers_options {
  * @param[in,out] clump    carriers and masses that it has are dropped; those found are set; on failure it has none
  * @param[out]    report   zeros on failure
  * @return MS_OK; MS_ERR_LIMIT where no carriers do, with the cause: a wall that has no room for them at this depth, a
- *         centre of mass outside the hull of the centres, spheres that fill too little; MS_ERR_ARG for a particle
- *         without density and no depth; as ms_density_solve
+ *         least mass that is too large, a centre of mass outside the hull of the centres, spheres that fill too little,
+ *         more than 61,484 spheres; MS_ERR_ARG for a particle without density and no depth; as ms_density_solve
  *
  * Cost: some hundred programmes of ten rows and a column for each sphere, two dozen with one for each candidate, too:
  * 0.1 to 4 s for 10 to 100 spheres.

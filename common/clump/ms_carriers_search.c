@@ -19,6 +19,7 @@ typedef struct carrier_search {
     double least, most;           /* of a share, where many candidates are */
     double *row, *share, *weight; /* e->n each */
     double *given;                /* likewise: what each has beforehand */
+    int do_all, none_do;          /* do all candidates, beyond what is given? Do they not even where none has any? */
     size_t *all;                  /* all candidates */
     size_t *pick, picked;         /* those tried, in ascending order */
     size_t *best, n_best;         /* the fewest */
@@ -100,14 +101,15 @@ static void take_those_with_share(carrier_search *s)
     }
 }
 
-/* Few candidates by programmes whose weights follow from the shares of the one before; none where not even all do. */
+/* Few candidates by programmes whose weights follow from the shares of the one before; none where not even all do with
+ * what is given. */
 static ms_status choose_few(carrier_search *s, int start, ms_error *err)
 {
     double error;
     int solved = 0;
     ms_linear_program *p = make_choice(s, s->all, s->e->n - s->n, s->given, s->most, err);
     ms_status status = p ? none_for_limit(ms_linear_program_minimise(p, 0, 0, &error, err), &solved) : MS_ERR_NOMEM;
-    solved = solved && error < ROUNDING;
+    s->do_all = solved = solved && error < ROUNDING;
     s->picked = 0;
     start_weights(s, start);
     for (int round = 0; round < ROUNDS && solved && status == MS_OK; round++) {
@@ -151,6 +153,7 @@ static ms_status choose_above_bound(carrier_search *s, double *margin, int start
     start_given(s, start);
     for (int repair = 0; repair <= REPAIRS && *margin < 1 && status == MS_OK; repair++) {
         status = choose_few(s, start, err);
+        s->none_do |= start == 0 && repair == 0 && !s->do_all;
         if (status != MS_OK || s->picked == 0 || s->picked > MOST_PICKED) {
             return status;
         }
@@ -196,7 +199,7 @@ static ms_status run_starts(void *context, ms_error *err)
     for (int start = 0; start < STARTS && status == MS_OK; start++) {
         double margin;
         status = choose_above_bound(s, &margin, start, err);
-        if (status == MS_OK && (s->picked == 0 || s->n_best == 1)) { /* not even all candidates do; or one is enough */
+        if (s->none_do || s->n_best == 1) { /* one is enough */
             break;
         }
         if (status == MS_OK && margin >= 1) {
@@ -225,7 +228,7 @@ static ms_status allocate(carrier_search *s, ms_error *err)
     return MS_OK;
 }
 
-ms_status ms_carriers_search(size_t **pick, size_t *picked, const ms_mass_equations *e, size_t n_spheres,
+ms_status ms_carriers_search(size_t **pick, size_t *picked, int *all_do, const ms_mass_equations *e, size_t n_spheres,
                              const ms_density_options *options, ms_error *err)
 {
     carrier_search s = {.e = e, .n = n_spheres, .options = options};
@@ -235,6 +238,7 @@ ms_status ms_carriers_search(size_t **pick, size_t *picked, const ms_mass_equati
     if (status == MS_OK) {
         status = ms_linear_program_apart(run_starts, &s, err);
     }
+    *all_do = status == MS_OK && !s.none_do;
     *picked = status == MS_OK ? s.n_best : 0;
     *pick = *picked > 0 ? s.best : NULL;
     if (!*pick) {

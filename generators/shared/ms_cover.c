@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "ms_cover_bits.h"
+#include "ms_cover_groups.h"
 #include "ms_overlap.h"
 
 /* Bounds that are counted at once: whatever the number of threads, since the choice among estimates hangs on it. */
@@ -25,9 +26,8 @@ static const double VOXELS_A_RUN = 2.5;
 /* Of the runs that are free a candidate gets up to this part. */
 static const double SHARE = 1.0 / 512;
 
-/* In groups lie the centres of balls within this part of their radius, rounded down to a power of two; a group is
- * dissolved when a ball was taken for less than this part of that radius' ball. */
-static const double GROUP_SIDE = 0.0625, GROUP_GAIN = 0.125;
+/* A group is dissolved when a ball was taken for less than this part of the ball of its class' radius. */
+static const double GROUP_GAIN = 0.125;
 
 /* Of groups' candidates every 8th, 4th or 2nd row of every such plane is counted first, as long as the ball's radius is
  * at least so many of these steps, and its bound as many voxels as give so many in such rows. What is in all rows is
@@ -59,7 +59,8 @@ struct ms_cover {
     size_t free_runs;       /* that may still be kept */
     ms_cover_room *scratch; /* of each thread */
     int threads;
-    uint32_t *next; /* in a group of candidates: its largest leads to the others, the last to NEVER; NULL: no groups */
+    uint32_t
+        *next; /* in a group of candidates: its largest leads to the others, the last to its end; NULL: no groups */
     int largest_class; /* of the groups that are not dissolved */
     /* A heap, the best first, and behind it those that touch no ball taken so far (connected). */
     heap_entry *entry;
@@ -214,23 +215,15 @@ static heap_entry uncounted(const ms_cover *cover, uint32_t index)
 static void dissolve_group(ms_cover *cover, uint32_t leader)
 {
     uint32_t member = cover->next[leader];
-    cover->next[leader] = NEVER;
-    while (member != NEVER) {
+    cover->next[leader] = MS_COVER_GROUPS_END;
+    while (member != MS_COVER_GROUPS_END) {
         const uint32_t after = cover->next[member];
-        cover->next[member] = NEVER;
+        cover->next[member] = MS_COVER_GROUPS_END;
         cover->entry[cover->n_heap] = uncounted(cover, member);
         cover->n_entries++;
         sift_up(cover, cover->n_heap++);
         member = after;
     }
-}
-
-/* Of a radius, from 2^class on. */
-static int find_class(double radius)
-{
-    int exponent;
-    frexp(radius, &exponent);
-    return exponent - 1;
 }
 
 /* Dissolves the groups of balls so large that within a group gains may differ by as much as the last one. */
@@ -245,7 +238,7 @@ static void dissolve_large(ms_cover *cover, double gain)
     }
     cover->largest_class = keep;
     for (size_t c = 0; c < cover->count; c++) {
-        if (cover->next[c] != NEVER && find_class(cover->candidate[c].radius) > keep) {
+        if (cover->next[c] != MS_COVER_GROUPS_END && ms_cover_groups_class(cover->candidate[c].radius) > keep) {
             dissolve_group(cover, (uint32_t)c);
         }
     }
@@ -315,7 +308,7 @@ static int settle_first(ms_cover *cover)
         drop_first(cover);
         return 0;
     }
-    if (cover->next && cover->next[first->index] != NEVER) {
+    if (cover->next && cover->next[first->index] != MS_COVER_GROUPS_END) {
         dissolve_group(cover, first->index);
         return 0;
     }
@@ -364,59 +357,17 @@ void ms_cover_take(ms_cover *cover, const ms_ball *ball)
     cover->n_taken++;
 }
 
-/* A candidate and the cell of its group. */
-typedef struct group_entry {
-    uint64_t cell;
-    double radius;
-    uint32_t index;
-} group_entry;
-
-/* By cell, in it the largest first. */
-static int compare_members(const void *one, const void *other)
-{
-    const group_entry *a = one, *b = other;
-    if (a->cell != b->cell) {
-        return a->cell < b->cell ? -1 : 1;
-    }
-    if (a->radius != b->radius) {
-        return a->radius > b->radius ? -1 : 1;
-    }
-    return a->index < b->index ? -1 : 1;
-}
-
-static uint64_t find_group_cell(const ms_ball *ball, int class)
-{
-    const double side = ldexp(GROUP_SIDE, class);
-    uint64_t cell = (uint64_t) class;
-    for (int a = 0; a < 3; a++) {
-        cell = cell << 19 | (uint64_t)fmin(fmax(floor(ball->centre[a] / side), 0), 0x7ffff);
-    }
-    return cell;
-}
-
 /* Puts the candidates into groups; the largest of each stands for it. */
 static ms_status form_groups(ms_cover *cover, ms_error *err)
 {
-    group_entry *entry = malloc((cover->count + 1) * sizeof *entry);
-    cover->next = malloc((cover->count + 1) * sizeof *cover->next);
-    if (!entry || !cover->next) {
-        free(entry);
-        return ms_fail(err, MS_ERR_NOMEM, "no memory to group %zu spheres; use fewer cells", cover->count);
+    const ms_status status =
+        ms_cover_groups_form(&cover->next, &cover->largest_class, cover->candidate, cover->count, err);
+    for (size_t c = 0; status == MS_OK && c < cover->count; c++) {
+        if (cover->next[c] != MS_COVER_GROUPS_END) {
+            cover->remains[cover->next[c]].is_member = 1;
+        }
     }
-    for (size_t c = 0; c < cover->count; c++) {
-        const ms_ball *ball = &cover->candidate[c];
-        const int class = ball->radius >= 1 ? find_class(ball->radius) : 0;
-        cover->largest_class = class > cover->largest_class ? class : cover->largest_class;
-        entry[c] = (group_entry){find_group_cell(ball, class), ball->radius, (uint32_t)c};
-    }
-    qsort(entry, cover->count, sizeof *entry, compare_members);
-    for (size_t c = 0; c < cover->count; c++) {
-        const int follows = c + 1 < cover->count && entry[c + 1].cell == entry[c].cell;
-        cover->next[entry[c].index] = follows ? entry[c + 1].index : NEVER;
-        cover->remains[entry[c].index].is_member = c > 0 && entry[c - 1].cell == entry[c].cell;
-    }
-    free(entry);
-    return MS_OK;
+    return status;
 }
 
 /* Every candidate, but of groups their first. What they cover is counted when they first come to the top. */

@@ -195,6 +195,39 @@ static void expect_failure(ms_clump *clump, const ms_particle *p, const ms_carri
     assert_true(report.most_mass == 0);
 }
 
+/* Five balls in a plane that have a particle's mass all but for two points above and below, of less than the least. */
+static void a_least_mass_too_large(void **state)
+{
+    ms_clump clump = {0};
+    (void)state;
+    for (int b = 0; b < 5; b++) {
+        add_sphere(&clump, 2 * (b == 1) - 2 * (b == 2), 1.7 * (b == 3) - 1.7 * (b == 4), 0, 0.5);
+    }
+    ms_particle p = particle_of(&clump, (double[]){1, 1, 1, 1, 1});
+    p.density = 1;
+    p.mass += 0.3;
+    for (int k = 0; k < 2; k++) {
+        p.inertia[k][k] += 0.3 * 0.4 * 0.4;
+    }
+    expect_failure(&clump, &p, &(ms_carriers_options){.masses = {.least = 0.18}}, MS_ERR_LIMIT,
+                   "the least mass, 0.18 of the particle's, though lighter ones");
+    solve_with(&clump, &p, &PLAIN);
+    expect_all_ten(&clump, &p);
+    ms_clump_free(&clump);
+}
+
+static void too_many_to_look_in(void **state)
+{
+    (void)state;
+    const ms_particle p = ellipsoid(2, 1, 1);
+    ms_clump clump = {0};
+    for (int s = 0; s < 62000; s++) {
+        add_sphere(&clump, 0, 0, 0, 1);
+    }
+    expect_failure(&clump, &p, &PLAIN, MS_ERR_LIMIT, "looked for in up to 61484 spheres, and here are 62000");
+    ms_clump_free(&clump);
+}
+
 static void failures(void **state)
 {
     (void)state;
@@ -248,6 +281,8 @@ int main(void)
         cmocka_unit_test(turned_moved_and_in_millimetres),
         cmocka_unit_test(two_are_the_fewest),
         cmocka_unit_test(none_where_masses_do),
+        cmocka_unit_test(a_least_mass_too_large),
+        cmocka_unit_test(too_many_to_look_in),
         cmocka_unit_test(failures),
         cmocka_unit_test(carriers_are_no_spheres),
     };

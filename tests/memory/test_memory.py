@@ -28,6 +28,9 @@ COMMANDS = {
     "fcm": ["generate", "other.off", "-g", "fcm", "-n", "3", "--target-grid", "grid.vtk", "-o", "out.vtk"] + SMALL,
     "variational": ["generate", "body.ply", "-g", "variational", "-n", "3", "--set", "effort=1", "--until", "dice=0.3",
                     "-o", "out.csv"] + SMALL,
+    "inscribed": ["generate", "body.stl", "-g", "variational", "-n", "3", "--protrusion", "0", "-o", "out.csv"] + SMALL,
+    "cut cover": ["generate", "body.stl", "-g", "setcover", "-n", "3", "--count", "cut", "--equal-volume", "-o", "out.csv"]
+                 + SMALL,
     "least work": ["generate", "body.stl", "-n", "3", "--least-work", "dice=0.5", "--json", "-o", "out.csv"] + SMALL,
     "masses": ["generate", "body.stl", "-n", "4", "--correct", "--density", "2000", "-o", "out.lammps"] + SMALL,
     "volume": ["generate", "body.npy", "-n", "3", "-j", "1", "--json"],

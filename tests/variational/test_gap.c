@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "mesh/ms_closest.h"
 #include "variational/ms_gap.h"
 
 static double find_distance(const double place[3], const ms_ball *ball, size_t count)
@@ -208,6 +209,43 @@ static void gap_that_cannot_be_kept_is_said(void **state)
     ms_mesh_free(&mesh);
 }
 
+/* Inscribed spheres are moved on the medial axis without regard to either, before both are held. */
+static void inscribed_spheres_keep_gap_and_stay_one_piece(void **state)
+{
+    (void)state;
+    static const char *const OPTIONS[] = {"protrusion=0", "protrusion=0 gap=1.2 connected"};
+    double largest[2];
+    ms_mesh mesh;
+    ms_target target;
+    make_shape(&mesh, "ellipsoid", "a=2 b=1 c=1 fineness=20");
+    make_target(&target, &mesh, 20, MS_VOXEL_CENTRE);
+    for (int o = 0; o < 2; o++) {
+        ms_stop_reason reason;
+        ms_clump clump;
+        ms_error err;
+        ms_ball ball[5];
+        size_t pieces;
+        char remark[512] = "";
+        assert_int_equal(try_generator(&clump, &reason, &ms_generator_variational, &target, (ms_stop){.spheres = 5},
+                                       OPTIONS[o], keep_remark, remark, &err),
+                         MS_OK);
+        assert_string_equal(remark, "");
+        largest[o] = find_densely(&target, ball, to_balls(ball, 5, &clump, &target), 0.2);
+        assert_int_equal(ms_clump_pieces(&pieces, &clump, &err), MS_OK);
+        assert_int_equal(pieces, 1);
+        for (size_t s = 0; s < clump.n_spheres; s++) {
+            double nearest[3];
+            const double away = ms_closest_distance(nearest, target.closest, clump.sphere[s].centre, HUGE_VAL);
+            assert_true(clump.sphere[s].radius <= away + 1e-9);
+        }
+        ms_clump_free(&clump);
+    }
+    print_message("inscribed: largest %.4f, and %.4f where it is bound\n", largest[0], largest[1]);
+    assert_true(largest[0] > 1.3 && largest[1] <= 1.2 + 1e-9);
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
 /* Of a volume the surface is that of its border voxels' centres. */
 static void gap_of_a_volume_is_kept(void **state)
 {
@@ -239,6 +277,7 @@ int main(void)
         cmocka_unit_test(losses_are_those_of_the_places),
         cmocka_unit_test(gap_is_kept),
         cmocka_unit_test(gap_that_cannot_be_kept_is_said),
+        cmocka_unit_test(inscribed_spheres_keep_gap_and_stay_one_piece),
         cmocka_unit_test(gap_of_a_volume_is_kept),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

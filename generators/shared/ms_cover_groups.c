@@ -1,0 +1,71 @@
+#include "ms_cover_groups.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* In a group lie the centres of balls within this part of their radius, rounded down to a power of two. */
+static const double GROUP_SIDE = 0.0625;
+
+int ms_cover_groups_class(double radius)
+{
+    int exponent;
+    frexp(radius, &exponent);
+    return exponent - 1;
+}
+
+/* A candidate and the cell of its group. */
+typedef struct group_entry {
+    uint64_t cell;
+    double radius;
+    uint32_t index;
+} group_entry;
+
+/* By cell, in it the largest first. */
+static int compare_members(const void *one, const void *other)
+{
+    const group_entry *a = one, *b = other;
+    if (a->cell != b->cell) {
+        return a->cell < b->cell ? -1 : 1;
+    }
+    if (a->radius != b->radius) {
+        return a->radius > b->radius ? -1 : 1;
+    }
+    return a->index < b->index ? -1 : 1;
+}
+
+static uint64_t find_group_cell(const ms_ball *ball, int class)
+{
+    const double side = ldexp(GROUP_SIDE, class);
+    uint64_t cell = (uint64_t) class;
+    for (int a = 0; a < 3; a++) {
+        cell = cell << 19 | (uint64_t)fmin(fmax(floor(ball->centre[a] / side), 0), 0x7ffff);
+    }
+    return cell;
+}
+
+ms_status ms_cover_groups_form(uint32_t **next, int *largest_class, const ms_ball *candidate, size_t count,
+                               ms_error *err)
+{
+    group_entry *entry = malloc((count + 1) * sizeof *entry);
+    *next = malloc((count + 1) * sizeof **next);
+    *largest_class = 0;
+    if (!entry || !*next) {
+        free(entry);
+        free(*next);
+        *next = NULL;
+        return ms_fail(err, MS_ERR_NOMEM, "no memory to group %zu spheres; use fewer cells", count);
+    }
+    for (size_t c = 0; c < count; c++) {
+        const ms_ball *ball = &candidate[c];
+        const int class = ball->radius >= 1 ? ms_cover_groups_class(ball->radius) : 0;
+        *largest_class = class > *largest_class ? class : *largest_class;
+        entry[c] = (group_entry){find_group_cell(ball, class), ball->radius, (uint32_t)c};
+    }
+    qsort(entry, count, sizeof *entry, compare_members);
+    for (size_t c = 0; c < count; c++) {
+        const int follows = c + 1 < count && entry[c + 1].cell == entry[c].cell;
+        (*next)[entry[c].index] = follows ? entry[c + 1].index : MS_COVER_GROUPS_END;
+    }
+    free(entry);
+    return MS_OK;
+}
