@@ -36,7 +36,7 @@ WITHOUT = [("more spheres at the start, and pruning", SOLVER, [("SURPLUS = 1.25"
 MADE = {"oblate": ["ellipsoid", "a=2", "b=2", "c=1", "fineness=100"],
         "prolate": ["ellipsoid", "a=2", "b=1", "c=1", "fineness=100"],
         "torus": ["torus"]}
-SHAPES = [("oblate", 100), ("prolate", 30), ("torus", 40), ("bunny.ply", 100), ("human_femur.stl", 70),
+SHAPES = [("oblate", 100), ("prolate", 30), ("prolate", 100), ("torus", 40), ("bunny.ply", 100), ("human_femur.stl", 70),
           ("open-clumps/bowl.*", 20)]
 REPEATS = 2
 
