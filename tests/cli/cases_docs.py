@@ -95,13 +95,16 @@ class Documents(Case):
                             for h in re.findall(r"(?m)^#+ (.+)$", document(os.path.join("..", path)))]
                 self.assertIn(heading, headings, path)
 
-    def test_man_page_names_every_command_and_flag(self):
-        page = document("mskit.1").replace("\\-", "-")
-        overview = self.mskit("--help").out
-        for command in re.findall(r"(?m)^  (\w+) +\w", overview):
-            self.assertRegex(page, rf"(?m)^\.S[SH].*\b{command}\b", f"a section for {command}")
-            for flag in re.findall(r"(--[a-z][a-z-]*)", self.mskit(command, "--help").out.split("usage:")[1]):
-                self.assertIn(flag, page, f"{command} {flag}")
+    def test_man_pages_name_every_command_and_flag(self):
+        overview = document("mskit.1")
+        for command in re.findall(r"(?m)^  (\w+) +\w", self.mskit("--help").out):
+            self.assertRegex(overview, rf"(?m)^\.B {command}$")
+            with open(os.path.join(os.path.dirname(MSKIT), "..", "docs", f"mskit-{command}.1"), encoding="utf-8") as stream:
+                page = stream.read().replace("\\-", "-")
+            said = self.mskit(command, "--help").out
+            flags = re.findall(r"(?m)^ +(?:-\w, )?(--[a-z][a-z-]*)", said)
+            self.assertEqual(re.findall(r"(?m)^\\fB(?:-\w, )?(--[a-z-]+)\\fR", page), flags, command)
+            self.assertIn(said.split("example: ")[1].strip(), page)
 
     def test_man_page_names_no_other_flags(self):
         page = document("mskit.1").replace("\\-", "-")
