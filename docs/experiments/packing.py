@@ -1,0 +1,193 @@
+#!/usr/bin/env python3
+"""Yuan (2019), section 5.2: 250 M&M candies settle in a cylinder, in LIGGGHTS, by clumps of set cover scaled to the
+volume of the candy.
+
+    docs/experiments/packing.py [--spheres N] [--seeds K] [--step SECONDS] [--work FOLDER] [--most MINUTES]
+
+Adds a row a packing to packing.csv beside it; rows that are there are not run again. MSKIT names the program
+(build/eval/mskit), LIGGGHTS the engine (liggghts). Numbers of the table are Yuan's (table 3); his time step is 5e-7 s.
+
+What is measured, as fixed before the first run, of the particles at rest (kinetic energy below 1e-6 m g d each):
+    height_envelope  mean over vertical lines, 0.5 mm apart and 2 mm or more from the wall, of the highest point of a
+                     sphere, in mm
+    height_top       the highest point of any sphere, in mm
+    fraction         of the cylinder between 1/4 and 3/4 of height_envelope, the part within spheres (voxels of 0.5 mm)
+"""
+import argparse
+import csv
+import math
+import os
+import re
+import resource
+import subprocess
+import sys
+import time
+
+import numpy
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+MSKIT = os.environ.get("MSKIT", os.path.join(HERE, "..", "..", "build", "eval", "mskit"))
+LIGGGHTS = os.environ.get("LIGGGHTS", "liggghts")
+TABLE = os.path.join(HERE, "packing.csv")
+COLUMNS = ["method", "n", "dice", "coverage", "scaled_by", "seed", "step", "particles", "height_envelope", "height_top",
+           "fraction", "kinetic_over_m_g_d", "steps", "cpu_seconds", "version"]
+
+RADIUS, A, C, DENSITY, COUNT = 25.4, 6.585, 3.395, 1377, 250  # mm, kg/m^3
+MASS = DENSITY * 4 / 3 * math.pi * A * A * C * 1e-9
+REST = 1e-6 * MASS * 9.81 * 2 * A * 1e-3  # J a particle
+# Primes, none of them a seed of the script itself: LIGGGHTS refuses a seed that stands twice.
+SEEDS = [32452843, 49979687, 67867967, 86028121, 413158511, 104395301, 122949823, 141650939, 160481183, 179424673,
+         198491317, 217645177, 236887691, 256203161, 275604541, 295075147, 314606869, 334214459, 353868013, 373587883]
+
+SCRIPT = """atom_style granular
+atom_modify map array
+communicate single vel yes
+boundary f f f
+newton off
+units si
+region box block -0.0264 0.0264 -0.0264 0.0264 -0.002 0.26 units box
+create_box 2 box
+neighbor 0.0005 bin
+neigh_modify delay 0
+hard_particles yes
+fix young all property/global youngsModulus peratomtype 5e7 5e7
+fix poisson all property/global poissonsRatio peratomtype 0.29 0.29
+fix restitution all property/global coefficientRestitution peratomtypepair 2 0.5 0.5 0.5 0.5
+fix friction all property/global coefficientFriction peratomtypepair 2 0.35 0.30 0.30 0.30
+pair_style gran model hertz tangential history
+pair_coeff * *
+timestep {step}
+fix gravity all gravity 9.81 vector 0 0 -1
+fix floor all wall/gran model hertz tangential history primitive type 2 zplane 0
+fix side all wall/gran model hertz tangential history primitive type 2 zcylinder 0.0254 0 0
+{template}
+fix kinds all particledistribution/discrete 15485867 1 clump 1.0
+region above cylinder z 0 0 0.0254 0.18 0.25 volume_limit 1e-300 units box
+# four at a time fall, as in the paper
+fix insert all insert/rate/region seed {seed} distributiontemplate kinds nparticles {count} particlerate 160 &
+    insert_every {every} vel constant 0 0 -0.5 orientation random overlapcheck yes all_in yes region above
+fix move all multisphere
+compute moved all ke/multisphere
+compute turned all erotate/multisphere
+variable kinetic equal (c_moved+c_turned)/{count}
+thermo_style custom step atoms v_kinetic
+thermo {every}
+run {filling}
+variable k loop 100
+label settle
+run {tenth}
+variable now equal ${{kinetic}}
+if "${{now}} < {rest}" then "jump SELF rest"
+next k
+jump SELF settle
+label rest
+print "at rest: ${{now}} J"
+write_dump all custom packing.dump id type x y z radius modify sort id
+"""
+
+
+def make_clump(folder, n):
+    """The template's line for LIGGGHTS, and what mskit says of the clump."""
+    import json
+    shape, clump = os.path.join(folder, "candy.stl"), os.path.join(folder, f"candy-{n}.liggghts")
+    subprocess.run([MSKIT, "shape", "ellipsoid", f"a={A}", f"b={A}", f"c={C}", "-o", shape], check=True,
+                   stderr=subprocess.DEVNULL)
+    said = subprocess.run([MSKIT, "generate", shape, "-g", "setcover", "-n", str(n), "--deq", "100", "--equal-volume",
+                           "--correct", "--density", str(DENSITY), "--unit", "mm", "-o", clump, "--json"], check=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    with open(clump + ".in", encoding="utf-8") as stream:
+        line = next(line for line in stream if line.startswith("fix clump "))
+    return line.replace(os.path.basename(clump), os.path.abspath(clump)), json.loads(said.stdout)
+
+
+def read_spheres(path):
+    """x, y, z, r of the last dump, in mm."""
+    with open(path, encoding="utf-8") as stream:
+        lines = stream.read().splitlines()
+    start = max(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
+    return numpy.array([line.split()[2:6] for line in lines[start + 1:]], dtype=float) * 1000
+
+
+def measure(spheres, h=0.5):
+    """height_envelope, height_top, fraction."""
+    ticks = numpy.arange(-RADIUS, RADIUS + h, h)
+    x, y = numpy.meshgrid(ticks, ticks, indexing="ij")
+    within, inner = x * x + y * y <= RADIUS ** 2, x * x + y * y <= (RADIUS - 2) ** 2
+    top = numpy.zeros_like(x)
+    layers = int(math.ceil((spheres[:, 2] + spheres[:, 3]).max() / h)) + 1
+    filled = numpy.zeros(x.shape + (layers,), dtype=bool)
+    z = (numpy.arange(layers) + 0.5) * h
+    for cx, cy, cz, r in spheres:
+        i = slice(*numpy.searchsorted(ticks, [cx - r, cx + r]))
+        j = slice(*numpy.searchsorted(ticks, [cy - r, cy + r]))
+        k = slice(*numpy.searchsorted(z, [cz - r, cz + r]))
+        left = r * r - (x[i, j] - cx) ** 2 - (y[i, j] - cy) ** 2
+        numpy.maximum(top[i, j], numpy.where(left > 0, cz + numpy.sqrt(numpy.maximum(left, 0)), 0), out=top[i, j])
+        filled[i, j, k] |= left[:, :, None] >= (z[k] - cz) ** 2
+    height = float(top[inner].mean())
+    middle = (z >= height / 4) & (z <= 3 * height / 4)
+    return height, float((spheres[:, 2] + spheres[:, 3]).max()), float(filled[within][:, middle].mean())
+
+
+def pack(folder, n, seed, step):
+    template, said = make_clump(folder, n)
+    work = os.path.join(folder, f"{n}-{seed}-{step:g}")
+    os.makedirs(work, exist_ok=True)
+    every = round(4 / 160 / step)
+    with open(os.path.join(work, "in.packing"), "w", encoding="utf-8") as stream:
+        stream.write(SCRIPT.format(step=step, template=template, seed=seed, count=COUNT, every=every, rest=REST,
+                                   filling=round((COUNT / 160 + 0.3) / step), tenth=round(0.1 / step)))
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    with open(os.path.join(work, "out"), "w", encoding="utf-8") as out:
+        done = subprocess.run([LIGGGHTS, "-in", "in.packing"], cwd=work, stdout=out, stderr=subprocess.STDOUT,
+                              check=False)
+    cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+    with open(os.path.join(work, "out"), encoding="utf-8") as out:
+        text = out.read()
+    rest = re.search(r"^at rest: (\S+) J", text, re.MULTILINE)
+    if done.returncode or not rest or float(rest[1]) >= REST:
+        sys.exit(f"{work}: no rest; see {work}/out")
+    spheres = read_spheres(os.path.join(work, "packing.dump"))
+    if len(spheres) % COUNT:
+        sys.exit(f"{work}: {len(spheres)} spheres are not those of {COUNT} particles")
+    height, top, fraction = measure(spheres)
+    version = subprocess.run([MSKIT, "--version"], check=True, stdout=subprocess.PIPE, encoding="utf-8").stdout.strip()
+    steps = re.findall(r"^\s*(\d+)\s+\d+\s+\S+\s*$", text, re.MULTILINE)[-1]
+    return {"method": "setcover", "n": len(spheres) // COUNT, "dice": said["scores"]["dice"],
+            "coverage": said["scores"]["coverage"],
+            "scaled_by": said["equal_volume"]["scale"], "seed": seed, "step": step, "particles": COUNT,
+            "height_envelope": round(height, 3), "height_top": round(top, 3), "fraction": round(fraction, 5),
+            "kinetic_over_m_g_d": f"{float(rest[1]) / REST * 1e-6:.2g}", "steps": steps, "cpu_seconds": round(cpu),
+            "version": version}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--spheres", type=int, default=10, help="of a candy (10)")
+    parser.add_argument("--seeds", type=int, default=20, help="packings (20)")
+    parser.add_argument("--step", type=float, default=1e-5, help="s (1e-5)")
+    parser.add_argument("--work", default="packing", help="folder of the engine's files (packing)")
+    parser.add_argument("--most", type=float, default=1e9, help="no packing is begun after so many minutes")
+    asked = parser.parse_args()
+    os.makedirs(asked.work, exist_ok=True)
+    start, rows = time.time(), []
+    if os.path.exists(TABLE):
+        with open(TABLE, newline="", encoding="utf-8") as stream:
+            rows = list(csv.DictReader(stream))
+    there = {(int(row["n"]), int(row["seed"]), float(row["step"])) for row in rows}
+    for seed in SEEDS[:asked.seeds]:
+        if (asked.spheres, seed, asked.step) in there or time.time() - start > 60 * asked.most:
+            continue
+        row = pack(asked.work, asked.spheres, seed, asked.step)
+        new = not os.path.exists(TABLE)
+        with open(TABLE, "a", newline="", encoding="utf-8") as stream:
+            writer = csv.DictWriter(stream, COLUMNS)
+            if new:
+                writer.writeheader()
+            writer.writerow(row)
+        print(", ".join(f"{name} {row[name]}" for name in ("n", "seed", "height_envelope", "height_top", "fraction",
+                                                           "cpu_seconds")), flush=True)
+
+
+if __name__ == "__main__":
+    main()
