@@ -57,6 +57,12 @@ class Refusals(PythonCase):
             if "label" not in options:
                 self.refused(mskit.Error, words, mskit.grains, labels, **options)
 
+    def test_huge(self):
+        """Views of one number, larger than any memory."""
+        self.refused(mskit.LimitError, "more than is allowed", mskit.volume, numpy.broadcast_to(1, (10**4, 10**4, 10**6)))
+        self.refused(mskit.LimitError, "more than 2147483647", mskit.mesh, numpy.broadcast_to(0.5, (10**12, 3)), FACES)
+        self.refused(mskit.LimitError, "more than 2147483647", mskit.mesh, CORNERS, numpy.broadcast_to(0, (10**12, 3)))
+
     def test_what_is_no_shape(self):
         for shape, words in [(None, "is no shape"), (3, "is no shape"), ("", "names no file"), ("a\0b.stl", "names no file"),
                              ("grain.txt", "its ending names no shape"), ("none.stl", "none.stl"), ([1, 2, 3], "is no shape"),
@@ -89,7 +95,7 @@ class Refusals(PythonCase):
                 ({"progress": 3}, "neither a function nor True"), ({"sphres": 3}, "sphres"), ({"spacing": []}, "spacing=[]"),
                 ({"spacing": numpy.nan}, "spacing"), ({"plane": (1, 2, 3)}, "four numbers"), ({"confine": 7}, "confine"),
                 ({"voxel_size": 1e-9}, "allowed; use fewer cells"), ({"max_memory": 1000}, "more than the 1e-06 GB allowed"),
-                ({"max_voxels": 10}, "the mesh" if False else "voxel"), ({"min_radius": 100}, "grain.ply: ")]:
+                ({"max_voxels": 10}, "grain.ply: 10 voxels are too few"), ({"min_radius": 100}, "grain.ply: ")]:
             with self.subTest(options=options):
                 how = {"generator": "mss", "cells": None, **options}
                 self.refused(mskit.Error, words, mskit.generate, self.path(self.grain), **how)

@@ -5,6 +5,7 @@ import gc
 import io
 import math
 import os
+import pickle
 import re
 import signal
 import subprocess
@@ -121,6 +122,35 @@ class Runs(PythonCase):
         for thread in threads:
             thread.join()
         self.assertEqual([(c.spheres == alone.spheres).all() for c in found], [True] * 4)
+
+    def test_one_shape_in_many_threads(self):
+        """With other grids, so that one thread lets go of the voxels that another works on."""
+        shape, found = mskit.read(self.path(self.grain)), {}
+
+        def run(cells):
+            clump = mskit.generate(shape, "mss", spheres=5, cells=cells)
+            found[cells] = clump.spheres.tobytes(), clump.scores["dice"]
+
+        threads = [threading.Thread(target=run, args=(cells,)) for cells in (20, 24, 28, 32)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for cells in list(found):
+            kept = found[cells]
+            run(cells)
+            self.assertEqual(found[cells], kept)
+        self.assertEqual(len(found), 4)
+
+    def test_to_another_process(self):
+        clump = mskit.correct(mskit.generate(self.path(self.grain), "mss", spheres=5, cells=20), density=7, carriers=True)
+        again = pickle.loads(pickle.dumps(clump))
+        for name in ("spheres", "masses"):
+            self.assertTrue((getattr(again, name) == getattr(clump, name)).all())
+        self.assertEqual(again.particle.mass, clump.particle.mass)
+        again.write(self.path("again.lammps"))
+        clump.write(self.path("clump.lammps"))
+        self.assertEqual(self.read("again.lammps"), self.read("clump.lammps"))
 
     def test_same_bits_at_any_number_of_threads(self):
         made = [mskit.generate(self.path(self.grain), name, spheres=12, cells=40, threads=threads).spheres.tobytes()

@@ -24,7 +24,10 @@ from ._library import ffi as _ffi
 from ._library import lib as _lib
 from ._measures import Measure, measures
 from ._methods import Generator, Option, generators
-from ._shapes import Shape, body, grains, mesh, read, volume
+from ._meshes import body, mesh
+from ._shapes import Shape
+from ._sources import read
+from ._volumes import grains, volume
 
 __version__: str = _ffi.string(_lib.ms_version()).decode()
 __all__ = [

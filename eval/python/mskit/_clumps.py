@@ -104,6 +104,10 @@ class Clump:
         part.shape, part.run = self.shape, self.run
         return part
 
+    def __reduce__(self) -> Tuple[Any, ...]:
+        """For other processes: all but the shape and the run."""
+        return _restore, (self.spheres, self.masses, self.carriers, self.particle, self.mass_report, self.stopped_by)
+
     def __repr__(self) -> str:
         return f"<mskit.Clump of {len(self)} spheres{' with masses' if self.masses is not None else ''}>"
 
@@ -114,6 +118,14 @@ class Clump:
     def write(self, path: Path, format: Optional[str] = None) -> None:
         """As `mskit.write`."""
         write(self, path, format)
+
+
+def _restore(spheres: numpy.ndarray, masses: Optional[numpy.ndarray], carriers: Optional[Clump],
+             particle: Optional[Particle], mass_report: Dict[str, Any], stopped_by: str) -> Clump:
+    clump: Clump = Clump.__new__(Clump)
+    clump._fill(spheres, masses)
+    clump.carriers, clump.particle, clump.mass_report, clump.stopped_by = carriers, particle, mass_report, stopped_by
+    return clump
 
 
 def _freeze(array: numpy.ndarray) -> numpy.ndarray:

@@ -14,7 +14,8 @@ from ._errors import ArgumentError, call, number, remark, text, whole
 from ._library import ffi, lib
 from ._measures import curve_of, scores_of
 from ._methods import DEFAULT, find_generator, generators, make_settings
-from ._shapes import Grid, Shape, as_shape, make_grid, voxels_within
+from ._shapes import Grid, Shape, make_grid, voxels_within
+from ._sources import as_shape
 
 _DEFAULT_SPHERES = 50
 _UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
@@ -234,9 +235,9 @@ def score(clump: Any, shape: Any = None, *, cells: Optional[int] = None, deq: Op
     with _threads(threads):
         target, most = _target_for(clump, shape, grid)
         c, kept = lend(clump)
-        target.count_cut = bool(cut)
-        call(lib.ms_metrics_compute, metrics, ffi.NULL, target, c, most)
-        target.count_cut = 0
+        judged = ffi.new("ms_target *", target[0])  # others may work on the same voxels now
+        judged.count_cut = bool(cut)
+        call(lib.ms_metrics_compute, metrics, ffi.NULL, judged, c, most)
         del kept
     return scores_of(metrics)
 
