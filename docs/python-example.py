@@ -1,4 +1,4 @@
-"""From a scan to templates in Python: run it whole, or cell by cell (`# %%`) as a notebook in Jupyter, VS Code or Spyder.
+"""From a scan to templates in Python: to be run whole, or cell by cell (`# %%`) in Jupyter, VS Code or Spyder.
 
     python3 docs/python-example.py
 """

@@ -2,8 +2,8 @@
 
     interface.py OUTPUT.c
 
-Each declaration is held against mskit.h by the compiler, which also fills in what `...` leaves open: fields that are not
-used here, sizes, values of enumerators. Nothing here says a second time what a table of the library says.
+Each declaration is held against mskit.h by the compiler, which also fills in what `...` leaves open: fields that are
+not used here, sizes, values of enumerators. Nothing here says a second time what a table of the library says.
 """
 import sys
 
@@ -128,7 +128,7 @@ typedef struct {
 } ms_option;
 typedef struct { const ms_option *options; ms_clump clump; ...; } ms_settings;
 typedef enum { MS_STOP_INTERRUPTED, ... } ms_stop_reason;
-typedef struct { size_t spheres; double radius; ...; } ms_stop;
+typedef struct { size_t spheres; double radius, coverage_cut; ...; } ms_stop;
 typedef struct {
     const char *name, *summary, *source;
     int nested, baseline;

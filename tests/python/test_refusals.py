@@ -57,6 +57,12 @@ class Refusals(PythonCase):
             if "label" not in options:
                 self.refused(mskit.Error, words, mskit.grains, labels, **options)
 
+    def test_volume_has_voxels_of_its_own(self):
+        ball = mskit.volume(labelled(), label=3)
+        for options in ({"cells": 20}, {"deq": 20}, {"voxel_size": 1}, {"max_voxels": 1e6}):
+            self.refused(mskit.ArgumentError, "voxels of its own", mskit.generate, ball, "mss", **options)
+            self.refused(mskit.ArgumentError, "voxels of its own", mskit.score, [(8, 8, 8, 6)], ball, **options)
+
     def test_huge(self):
         """Views of one number, larger than any memory."""
         self.refused(mskit.LimitError, "more than is allowed", mskit.volume, numpy.broadcast_to(1, (10**4, 10**4, 10**6)))

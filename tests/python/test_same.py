@@ -34,6 +34,12 @@ class Same(PythonCase):
                  "--confine --min-radius 0.2 --rule centre --cells 25 --max-voxels 1M")]:
             self.expect_same(mskit.generate(path, "mss", **options), "generate", self.grain, "-g", "mss", *flags.split())
 
+    def test_cut_cells(self):
+        clump = mskit.generate(self.path(self.grain), "setcover", until={"coverage_cut": 0.8}, cells=20)
+        self.expect_same(clump, "generate", self.grain, "-g", "setcover", "--until", "coverage_cut=0.8", "--cells", 20)
+        self.assertGreaterEqual(clump.scores["coverage_cut"], 0.8)
+        self.assertEqual(clump.stopped_by, "coverage_cut")
+
     def test_start_from_a_clump(self):
         first = mskit.generate(self.path(self.grain), "mss", spheres=6, cells=20)
         first.write(self.path("first.csv"))

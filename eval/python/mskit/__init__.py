@@ -8,7 +8,7 @@
 >>> clump.scores["dice"] < 0.1
 True
 
-Lengths are in the unit of the shape, angles in degrees, masses in kg. Errors are `mskit.Error`. docs/python.md has more.
+Lengths are in the unit of the shape, angles in degrees, masses in kg. Errors are `mskit.Error`. More: docs/python.md.
 """
 import os as _os
 

@@ -54,8 +54,8 @@ class Clump:
             raise ArgumentError("centres are not rows of three numbers, with as many radii") from None
         lost = numpy.flatnonzero(~(numpy.isfinite(spheres).all(axis=1) & (spheres[:, 3] > 0)))
         if lost.size:
-            raise ArgumentError(f"sphere {lost[0]} is x, y, z, r = {spheres[lost[0]].tolist()}: no finite numbers with a "
-                                "radius above 0")
+            raise ArgumentError(f"sphere {lost[0]} is x, y, z, r = {spheres[lost[0]].tolist()}: no finite numbers with "
+                                "a radius above 0")
         if not 1 <= len(spheres) <= lib.MS_CLUMP_MAX_SPHERES:
             raise ArgumentError(f"a clump has 1 to {lib.MS_CLUMP_MAX_SPHERES} spheres, not {len(spheres)}")
         self._fill(spheres, None if masses is None else _check_masses(masses, len(spheres)))
@@ -85,7 +85,7 @@ class Clump:
         """All measures against the shape for which it was made, on its voxels; computed when first asked for."""
         from ._generate import score
         if self._scores is None:
-            self._scores = score(self)
+            self._scores = score(self, cut=self.run is not None and self.run.cut)
         return dict(self._scores)
 
     @property
@@ -230,8 +230,8 @@ formats: Dict[str, str] = _read_formats()
 def write(clump: Any, path: Path, format: Optional[str] = None) -> None:
     """Writes a clump, each file under a temporary name that is then renamed.
 
-    format: a key of `formats`, or "html" for a page that shows it; None: by the ending of the path. Templates of engines
-    take masses (`correct`).
+    format: a key of `formats`, or "html" for a page that shows it; None: by the ending of the path. Templates of
+    engines take masses (`correct`).
     """
     clump, name = as_clump(clump), encode(path)
     if format == "html" or (format is None and name.lower().endswith(b".html")):

@@ -126,7 +126,8 @@ class Run:
         self.row = find_generator(generator)
         self.settings = make_settings(self.row, options)
         self.stop, self.seed, self.grid, self.options = stop, whole("seed", seed, 0, 2**53), grid, options
-        self.need = lib.ms_generator_need(self.row, self.settings, 0)
+        self.cut = stop.coverage_cut > 0
+        self.need = lib.ms_generator_need(self.row, self.settings, self.cut)
         self.nested = bool(lib.ms_generator_is_nested(self.row, self.settings))
 
     def record(self) -> str:
@@ -156,7 +157,8 @@ def _make_stop(spheres: Optional[int], until: Optional[Dict[str, float]], min_ra
     if until is not None and not hasattr(until, "items"):
         raise ArgumentError(f"until={until!r:.100} is no dict of measures, as {{'dice': 0.05}}")
     for measure, value in (until or {}).items():
-        call(lib.ms_stop_set, stop, str(measure).encode(errors="replace"), number("until " + str(measure), value, 0, 1e300))
+        asked = number(f"until {measure}", value, 0, 1e300)
+        call(lib.ms_stop_set, stop, str(measure).encode(errors="replace"), asked)
     if lib.ms_stop_is_none(stop):
         stop.spheres = _DEFAULT_SPHERES
     return stop
@@ -170,12 +172,12 @@ def generate(shape: Any, generator: str = DEFAULT, *, spheres: Optional[int] = N
     """Makes a clump for a shape: the same, to the last bit, as `mskit generate`.
 
     shape: a Shape, the path of a mesh or a volume, (vertices, faces), an object that has both, or a labelled array
-    [z, y, x].
+    [z, y, x], whose voxels are of size 1 (`volume` takes others).
     spheres: at most so many; 50 where nothing else is asked for. until: measures to be reached, as {"dice": 0.03}; the
     names are those of `measures`. min_radius: no smaller sphere, in the unit of the shape.
-    cells: voxels along the shortest side of a mesh's box (100), or deq: along the diameter of the ball of equal volume, or
-    voxel_size: in the unit of the shape. max_voxels: of the whole grid. rule: a voxel is inside if more than "half" of it
-    is, or its "centre". max_memory: larger grids are refused, in bytes (3/4 of the machine's).
+    cells: voxels along the shortest side of a mesh's box (100), or deq: along the diameter of the ball of equal
+    volume, or voxel_size: in the unit of the shape. max_voxels: of the whole grid. rule: a voxel is inside if more
+    than "half" of it is, or its "centre". max_memory: larger grids are refused, in bytes (3/4 of the machine's).
     threads: of OpenMP; None: all cores. progress: a function of a `Progress`, or True for a bar by tqdm; what it raises
     ends the run, and so does Ctrl-C.
 
@@ -219,7 +221,7 @@ def _target_for(clump: Clump, shape: Any, grid: Grid) -> Tuple[Any, int]:
 def score(clump: Any, shape: Any = None, *, cells: Optional[int] = None, deq: Optional[float] = None,
           voxel_size: Optional[float] = None, max_voxels: Optional[float] = None, rule: str = "half",
           max_memory: Optional[float] = None, cut: bool = False, threads: Optional[int] = None) -> Dict[str, float]:
-    """All measures of a clump against a shape; NaN where one does not apply. The keys are those of `measures`, and spheres.
+    """All measures of a clump against a shape; NaN where one does not apply. Keys: those of `measures`, and spheres.
 
     clump: a Clump, the path of a file, or rows x, y, z, r. shape: as for `generate`; None: for which it was made.
     cut: coverage_cut is counted, too, which takes as long as all else. The rest as for `generate`; nothing of it: the
@@ -248,14 +250,14 @@ def curve(clump: Any, shape: Any = None, *, cells: Optional[int] = None, deq: Op
           progress: Listener = None) -> Dict[str, numpy.ndarray]:
     """Scores of the clumps of 1, 2, ... spheres: (n,) arrays by measure, and "spheres".
 
-    Of a clump whose first k spheres are a clump, these are its own. Of others as by variational each is a run of its own,
-    by the same options, from the most spheres down; then shape and grid are those of the run. As for `score`.
+    Of a clump whose first k spheres are a clump, these are its own. Of others as by variational each is a run of its
+    own, by the same options, from the most spheres down; then shape and grid are those of the run. As for `score`.
     """
     clump = as_clump(clump)
     grid = make_grid(cells, deq, voxel_size, max_voxels, rule, max_memory)
     scores = ffi.new("ms_score[]", len(clump))
     if not clump.ordered and (shape is not None or grid != Grid()):
-        raise ArgumentError("each clump of this curve is a run of its own, on the shape and the grid of the first: give none")
+        raise ArgumentError("each clump of this curve is a run of its own, on shape and grid of the first: give none")
     with _threads(threads), _watched("curve", progress) as watch:
         target, most = _target_for(clump, shape, grid)
         c, kept = lend(clump)
@@ -281,8 +283,8 @@ def correct(clump: Any, shape: Any = None, *, density: float, unit: str = "m", s
     """The clump with masses that sum to mass, centre and inertia of the particle, as `mskit correct`.
 
     density: kg/m^3. unit: of length, "m", "mm" or "um"; or scale: metres in one. axes: of the equations, "principal" or
-    "input". least_mass, most_mass: of a sphere / that of the particle. centre_tolerance: how far the centre may be off /
-    radius of gyration. carriers: small spheres inside others, of mass and without contact, make all sums exact;
+    "input". least_mass, most_mass: of a sphere / that of the particle. centre_tolerance: how far the centre may be
+    off / radius of gyration. carriers: small spheres inside others, of mass and without contact, make all sums exact;
     carrier_depth: below the surface, in the unit of the clump.
 
     >>> clump = mskit.generate(mskit.body("grain", fineness=12), "mss", spheres=40, cells=30)

@@ -42,8 +42,9 @@ def _finish_mesh(name: str, mesh: Any, weld: float, fill_holes: int, drop_bodies
         call(lib.ms_solid_mesh, shape._solid, mesh, name=name)
     elif not allow_open:
         raise ShapeError(f"{name}: the mesh is open: {report.open_edges} edges belong to one triangle only, "
-                         f"{report.odd_edges} to an odd number; close it, fill its holes ({report.holes}, the largest of "
-                         f"{report.largest_hole} edges) with fill_holes={report.largest_hole}, or use allow_open=True")
+                         f"{report.odd_edges} to an odd number; close it, fill its holes ({report.holes}, the largest "
+                         f"of {report.largest_hole} edges) with fill_holes={report.largest_hole}, or use "
+                         "allow_open=True")
     return shape
 
 
@@ -84,9 +85,11 @@ def mesh(vertices: Any, faces: Any, *, weld: float = lib.MS_MESH_WELD, fill_hole
         raise ArgumentError(f"vertex {lost[0]} is not finite: {corners[lost[0]].tolist()}")
     lost = numpy.flatnonzero(((triangles < 0) | (triangles >= len(corners))).any(axis=1))
     if lost.size:
-        raise ArgumentError(f"face {lost[0]} is {triangles[lost[0]].tolist()}, and vertices are 0 to {len(corners) - 1}")
-    head = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(corners)}\nproperty double x\nproperty double y\n"
-            f"property double z\nelement face {len(triangles)}\nproperty list uchar uint vertex_indices\nend_header\n")
+        raise ArgumentError(f"face {lost[0]} is {triangles[lost[0]].tolist()}, "
+                            f"and vertices are 0 to {len(corners) - 1}")
+    head = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(corners)}\n"
+            f"property double x\nproperty double y\nproperty double z\nelement face {len(triangles)}\n"
+            "property list uchar uint vertex_indices\nend_header\n")
     rows = numpy.empty(len(triangles), [("n", "u1"), ("corner", "<u4", 3)])
     rows["n"], rows["corner"] = 3, triangles
     parts = [numpy.frombuffer(part, numpy.uint8) for part in

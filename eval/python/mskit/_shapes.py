@@ -48,7 +48,7 @@ def voxels_within(grid: Grid, need: Any) -> int:
 
 
 class Shape:
-    """The shape of a particle: a mesh, or one label of a volume. `mesh`, `volume`, `read`, `body` and `grains` make them."""
+    """The shape of a particle: a mesh, or a label of a volume. `mesh`, `volume`, `read`, `body`, `grains` make them."""
 
     def __init__(self, name: str, mesh: Any = None, volume: Any = None, entry: Any = None) -> None:
         self.name = name
@@ -134,7 +134,7 @@ class Shape:
 
     @property
     def inertia(self) -> numpy.ndarray:
-        """(3, 3): about the centroid, of unit density, off-diagonals -sum(x y); in the unit of the shape to the fifth."""
+        """(3, 3): about the centroid, of unit density, off-diagonals -sum(x y); unit of the shape to the fifth."""
         return numpy.array([list(row) for row in self.c_body().inertia])
 
     def c_body(self, grid: Grid = Grid()) -> Any:
@@ -162,6 +162,9 @@ class Shape:
             solid = ffi.NULL if self._solid is None else self._solid
             call(lib.ms_target_voxels_from_solid, target, self._mesh, solid, h, rule, name=self.name)
         else:
+            if grid[:4] != Grid()[:4]:
+                raise ArgumentError(f"{self.name} is a volume with voxels of its own; cells, deq, voxel_size and "
+                                    "max_voxels do not apply")
             box = [self._entry.hi[k] - self._entry.lo[k] + 2 * lib.MS_GRID_HULL for k in range(3)]
             self._check_bytes(box, lib.ms_target_box_squares(box), grid, need)
             call(lib.ms_target_voxels_from_volume, target, self._volume, self.label, name=self.name)
@@ -173,15 +176,16 @@ class Shape:
     def _remark_misfit(self, target: Any) -> None:
         misfit = lib.ms_target_misfit(target)
         if abs(misfit) >= _MISFIT:
-            remark(f"{self.name}: the voxels hold {100 * abs(misfit):.3g} % {'more' if misfit > 0 else 'less'} than the "
-                   "shape: they are too coarse for it, and measures on them are of another body; use more cells")
+            differs = f"{100 * abs(misfit):.3g} % {'more' if misfit > 0 else 'less'}"
+            remark(f"{self.name}: the voxels hold {differs} than the shape: they are "
+                   "too coarse for it, and measures on them are of another body; use more cells")
 
     def _check_bytes(self, extents: Any, squares: float, grid: Grid, need: Any) -> None:
         taken, allowed = lib.ms_target_bytes(extents, squares, need), max_bytes(grid)
         if not taken <= allowed:
-            raise LimitError(f"{self.name}: a grid of {extents[0]:.6g}x{extents[1]:.6g}x{extents[2]:.6g} voxels takes about "
-                             f"{taken / 1e9:.3g} GB, more than the {allowed / 1e9:.3g} GB allowed; use fewer cells, "
-                             "max_voxels, or raise max_memory")
+            size = "x".join(f"{extent:.6g}" for extent in extents)
+            raise LimitError(f"{self.name}: a grid of {size} voxels takes about {taken / 1e9:.3g} GB, more than the "
+                             f"{allowed / 1e9:.3g} GB allowed; use fewer cells, max_voxels, or raise max_memory")
 
     def _asked_size(self, grid: Grid) -> float:
         """The lattice constant but for max_voxels; 0 where that alone is given."""

@@ -26,8 +26,8 @@ def read(path: Path, **options: Any) -> Shape:
     of_mesh = {"weld": lib.MS_MESH_WELD, "fill_holes": 0, "drop_bodies": 0, "allow_open": False}
     taken = _take(options, of_mesh)
     if not lib.ms_mesh_read_is_mesh_path(name):
-        raise FormatError(f"{os.fsdecode(name)}: its ending names no shape; meshes are read from .stl, .obj, .ply and .off, "
-                          f"volumes from {text(lib.ms_volume_endings())}")
+        raise FormatError(f"{os.fsdecode(name)}: its ending names no shape; meshes are read from .stl, .obj, .ply and "
+                          f".off, volumes from {text(lib.ms_volume_endings())}")
     return read_mesh(name, **taken)
 
 

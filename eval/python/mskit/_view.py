@@ -102,10 +102,12 @@ def page(clump: "Clump", title: str, with_scores: bool) -> str:
     about = _table(clump.scores) if with_scores and clump.shape is not None else ""
     scenes = json.dumps([scene(clump)]).replace("<", "\\u003c")
     return (f'<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n'
-            f"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'sha256-{hashes[0]}'; "
-            f"style-src 'sha256-{hashes[1]}'; img-src data:; base-uri 'none'; form-action 'none'\">\n"
-            f'<meta name="viewport" content="width=device-width, initial-scale=1">\n<title>{html.escape(title)}</title>\n'
-            f"<style>{style}</style>\n<h1>{html.escape(title)}</h1>\n<main>\n{_read('viewer.html')}\n"
+            f"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+            f"script-src 'sha256-{hashes[0]}'; style-src 'sha256-{hashes[1]}'; img-src data:; base-uri 'none'; "
+            f"form-action 'none'\">\n"
+            f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+            f"<title>{html.escape(title)}</title>\n<style>{style}</style>\n<h1>{html.escape(title)}</h1>\n"
+            f"<main>\n{_read('viewer.html')}\n"
             f'<div id="about">\n{about}</div>\n</main>\n<script type="application/json" id="scenes">{scenes}</script>\n'
             f"<script>{script}</script>\n</html>\n")
 

@@ -16,12 +16,13 @@ from ._library import ffi, lib
 from ._shapes import Bytes, Shape
 
 Spacing = Union[float, Sequence[float]]
+Threshold = Union[None, float, str]
 
 
 class Scan:
     """A volume that is open, and its labels; freed with the object."""
 
-    def __init__(self, name: str, spacing: Optional[Spacing], origin: Sequence[float], threshold: Union[None, float, str],
+    def __init__(self, name: str, spacing: Optional[Spacing], origin: Sequence[float], threshold: Threshold,
                  connectivity: int) -> None:
         self.name = name
         self.options = ffi.new("ms_scan_options *", lib.ms_scan_defaults())
@@ -60,8 +61,8 @@ class Scan:
             raise ArgumentError(f"a volume is an array of numbers [z, y, x], not of shape {array.shape} and type "
                                 f"{array.dtype}")
         if array.nbytes > lib.ms_target_default_bytes():
-            raise LimitError(f"an array of {array.shape} takes {array.nbytes / 1e9:.3g} GB, more than is allowed; save it "
-                             "and give the path of the file, of which the boxes of grains alone are read")
+            raise LimitError(f"an array of {array.shape} takes {array.nbytes / 1e9:.3g} GB, more than is allowed; "
+                             "give the path of a file, of which the boxes of grains alone are read")
         head = io.BytesIO()
         numpy.lib.format.write_array_header_1_0(head, {"descr": numpy.lib.format.dtype_to_descr(array.dtype),
                                                        "fortran_order": False, "shape": array.shape})
@@ -104,8 +105,9 @@ def _three(name: str, value: Any, low: float) -> Sequence[float]:
     return [number(name, each, low, 1e300) for each in values]
 
 
-def open_volume(source: Any, spacing: Optional[Spacing], origin: Sequence[float], threshold: Union[None, float, str],
-          connectivity: int) -> Scan:
+def open_volume(source: Any, spacing: Optional[Spacing], origin: Sequence[float], threshold: Threshold,
+                connectivity: int) -> Scan:
+    """An array, or the file of a path."""
     if isinstance(source, (str, bytes, os.PathLike)):
         path = encode(source)
         return Scan(os.fsdecode(path), spacing, origin, threshold, connectivity).open_file(path)
@@ -113,13 +115,13 @@ def open_volume(source: Any, spacing: Optional[Spacing], origin: Sequence[float]
 
 
 def volume(array: Any, *, spacing: Optional[Spacing] = None, origin: Sequence[float] = (0, 0, 0),
-           label: Optional[int] = None, threshold: Union[None, float, str] = None, connectivity: int = 26) -> Shape:
+           label: Optional[int] = None, threshold: Threshold = None, connectivity: int = 26) -> Shape:
     """A shape from voxels.
 
-    array: labels [z, y, x], 0 outside: bools, integers, or floats that are whole numbers; with a threshold, grey values.
-    spacing: edge of a voxel, or three along the axes of the array (z, y, x); voxels that are no cubes are resampled.
-    origin: x, y, z of the centre of voxel [0, 0, 0]. label: which; None: the only one. threshold: what is above it is
-    inside, and its components are the labels; "otsu" finds one. connectivity: of components, 6, 18 or 26.
+    array: labels [z, y, x], 0 outside: bools, integers, or floats that are whole numbers; with a threshold, grey
+    values. spacing: edge of a voxel, or three along the axes of the array (z, y, x); voxels that are no cubes are
+    resampled. origin: x, y, z of the centre of voxel [0, 0, 0]. label: which; None: the only one. threshold: what is
+    above it is inside, and its components are the labels; "otsu" finds one. connectivity: of components, 6, 18 or 26.
 
     >>> import numpy
     >>> mskit.volume(numpy.ones((4, 3, 2), bool), spacing=0.5).volume
@@ -129,7 +131,7 @@ def volume(array: Any, *, spacing: Optional[Spacing] = None, origin: Sequence[fl
 
 
 def grains(source: Any, *, spacing: Optional[Spacing] = None, origin: Sequence[float] = (0, 0, 0),
-           threshold: Union[None, float, str] = None, connectivity: int = 26, min_voxels: int = 1,
+           threshold: Threshold = None, connectivity: int = 26, min_voxels: int = 1,
            border: bool = True) -> Iterator[Shape]:
     """Every grain of a labelled array [z, y, x], or of a volume's file, one after the other by label.
 
