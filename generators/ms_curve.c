@@ -74,9 +74,13 @@ static ms_status run_each(ms_score *curve, ms_clump *each, ms_error *remarks, co
         if (remarks) {
             ms_generator_keep_remarks(&one, &remarks[n - 2]);
         }
-        ms_generator_stage(run, "curve", (double)(clump->n_spheres - n) / (double)clump->n_spheres);
         if (takes_clump(generator)) {
             settings.clump = *larger;
+        }
+        const double share = (double)(clump->n_spheres - n) / (double)clump->n_spheres;
+        status = ms_generator_stage(run, "curve", share, err);
+        if (status != MS_OK) {
+            break;
         }
         status = ms_generator_run(&next, &reason, generator, &one, err);
         ms_clump_free(&last);

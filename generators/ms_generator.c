@@ -8,11 +8,11 @@
 #include "voxel/ms_cut_cells.h"
 #include "voxel/ms_raster.h"
 
-void ms_generator_stage(const ms_run *run, const char *stage, double share)
+ms_status ms_generator_stage(const ms_run *run, const char *stage, double share, ms_error *err)
 {
-    if (run->stage) {
-        run->stage(run->stage_context, stage, share);
-    }
+    return run->stage && run->stage(run->stage_context, stage, share)
+               ? ms_fail(err, MS_ERR_INTERRUPTED, "interrupted at: %s", stage)
+               : MS_OK;
 }
 
 void ms_generator_remark(const ms_run *run, const char *format, ...)

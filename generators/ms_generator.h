@@ -18,9 +18,12 @@ MS_C_BEGIN
  */
 typedef int (*ms_progress)(void *context, size_t spheres, double dice);
 
-/** Is told what a run is at, in a word or two, and how much of it all is done: from 0 to 1, NAN where that is not
- * known. The thread that called the generator calls this. */
-typedef void (*ms_stage)(void *context, const char *stage, double share);
+/**
+ * Is told what a run is at, in a word or two, and how much of it all is done: from 0 to 1, NAN where that is not known.
+ * The thread that called the generator calls this.
+ * @return nonzero: the run is to end without a clump, by MS_ERR_INTERRUPTED
+ */
+typedef int (*ms_stage)(void *context, const char *stage, double share);
 
 /** Is told in one sentence what about the input, though allowed, makes the result worse than it could be, and how to
  * mend it. */
@@ -109,8 +112,8 @@ MS_API ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const
  * borrowed while the run lasts */
 MS_API void ms_generator_keep_remarks(ms_run *run, ms_error *kept);
 
-/** For generators: tells the run's listener, if there is one, what the run is at. */
-MS_API void ms_generator_stage(const ms_run *run, const char *stage, double share);
+/** For generators: tells the run's listener, if there is one, what the run is at. @return MS_OK; MS_ERR_INTERRUPTED */
+MS_API ms_status ms_generator_stage(const ms_run *run, const char *stage, double share, ms_error *err);
 
 /** For generators: tells the run's listener, if there is one, a sentence. */
 MS_API void ms_generator_remark(const ms_run *run, const char *format, ...) MS_PRINTF(2, 3);

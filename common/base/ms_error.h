@@ -21,14 +21,15 @@
 MS_C_BEGIN
 
 /* The one list from which the codes and their texts are made. */
-#define MS_STATUS_LIST(X)                       \
-    X(MS_OK, "success")                         \
-    X(MS_ERR_ARG, "invalid argument")           \
-    X(MS_ERR_NOMEM, "out of memory")            \
-    X(MS_ERR_IO, "cannot read or write")        \
-    X(MS_ERR_FORMAT, "malformed file")          \
-    X(MS_ERR_SHAPE, "the shape cannot be used") \
-    X(MS_ERR_LIMIT, "a limit would be exceeded")
+#define MS_STATUS_LIST(X)                        \
+    X(MS_OK, "success")                          \
+    X(MS_ERR_ARG, "invalid argument")            \
+    X(MS_ERR_NOMEM, "out of memory")             \
+    X(MS_ERR_IO, "cannot read or write")         \
+    X(MS_ERR_FORMAT, "malformed file")           \
+    X(MS_ERR_SHAPE, "the shape cannot be used")  \
+    X(MS_ERR_LIMIT, "a limit would be exceeded") \
+    X(MS_ERR_INTERRUPTED, "interrupted")
 
 #define MS_STATUS_ENUM(code, text) code,
 typedef enum ms_status { MS_STATUS_LIST(MS_STATUS_ENUM) } ms_status;

@@ -182,7 +182,7 @@ void ms_progress_wipe(void)
     pthread_mutex_unlock(&terminal.lock);
 }
 
-static void note_stage(void *context, const char *stage, double share)
+static int note_stage(void *context, const char *stage, double share)
 {
     struct terminal *t = context;
     pthread_mutex_lock(&t->lock);
@@ -190,6 +190,7 @@ static void note_stage(void *context, const char *stage, double share)
     t->share = share;
     t->told = omp_get_wtime();
     pthread_mutex_unlock(&t->lock);
+    return 0;
 }
 
 void ms_progress_stage(const char *stage)

@@ -340,7 +340,10 @@ static ms_status sweep_fuzzifier(trials *t, const fcm *f, ms_error *err)
     const size_t values = given > 0 ? 1 : sizeof SWEEP / sizeof *SWEEP;
     ms_status status = MS_OK;
     for (size_t s = 0; status == MS_OK && s < values; s++) {
-        status = cluster_points(t, given > 0 ? given : SWEEP[s], s == 0, f, err);
+        status = ms_generator_stage(f->run, "clusters", (double)NAN, err);
+        if (status == MS_OK) {
+            status = cluster_points(t, given > 0 ? given : SWEEP[s], s == 0, f, err);
+        }
         if (status == MS_OK) {
             make_spheres(&t->next, (const double(*)[4])t->centre, t->n, f);
             status = judge_attempt(&t->next, f, err);
@@ -373,7 +376,6 @@ static ms_status make_clump_of(void *context, ms_clump *clump, ms_stop_reason *r
         return status;
     }
     if (t.n > 0) {
-        ms_generator_stage(f->run, "clusters", (double)NAN);
         status = sweep_fuzzifier(&t, f, err);
     }
     if (status == MS_OK) {

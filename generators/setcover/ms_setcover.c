@@ -129,11 +129,15 @@ static ms_status generate_by_setcover(ms_clump *clump, ms_stop_reason *reason, c
                                          .align = setcover_option(run, ALIGN) != 0,
                                          .later = is_coarse_to_fine(run)};
     setcover_choice choice = {0};
-    ms_generator_stage(run, "candidate spheres", (double)NAN);
-    ms_status status = ms_setcover_candidates(&choice.pool, run->target, &lattice, err);
+    ms_status status = ms_generator_stage(run, "candidate spheres", (double)NAN, err);
+    if (status == MS_OK) {
+        status = ms_setcover_candidates(&choice.pool, run->target, &lattice, err);
+    }
+    if (status == MS_OK) {
+        status = ms_generator_stage(run, "what each candidate covers", (double)NAN, err);
+    }
     if (status == MS_OK) {
         const double least = run->stop.radius / run->target->grid.h;
-        ms_generator_stage(run, "what each candidate covers", (double)NAN);
         choice.dropped = !choice.pool.start && drop_small(&choice.pool, least);
         status = by_voxels ? start_by_voxels(&choice, run, least, err) : start_by_cells(&choice, run, err);
     }

@@ -44,20 +44,20 @@ static double count_steps(const ms_variational_solver *s, double surplus)
 }
 
 /* A measure is sought by several runs, whose number is not known. */
-static void tell_share(const ms_variational_solver *s)
+static ms_status tell_share(const ms_variational_solver *s, ms_error *err)
 {
     char text[48];
     const int is_sought = ms_stop_has_measure(&s->run->stop);
     snprintf(text, sizeof text, "fit of %zu spheres", ms_variational_solver_count(s));
-    ms_generator_stage(s->run, text, is_sought ? (double)NAN : fmin(s->steps / s->planned, 1));
+    return ms_generator_stage(s->run, text, is_sought ? (double)NAN : fmin(s->steps / s->planned, 1), err);
 }
 
 static ms_status fit_spheres(ms_variational_solver *s, int steps, double from, double to, ms_error *err)
 {
     const double damping[2] = {from, to};
-    tell_share(s);
+    const ms_status status = tell_share(s, err);
     s->steps += steps;
-    return ms_surface_fit_steps(&s->fit, s->ball, s->count, steps, damping, err);
+    return status == MS_OK ? ms_surface_fit_steps(&s->fit, s->ball, s->count, steps, damping, err) : status;
 }
 
 /* |S xor U| in voxels, by their count and, where that is chance, by the exposed surface; both with the price of what of
@@ -302,8 +302,11 @@ ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
     ms_variational_solver s;
     *ball = NULL;
     *count = 0;
-    ms_generator_stage(run, "first spheres", (double)NAN);
-    ms_status status = ms_variational_solver_begin(&s, run, settings, n, err);
+    ms_status status = ms_generator_stage(run, "first spheres", (double)NAN, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    status = ms_variational_solver_begin(&s, run, settings, n, err);
     if (status == MS_OK) {
         status = run_stages(&s, err);
     }

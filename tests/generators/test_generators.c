@@ -362,21 +362,22 @@ static void spheres_that_cover_nothing_are_no_clump(void **state)
     ms_mesh_free(&mesh);
 }
 
-/* A few voxels, one voxel; a volume without a mesh. */
 /* What a listener has heard. */
 typedef struct heard {
     size_t stages, before; /* of them before the first sphere */
+    size_t most;           /* stages, after which the run is to end; 0: any number */
     int has_spheres, failed;
     double share;
 } heard;
 
-static void hear_stage(void *context, const char *stage, double share)
+static int hear_stage(void *context, const char *stage, double share)
 {
     heard *h = context;
     h->stages++;
     h->before += !h->has_spheres;
     h->failed |= stage[0] == '\0' || strlen(stage) > 47 || share < h->share || share < 0 || share > 1;
     h->share = isnan(share) ? h->share : share;
+    return h->stages == h->most;
 }
 
 static int hear_spheres(void *context, size_t spheres, double dice)
@@ -413,6 +414,35 @@ static void what_a_run_tells(void **state)
     }
 }
 
+/* At whatever stage that is; no stage follows. Those that tell none are ended by ms_progress alone. */
+static void a_stage_ends_the_run(void **state)
+{
+    const fixture *f = *state;
+    size_t ended = 0;
+    for (const ms_generator *const *g = checked; *g; g++) {
+        for (size_t most = 1; most < 100; most++) {
+            heard h = {.most = most};
+            ms_error err;
+            const ms_run run = {
+                .target = &f->rough, .stop = {.spheres = 12}, .seed = 7, .stage = hear_stage, .stage_context = &h};
+            outcome o;
+            const ms_status status = ms_generator_run(&o.clump, &o.reason, *g, &run, &err);
+            if (h.stages < most) {
+                assert_int_equal(status, MS_OK);
+                ms_clump_free(&o.clump);
+                break;
+            }
+            assert_int_equal(status, MS_ERR_INTERRUPTED);
+            assert_non_null(strstr(err.text, "interrupted at"));
+            assert_int_equal(h.stages, most);
+            assert_int_equal(o.clump.n_spheres, 0);
+            ended++;
+        }
+    }
+    assert_true(ended > 9);
+}
+
+/* A few voxels, one voxel; a volume without a mesh. */
 static void small_targets_work(void **state)
 {
     (void)state;
@@ -449,6 +479,7 @@ int main(void)
         cmocka_unit_test(nothing_asked_is_an_error),
         cmocka_unit_test(small_targets_work),
         cmocka_unit_test(what_a_run_tells),
+        cmocka_unit_test(a_stage_ends_the_run),
         cmocka_unit_test(spheres_that_cover_nothing_are_no_clump),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

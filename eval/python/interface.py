@@ -1,0 +1,214 @@
+"""Writes the C source of mskit._library: what the Python module takes of the library's public header.
+
+    interface.py OUTPUT.c
+
+Each declaration is held against mskit.h by the compiler, which also fills in what `...` leaves open: fields that are
+not used here, sizes, values of enumerators. Nothing here says a second time what a table of the library says.
+"""
+import sys
+
+from cffi import FFI
+
+DECLARATIONS = """
+typedef enum { MS_OK, MS_ERR_ARG, MS_ERR_NOMEM, MS_ERR_IO, MS_ERR_FORMAT, MS_ERR_SHAPE, MS_ERR_LIMIT,
+               MS_ERR_INTERRUPTED, ... } ms_status;
+typedef struct { char text[...]; } ms_error;
+typedef struct { uint8_t *data; size_t size; ...; } ms_bytes;
+const char *ms_version(void);
+void omp_set_num_threads(int threads);
+int omp_get_max_threads(void);
+
+/* meshes */
+static const double MS_MESH_WELD;
+typedef struct { size_t n_vertices, n_triangles; double (*vertex)[3]; uint32_t (*triangle)[3]; ...; } ms_mesh;
+typedef struct { double weld; size_t fill_holes; double drop_bodies; ...; } ms_mesh_mending;
+typedef struct {
+    size_t joined, dropped_degenerate, dropped_duplicate, flipped, filled, dropped_bodies;
+    double dropped_volume;
+    size_t open_edges, odd_edges, holes, largest_hole, shells, cavities, bodies;
+    int closed;
+    ...;
+} ms_mesh_report;
+typedef struct { double volume; double centroid[3]; double inertia[3][3]; ...; } ms_body;
+typedef struct { ms_body body; int overlapping; ...; } ms_solid;
+ms_status ms_mesh_parse(ms_mesh *mesh, ms_error *remark, const ms_bytes *bytes, const char *path, ms_error *err);
+ms_status ms_mesh_mend(ms_mesh *mesh, ms_mesh_report *report, const ms_mesh_mending *how, ms_error *err);
+void ms_mesh_box(double *lo, double *hi, const ms_mesh *mesh);
+double ms_mesh_area(const ms_mesh *mesh);
+void ms_mesh_free(ms_mesh *mesh);
+int ms_mesh_read_is_mesh_path(const char *path);
+ms_status ms_solid_mesh(ms_solid *solid, const ms_mesh *mesh, ms_error *err);
+ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err);
+void ms_file_free(ms_bytes *bytes);
+
+/* bodies to test with */
+typedef struct { const char *name; double fallback, min, max; const char *help; ...; } ms_shape_parameter;
+typedef struct { const char *name, *summary; const ms_shape_parameter *parameters; ...; } ms_shape_kind;
+extern const ms_shape_kind ms_shape_kinds[];
+const ms_shape_kind *ms_shape_find(const char *name, ms_error *err);
+ms_status ms_shape_make(ms_mesh *mesh, const ms_shape_kind *kind, const double *value, ms_error *err);
+
+/* volumes */
+typedef struct { int n[3]; double spacing; double origin[3]; int first[3]; uint32_t *label; ...; } ms_volume;
+typedef enum { MS_SCAN_LABELS, MS_SCAN_THRESHOLD, MS_SCAN_OTSU, ... } ms_scan_values;
+typedef struct { ms_scan_values values; double threshold; int connectivity; double spacing[3]; ...; } ms_scan_options;
+typedef struct { int n[3]; double spacing; double origin[3]; double threshold; ...; } ms_scan;
+typedef struct { uint32_t label; size_t voxels; int lo[3]; int hi[3]; int cut; ...; } ms_label_entry;
+typedef struct { ms_label_entry *entry; size_t count; ...; } ms_labels;
+int ms_volume_is_volume_path(const char *path);
+const char *ms_volume_endings(void);
+void ms_volume_free(ms_volume *volume);
+ms_scan_options ms_scan_defaults(void);
+ms_status ms_scan_open(ms_scan *scan, const char *path, const ms_scan_options *options, size_t max_voxels,
+                       ms_error *err);
+ms_status ms_scan_parse(ms_scan *scan, const ms_bytes *bytes, const char *path, const ms_scan_options *options,
+                        size_t max_voxels, ms_error *err);
+void ms_scan_close(ms_scan *scan);
+ms_status ms_labels_find_in_scan(ms_labels *labels, const ms_scan *scan, ms_error *err);
+const ms_label_entry *ms_labels_entry(const ms_labels *labels, uint32_t label);
+ms_status ms_labels_crop_scan(ms_volume *crop, const ms_scan *scan, const ms_label_entry *entry, ms_error *err);
+void ms_labels_free(ms_labels *labels);
+
+/* targets */
+typedef enum { MS_VOXEL_HALF, MS_VOXEL_CENTRE, ... } ms_voxel_rule;
+#define MS_GRID_HULL ...
+#define MS_GRID_MAX_EXTENT ...
+typedef struct { int n[3]; double h; double origin[3]; uint8_t *inside; ...; } ms_grid;
+typedef struct { ms_voxel_rule rule; ms_grid grid; size_t voxels; ms_body body; int count_cut; ...; } ms_target;
+typedef struct { double voxel, square; } ms_target_need;
+ms_status ms_voxelize_size(double *h, const ms_mesh *mesh, double cells, ms_error *err);
+ms_status ms_voxelize_size_within(double *h, const ms_mesh *mesh, double max_voxels, ms_error *err);
+void ms_voxelize_extents(double *n, const ms_mesh *mesh, double h);
+double ms_target_bytes(const double *n, double squares, ms_target_need need);
+double ms_target_box_squares(const double *n);
+double ms_target_default_bytes(void);
+ms_status ms_target_voxels_from_solid(ms_target *target, const ms_mesh *mesh, const ms_solid *solid, double h,
+                                      ms_voxel_rule rule, ms_error *err);
+ms_status ms_target_voxels_from_volume(ms_target *target, const ms_volume *volume, uint32_t label, ms_error *err);
+ms_status ms_target_add_distance(ms_target *target, ms_error *err);
+double ms_target_misfit(const ms_target *target);
+void ms_target_free(ms_target *target);
+
+/* clumps */
+#define MS_CLUMP_MAX_SPHERES ...
+typedef struct { double centre[3]; double radius; } ms_sphere;
+typedef struct { size_t n_spheres, n_carriers; ms_sphere *sphere; double *mass; ...; } ms_clump;
+ms_status ms_clump_add(ms_clump *clump, const ms_sphere *sphere, ms_error *err);
+void ms_clump_free(ms_clump *clump);
+
+/* measures */
+typedef enum { MS_MEASURE_KIND_COUNT, ... } ms_measure_kind;
+typedef struct { ...; } ms_score;
+typedef struct { size_t spheres; ...; } ms_metrics;
+typedef struct {
+    const char *name;
+    ms_measure_kind kind;
+    const char *unit, *label, *source, *help;
+    double (*of_score)(const ms_score *score);
+    double (*of_metrics)(const ms_metrics *metrics);
+    ...;
+} ms_measure;
+extern const ms_measure ms_measures[];
+int ms_measure_is_of_score(const ms_measure *measure);
+ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
+                             size_t max_voxels, ms_error *err);
+ms_status ms_metrics_score_clump(ms_score *score, ms_score *curve, const ms_target *target, const ms_clump *clump,
+                                 size_t max_voxels, ms_error *err);
+
+/* methods */
+typedef enum {
+    MS_OPTION_FLAG, MS_OPTION_INTEGER, MS_OPTION_REAL, MS_OPTION_CHOICE, MS_OPTION_PLANE, MS_OPTION_CLUMP, ...
+} ms_option_type;
+typedef struct {
+    const char *name;
+    ms_option_type type;
+    double fallback, min, max;
+    const char *choices, *unit, *help;
+    ...;
+} ms_option;
+typedef struct { const ms_option *options; ms_clump clump; ...; } ms_settings;
+typedef enum { MS_STOP_INTERRUPTED, ... } ms_stop_reason;
+typedef struct { size_t spheres; double radius, coverage_cut; ...; } ms_stop;
+typedef struct {
+    const char *name, *summary, *source;
+    int nested, baseline;
+    const ms_option *options;
+    ...;
+} ms_generator;
+typedef struct {
+    const ms_target *target;
+    ms_stop stop;
+    const ms_settings *settings;
+    uint64_t seed;
+    int (*progress)(void *context, size_t spheres, double dice);
+    void *progress_context;
+    int (*stage)(void *context, const char *stage, double share);
+    void *stage_context;
+    void (*remark)(void *context, const char *sentence);
+    void *remark_context;
+    ...;
+} ms_run;
+static const char *const MS_GENERATOR_DEFAULT;
+extern const ms_generator *const ms_generators[];
+const ms_generator *ms_generator_find(const char *name, ms_error *err);
+int ms_generator_is_nested(const ms_generator *generator, const ms_settings *settings);
+ms_target_need ms_generator_need(const ms_generator *generator, const ms_settings *settings, int cut);
+ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator, const ms_run *run,
+                           ms_error *err);
+ms_status ms_option_settings_init(ms_settings *settings, const ms_option *options, ms_error *err);
+ms_status ms_option_settings_set(ms_settings *settings, const char *name, const char *text, ms_error *err);
+void ms_option_settings_free(ms_settings *settings);
+int ms_stop_is_none(const ms_stop *stop);
+ms_status ms_stop_set(ms_stop *stop, const char *measure, double value, ms_error *err);
+const char *ms_stop_name(ms_stop_reason reason);
+ms_status ms_curve_compute(ms_score *curve, const ms_clump *clump, const ms_generator *generator, const ms_run *run,
+                           size_t max_voxels, ms_error *err);
+extern "Python" {
+    int tell_progress(void *context, size_t spheres, double dice);
+    int tell_stage(void *context, const char *stage, double share);
+    void tell_remark(void *context, const char *sentence);
+}
+
+/* masses */
+typedef struct { double scale, density, mass; double centre[3]; double inertia[3][3]; ...; } ms_particle;
+typedef struct { int input_frame; double least, most, centre_tolerance; ...; } ms_density_options;
+typedef struct { ms_density_options masses; double depth; ...; } ms_carriers_options;
+typedef struct {
+    double centre, epsilon, products;
+    int optimal;
+    double least_mass, most_mass, error_mass, error_centre;
+    double error_moment[3];
+    double error_product[3];
+    ...;
+} ms_density_report;
+typedef struct { double scale, volume, error, mean_width; ...; } ms_equal_volume;
+ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, double density, double scale,
+                                ms_error *err);
+ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_particle *particle,
+                           const ms_density_options *options, ms_error *err);
+ms_status ms_carriers_solve(ms_clump *clump, ms_density_report *report, const ms_particle *particle,
+                            const ms_carriers_options *options, ms_error *err);
+ms_status ms_equal_volume_scale(ms_clump *clump, ms_equal_volume *done, const ms_body *body, ms_error *err);
+
+/* files */
+#define MS_WRITE_REMARK ...
+typedef struct {
+    const ms_clump *clump;
+    const ms_particle *particle;
+    const char *record;
+    ...;
+} ms_content;
+typedef struct { const char *name, *ending, *summary; ...; } ms_format;
+extern const ms_format ms_formats[];
+const ms_format *ms_write_format_find(const char *name, ms_error *err);
+const ms_format *ms_write_format_of_path(const char *path, ms_error *err);
+ms_status ms_write_remark(char *text, const ms_content *content, const ms_format *format, ms_error *err);
+ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err);
+ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path, ms_error *err);
+"""
+
+if __name__ == "__main__":
+    library = FFI()
+    library.cdef(DECLARATIONS)
+    library.set_source("mskit._library", '#include <omp.h>\n#include "mskit.h"\n')
+    library.emit_c_code(sys.argv[1])

@@ -1,0 +1,156 @@
+"""Bad input is an exception with one sentence that says what is wrong, never a crash and never a result."""
+import os
+import unittest
+
+import mskit
+import numpy
+from support_python import PythonCase, box_obj, labelled
+
+CORNERS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+FACES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+
+
+class Refusals(PythonCase):
+    def test_vertices(self):
+        for vertices, words in [
+                ([], "vertices are not rows of three numbers"), (numpy.zeros((4, 2)), "shape (4, 2)"),
+                (numpy.zeros(3), "shape (3,)"), (numpy.zeros((0, 3)), "shape (0, 3)"), ([[1, 2, 3], [1]], "vertices are not"),
+                (numpy.array(CORNERS, complex), "complex128"), (numpy.array(CORNERS, object), "object"),
+                (numpy.array(CORNERS).astype(str), "<U"), (None, "vertices are not"), ("abc", "vertices are not"),
+                ([(0, 0, 0), (1, 0, float("nan")), (0, 1, 0), (0, 0, 1)], "vertex 1 is not finite: [1.0, 0.0, nan]"),
+                ([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, -numpy.inf)], "vertex 3 is not finite"),
+                (numpy.array(CORNERS) * 1e200, "choose another unit"), (numpy.array(CORNERS) * 1e-200, "choose another unit"),
+                (numpy.array(CORNERS) * numpy.array([1, 1, 0]), "")]:
+            self.refused(mskit.Error, words, mskit.mesh, vertices, FACES)
+
+    def test_faces(self):
+        for faces, words in [
+                ([], "faces are not rows of three whole numbers"), (numpy.array(FACES, float), "float64"),
+                (numpy.array(FACES)[:, :2], "shape (4, 2)"), (numpy.zeros((0, 3), int), "shape (0, 3)"),
+                ([(0, 2, 1), (0, 1, 4)], "face 1 is [0, 1, 4], and vertices are 0 to 3"),
+                ([(0, 2, -1)], "face 0 is [0, 2, -1]"), ([(0, 2, 2**40)], "face 0 is"), ([(0, 1, 1)], "the mesh: "),
+                (FACES[1:], "the mesh is open: 3 edges belong to one triangle only")]:
+            self.refused(mskit.Error, words, mskit.mesh, CORNERS, faces)
+
+    def test_open_mesh_is_taken_or_mended(self):
+        self.refused(mskit.ShapeError, "fill_holes=3", mskit.mesh, CORNERS, FACES[1:])
+        self.assertTrue(mskit.mesh(CORNERS, FACES[1:], fill_holes=3).closed)
+        taken = mskit.mesh(CORNERS, FACES[1:], allow_open=True)
+        self.assertFalse(taken.closed)
+        self.refused(mskit.ArgumentError, "deq needs", mskit.generate, taken, "mss", deq=20)
+        self.assertGreater(len(mskit.generate(taken, "mss", spheres=2, cells=20)), 0)
+
+    def test_volumes(self):
+        labels = labelled()
+        for array, words in [
+                (numpy.zeros((0, 3, 3), int), "shape (0, 3, 3)"), (numpy.zeros((3, 3)), "shape (3, 3)"),
+                (labels.astype(complex), "complex"), (labels.astype(object), "object"), (labels.astype(float) / 2, "array.npy"),
+                (labels * numpy.nan, "array.npy"), (-labels.astype(int), "array.npy"), (labels * 0, "array.npy"),
+                (labels.astype(numpy.float16), "array.npy"), (labels, "several labels (8 among them)"), (5, "shape ()")]:
+            self.refused(mskit.Error, words, mskit.volume, array)
+        for options, words in [
+                ({"label": 4}, "no voxel of label 4"), ({"label": -1}, "label=-1"), ({"label": 1.5}, "whole number"),
+                ({"spacing": 0}, "spacing=0 "), ({"spacing": (1, 2)}, "neither one number nor three"),
+                ({"spacing": "wide"}, "spacing="), ({"spacing": numpy.nan}, "spacing=nan"), ({"origin": None}, "origin=None"),
+                ({"connectivity": 7}, "none of 6, 18 and 26"), ({"threshold": "mean"}, "threshold='mean'")]:
+            self.refused(mskit.Error, words, mskit.volume, labels, **options)
+            if "label" not in options:
+                self.refused(mskit.Error, words, mskit.grains, labels, **options)
+
+    def test_volume_has_voxels_of_its_own(self):
+        ball = mskit.volume(labelled(), label=3)
+        for options in ({"cells": 20}, {"deq": 20}, {"voxel_size": 1}, {"max_voxels": 1e6}):
+            self.refused(mskit.ArgumentError, "voxels of its own", mskit.generate, ball, "mss", **options)
+            self.refused(mskit.ArgumentError, "voxels of its own", mskit.score, [(8, 8, 8, 6)], ball, **options)
+
+    def test_huge(self):
+        """Views of one number, larger than any memory."""
+        self.refused(mskit.LimitError, "more than is allowed", mskit.volume, numpy.broadcast_to(1, (10**4, 10**4, 10**6)))
+        self.refused(mskit.LimitError, "more than 2147483647", mskit.mesh, numpy.broadcast_to(0.5, (10**12, 3)), FACES)
+        self.refused(mskit.LimitError, "more than 2147483647", mskit.mesh, CORNERS, numpy.broadcast_to(0, (10**12, 3)))
+
+    def test_what_is_no_shape(self):
+        for shape, words in [(None, "is no shape"), (3, "is no shape"), ("", "names no file"), ("a\0b.stl", "names no file"),
+                             ("grain.txt", "its ending names no shape"), ("none.stl", "none.stl"), ([1, 2, 3], "is no shape"),
+                             (numpy.zeros((2, 2)), "")]:
+            self.refused(mskit.Error, words, mskit.generate, shape)
+        self.refused(mskit.FileError, "none.ply", mskit.read, self.path("none.ply"))
+        self.refused(OSError, "none.ply", mskit.read, self.path("none.ply"))
+        self.refused(mskit.ArgumentError, "'label' is no option", mskit.read, self.path(self.grain), label=3)
+        self.write("bad.obj", box_obj((0, 0, 0), (1, 1, 1)) + "f 1 2 99\n")
+        said = self.mskit("info", "bad.obj", code=1).err
+        self.assertIn(self.refused(mskit.FormatError, "99", mskit.read, self.path("bad.obj")).split(": ", 1)[1], said)
+
+    def test_sentences_are_those_of_the_program(self):
+        for options, flags in [({"spacing": 5000}, "--spacing 5000"), ({"variant": "bets"}, "--variant bets"),
+                               ({"until": {"dcie": 0.1}}, "--until dcie=0.1"), ({"plane": (0, 0, 0, 1)}, "--plane 0,0,0,1")]:
+            said = self.mskit("generate", self.grain, "-g", "mss", *flags.replace("0,1", "0,1").split(), code=2).err
+            sentence = self.refused(mskit.ArgumentError, "", mskit.generate, self.path(self.grain), "mss", **options)
+            self.assertIn(sentence.replace(".0", ""), said)
+
+    def test_runs(self):
+        for options, words in [
+                ({"generator": "mms"}, "mms"), ({"generator": None}, "is not the name of a generator"),
+                ({"generator": "é"}, "é"), ({"spheres": 0}, "spheres=0 is not a number from 1 to 65534"),
+                ({"spheres": 2.5}, "spheres=2.5 is not a whole number"), ({"spheres": 10**30}, "spheres=1"),
+                ({"spheres": "10"}, "spheres='10'"), ({"until": 3}, "until=3"), ({"until": {"dice": -1}}, "dice"),
+                ({"until": {"dice": 2}}, "dice"), ({"min_radius": 0}, "min_radius=0"), ({"cells": 0}, "cells=0"),
+                ({"cells": 40000}, "cells=40000"), ({"cells": 20, "deq": 20}, "exclude one another"),
+                ({"voxel_size": float("nan")}, "voxel_size=nan"), ({"rule": "third"}, "neither 'half' nor 'centre'"),
+                ({"seed": -1}, "seed=-1"), ({"threads": 0}, "threads=0"), ({"threads": 5000}, "threads=5000"),
+                ({"progress": 3}, "neither a function nor True"), ({"sphres": 3}, "sphres"), ({"spacing": []}, "spacing=[]"),
+                ({"spacing": numpy.nan}, "spacing"), ({"plane": (1, 2, 3)}, "four numbers"), ({"confine": 7}, "confine"),
+                ({"voxel_size": 1e-9}, "allowed; use fewer cells"), ({"max_memory": 1000}, "more than the 1e-06 GB allowed"),
+                ({"max_voxels": 10}, "grain.ply: 10 voxels are too few"), ({"min_radius": 100}, "grain.ply: ")]:
+            with self.subTest(options=options):
+                how = {"generator": "mss", "cells": None, **options}
+                self.refused(mskit.Error, words, mskit.generate, self.path(self.grain), **how)
+
+    def test_clumps(self):
+        for centres, radii in [([], []), ([(0, 0, 0)], [0]), ([(0, 0, 0)], [-1]), ([(0, 0, 0)], [float("nan")]),
+                               ([(0, 0, float("inf"))], [1]), ([(0, 0)], [1]), ([(0, 0, 0)], [1, 2]), ("ab", [1]), (None, None),
+                               (numpy.zeros((70000, 3)), numpy.ones(70000))]:
+            self.refused(mskit.ArgumentError, "", mskit.Clump, centres, radii)
+        for masses in ([1, 2], [0], [float("nan")], "x"):
+            self.refused(mskit.ArgumentError, "masses are not 1 finite", mskit.Clump, [(0, 0, 0)], [1], masses)
+        pair = mskit.Clump([(0, 0, 0), (1, 0, 0)], [1, 1])
+        self.refused(mskit.ArgumentError, "takes a slice", pair.__getitem__, 0)
+        self.refused(mskit.ArgumentError, "give the shape", lambda: pair.scores)
+        self.refused(mskit.ArgumentError, "give the shape", mskit.correct, pair, density=1)
+        self.refused(mskit.ArgumentError, "is no clump", mskit.score, 3, self.path(self.grain))
+        for value in (pair.centres, pair.radii, pair.spheres):
+            with self.assertRaises(ValueError):
+                value[...] = 0
+
+    def test_masses(self):
+        clump = mskit.generate(self.path(self.grain), "mss", spheres=3, cells=12)
+        for options, words in [({"density": 0}, "density=0"), ({"density": float("inf")}, "density=inf"),
+                               ({"density": 1, "unit": "ft"}, "unit='ft' is none of m, mm, um"),
+                               ({"density": 1, "scale": -1}, "scale=-1"), ({"density": 1, "axes": "x"}, "axes='x'"),
+                               ({"density": 1, "least_mass": 0.9}, ""), ({"density": 1, "carrier_depth": 1}, "carriers=True"),
+                               ({"density": 1e300, "scale": 1e100}, "")]:
+            self.refused(mskit.Error, words, mskit.correct, clump, **options)
+
+    def test_files(self):
+        clump = mskit.generate(self.path(self.grain), "mss", spheres=3, cells=12)
+        for path, words in [("c.nothing", "no clump format 'nothing'"), ("none/c.csv", "none"), ("c.lammps", "mass"), ("none/c.html", "none")]:
+            self.refused(mskit.Error, words, clump.write, self.path(path))
+        self.refused(mskit.ArgumentError, "names no file", clump.write, "")
+        self.refused(mskit.ArgumentError, "is no path", clump.write, 3)
+        self.refused(mskit.ArgumentError, "cvs", clump.write, self.path("c"), "cvs")
+        self.refused(mskit.FileError, "none.csv", mskit.read_clump, self.path("none.csv"))
+        self.assertEqual(self.files(), [self.grain], "a refusal leaves no file")
+
+    def test_bodies(self):
+        for kind, parameters, words in [("bal", {}, "ball"), ("ball", {"x": 1}, "no parameter 'x', but r, fineness"),
+                                        ("ball", {"r": -1}, "r"), ("ball", {"r": "a"}, "r='a'"), (3, {}, "3")]:
+            self.refused(mskit.ArgumentError, words, mskit.body, kind, **parameters)
+
+    def test_remarks_are_warnings(self):
+        with self.assertWarnsRegex(mskit.Remark, "too coarse") as caught:
+            mskit.generate(self.path(self.grain), "mss", spheres=2, cells=4)
+        self.assertEqual(os.path.basename(caught.filename), "test_refusals.py")
+
+
+if __name__ == "__main__":
+    unittest.main()
