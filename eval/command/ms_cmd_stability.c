@@ -24,7 +24,8 @@ static const ms_flag FLAGS[] = {
     {"until-dice", 0, "V", "also seek the number of spheres with which the method meets D = V, up to 10 N"},
     MS_MIN_RADIUS_FLAG,
     {"perturb", 0, "KIND",
-     "axes, rotation, shift, resolution, noise, refine, decimate, seed, order or threads; may be repeated (all)"},
+     "axes, rotation, shift, lattice, resolution, noise, refine, decimate, seed, order or threads; may be repeated "
+     "(all)"},
     {"runs", 0, "R", "runs of each perturbation (5)"},
     {"seed", 0, "S", "seed of the methods and of the perturbations (1)"},
     {"output", 'o', "FILE", "a row for each run as CSV, written as they come; - for standard output (stability.csv)"},

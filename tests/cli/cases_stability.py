@@ -8,7 +8,7 @@ import shutil
 
 from support import Case, box_obj, npy, read_obj
 
-KINDS = ("axes", "rotation", "shift", "resolution", "noise", "refine", "decimate", "seed", "order", "threads")
+KINDS = ("axes", "rotation", "shift", "lattice", "resolution", "noise", "refine", "decimate", "seed", "order", "threads")
 
 
 def rows_of(text):
@@ -229,7 +229,7 @@ class Stability(Case):
         rows = self.rows("-g", "mss", "-n", "1", "--perturb", "threads", "--runs", "1")
         names = [row["shape"] for row in rows if row["perturbation"] == "none"]
         self.assertEqual(names, ["plate", "needle", "cube", "tetrahedron", "shell", "torus", "dumbbell", "cone",
-                                 "rough", "speck", "open"])
+                                 "rough", "speck", "open", "bowl", "limbs", "cavity", "corners", "pair"])
         self.assertEqual({row["status"] for row in rows}, {"ok"})
 
     def test_charts(self):
