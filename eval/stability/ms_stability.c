@@ -98,8 +98,19 @@ static ms_status run_method(ms_stability_run *run, ms_error *remarks, const ms_t
     if (status == MS_OK && run->until_dice > 0) {
         status = seek_number(run, job, err);
     }
-    ms_clump_free(&clump);
+    if (status == MS_OK && s->keep) {
+        run->clump = clump;
+    } else {
+        ms_clump_free(&clump);
+    }
     return status;
+}
+
+void ms_stability_free(ms_stability_run *run, size_t count)
+{
+    for (size_t r = 0; r < count; r++) {
+        ms_clump_free(&run[r].clump);
+    }
 }
 
 void ms_stability_try(ms_stability_run *run, const ms_stability *s)
