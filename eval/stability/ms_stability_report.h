@@ -16,8 +16,8 @@ typedef struct ms_stability_report {
 } ms_stability_report;
 
 /**
- * Writes the page. Of each shape and method two clumps stand on it: that of the unchanged shape, and that of the largest
- * D. A clump of a run before, which --resume took from its row, is not known.
+ * Writes the page. Of each shape and method two clumps stand on it: that of the unchanged shape, and that of the
+ * largest D. A clump of a run before, which --resume took from its row, is not known.
  *
  * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM; as ms_stability_read_shape, ms_view_scene_write
  */
