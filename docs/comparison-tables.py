@@ -97,8 +97,9 @@ def told(rows):
     kinds = {key: ", ".join(dict.fromkeys(row[key] for row in rows if row["seconds_generate"]))
              for key in ("version", "machine", "threads", "repeats", "beside")}
     beside = "" if kinds["beside"] == "0" else ", with others beside them"
+    runs = "single runs" if kinds["repeats"] == "1" else f"medians of {kinds['repeats']} runs"
     print(f"mskit {kinds['version']}, {rows[0]['cells']} cells, {len(rows)} rows; times on {kinds['machine']} by "
-          f"{kinds['threads']} threads, medians of {kinds['repeats']} runs{beside}.")
+          f"{kinds['threads']} threads, {runs}{beside}.")
 
 
 def main():

@@ -101,7 +101,7 @@ static int is_free(const label_box *box, const ms_chart_frame *f, const ms_chart
     }
     for (size_t k = 0; k < count; k++) {
         const label_box other = {place[k].x * f->width, place[k].y * f->height,
-                                 HALF_LETTER * (double)strlen(place[k].text), HALF_HEIGHT};
+                                 HALF_LETTER * (double)strlen(place[k].text) + ROOM, HALF_HEIGHT};
         if (do_boxes_meet(box, &other)) {
             return 0;
         }
@@ -134,6 +134,19 @@ static int find_place(ms_chart_place *found, const ms_chart_frame *f, const ms_c
     return 0;
 }
 
+/* Whether a point before it in the series, as good as at the same place, has the same label. */
+static int is_labelled(const ms_chart_frame *f, const ms_chart *chart, const ms_chart_series *series, size_t p)
+{
+    double at[2], before[2];
+    if (p == 0 || strcmp(series->point[p].label, series->point[p - 1].label) != 0 ||
+        !ms_chart_parts_has_place(chart, series, &series->point[p - 1])) {
+        return 0;
+    }
+    find_pixel(at, f, chart, series->point[p].x, ms_chart_parts_height(chart, &series->point[p]));
+    find_pixel(before, f, chart, series->point[p - 1].x, ms_chart_parts_height(chart, &series->point[p - 1]));
+    return hypot(at[0] - before[0], at[1] - before[1]) < 2 * POINT;
+}
+
 size_t ms_chart_labels_place(ms_chart_place *place, const ms_chart_frame *frame, const ms_chart *chart)
 {
     size_t count = 0;
@@ -142,7 +155,8 @@ size_t ms_chart_labels_place(ms_chart_place *place, const ms_chart_frame *frame,
         for (size_t p = 0; p < series->count; p++) {
             const ms_chart_point *point = &series->point[p];
             double at[2];
-            if (point->label[0] && series->style != MS_CHART_LEVEL && ms_chart_parts_has_place(chart, series, point)) {
+            if (point->label[0] && series->style != MS_CHART_LEVEL && ms_chart_parts_has_place(chart, series, point) &&
+                !is_labelled(frame, chart, series, p)) {
                 place[count] = (ms_chart_place){.series = s, .text = point->label};
                 find_pixel(at, frame, chart, point->x, ms_chart_parts_height(chart, point));
                 count += (size_t)find_place(&place[count], frame, chart, at, place, count);

@@ -6,7 +6,7 @@
 #include "ms_chart_parts.h"
 
 /* Pixels around the box, so that it is known where in it things stand. */
-enum { LEFT = 96, RIGHT = 24, TOP = 44, NOTE = 18, BOTTOM = 68, LEGEND_ROW = 20 };
+enum { LEFT = 120, RIGHT = 24, TOP = 44, NOTE = 18, BOTTOM = 68, LEGEND_ROW = 20 };
 
 /* The legend stands below the axis, in as many columns as its names leave room for. */
 static int count_legend_rows(const ms_chart *chart)

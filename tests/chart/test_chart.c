@@ -195,6 +195,21 @@ static void labels_lie_on_nothing(void **state)
     }
 }
 
+/* Where a run of more spheres gives the same clump, one label is enough. */
+static void one_label_of_two_points_in_a_place(void **state)
+{
+    (void)state;
+    ms_chart_place place[3];
+    ms_chart_point point[] = {
+        {.x = 1, .y = 1, .label = "53"}, {.x = 1.01, .y = 1, .label = "53"}, {.x = 5, .y = 1, .label = "53"}};
+    const ms_chart_series series = {.name = "s", .style = MS_CHART_CURVE, .count = 3, .point = point};
+    const ms_chart chart = {.n_series = 1, .series = &series};
+    const ms_chart_frame frame = {.x = {0, 6}, .y = {0, 2}, .width = 680, .height = 480};
+    assert_int_equal(ms_chart_labels_place(place, &frame, &chart), 2);
+    strcpy(point[1].label, "54");
+    assert_int_equal(ms_chart_labels_place(place, &frame, &chart), 3);
+}
+
 /* One point, or one of each curve by x, is told in words; with a front, or of points alone, two are a chart. */
 static void a_point_is_no_chart(void **state)
 {
@@ -291,6 +306,7 @@ int main(void)
         cmocka_unit_test(what_the_files_hold),
         cmocka_unit_test(a_band_has_two_edges),
         cmocka_unit_test(labels_lie_on_nothing),
+        cmocka_unit_test(one_label_of_two_points_in_a_place),
         cmocka_unit_test(a_point_is_no_chart),
         cmocka_unit_test(bars_and_levels),
         cmocka_unit_test(looks_belong_to_what_they_are_of),
