@@ -13,7 +13,7 @@ enum { MS_CHART_LOOK_OTHER = -1 };
 /** From 1 to the number of points less 1: which variant a text goes with, as the options of a method. */
 int ms_chart_look_variant(const char *text);
 
-/** The colour, as gnuplot takes it: a hash and six hexadecimal digits. @param place of the series in its chart, from 0 */
+/** The colour: a hash and six hexadecimal digits. @param place of the series in its chart, from 0 */
 const char *ms_chart_look_colour(ms_chart_look look, int place);
 
 /** Gnuplot's type of points. */
