@@ -139,7 +139,7 @@ def plot(folder, sizes):
         return
     commands = ["set datafile separator ','", "set terminal svg size 900,440 background rgb 'white'",
                 "set output 'tablet-impact.svg'", "set multiplot layout 1,2", "set xlabel 'impact angle, degrees'",
-                "set key outside below maxcols 2"]
+                "set key outside below maxcols 2", "set xrange [-3:93]"]
     for title, column in (("velocity after / before", 0), ("spin after * band radius / velocity before", 1)):
         curves = [f"'tablet-impact.csv' skip 1 using 1:{2 + column} with lines title 'e = 0.6'",
                   f"'tablet-impact.csv' skip 1 using 1:{4 + column} with lines title 'e of the damping'"]
