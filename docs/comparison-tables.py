@@ -92,9 +92,20 @@ def faults(rows):
         print(f"| {method} | {len(own)} | {len(own) - len(done)} | {fewer} | {pieces} | {unmet} |")
 
 
+def told(rows):
+    """What the figures are of."""
+    kinds = {key: ", ".join(dict.fromkeys(row[key] for row in rows if row["seconds_generate"]))
+             for key in ("version", "machine", "threads", "repeats", "beside")}
+    beside = "" if kinds["beside"] == "0" else ", with others beside them"
+    runs = "single runs" if kinds["repeats"] == "1" else f"medians of {kinds['repeats']} runs"
+    print(f"mskit {kinds['version']}, {rows[0]['cells']} cells, {len(rows)} rows; times on {kinds['machine']} by "
+          f"{kinds['threads']} threads, {runs}{beside}.")
+
+
 def main():
     numbers = sys.argv[2:] or ["10", "30", "100"]
     rows = read(sys.argv[1])
+    told(rows)
     table(rows, "Mismatch D; * fewer spheres than asked for", numbers, mismatch)
     table(rows, "Time of the method, s", numbers, seconds)
     table(rows, "Error of the principal moments, %: of the union / with corrected masses (none: no masses meet the "

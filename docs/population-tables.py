@@ -5,24 +5,19 @@
 
 What stands between <!-- NAME --> and <!-- end --> is replaced; charts are copied into a folder beside the document.
 """
-import csv
 import json
 import os
-import re
 import shutil
 import sys
+
+import tables
+from tables import markdown
 
 RESULTS, DOCUMENT = sys.argv[1:]
 
 
 def read(*names):
-    with open(os.path.join(RESULTS, *names), newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
-
-
-def markdown(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+    return tables.read(os.path.join(RESULTS, *names))
 
 
 def by_number(run, head, quantity, text):
@@ -97,23 +92,13 @@ def charts():
 
 
 def main():
-    parts = {
+    tables.fill(DOCUMENT, {
         "told": told(), "charts": charts(), "dice": by_number("methods", "method", "dice", dice),
         "baselines": by_number("baselines", "baseline", "dice", dice),
         "times": by_number("times", "method", "time_normalised", number),
         "seconds": by_number("times", "method", "seconds_generate", number),
         "best": best("methods", "dice"), "libraries": libraries(),
-    }
-    with open(DOCUMENT, encoding="utf-8") as stream:
-        text = stream.read()
-    for name, part in parts.items():
-        pattern = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.DOTALL)
-        if not pattern.search(text):
-            sys.exit(f"{DOCUMENT} has no mark <!-- {name} -->")
-        text = pattern.sub(lambda found, part=part: found[1] + part + "\n" + found[2], text)
-    with open(DOCUMENT, "w", encoding="utf-8") as stream:
-        stream.write(text)
-    print(f"tables: {DOCUMENT}")
+    })
 
 
 if __name__ == "__main__":

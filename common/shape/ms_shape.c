@@ -19,6 +19,11 @@
     }
 #define TURN "segments along a quarter turn"
 #define EDGE "segments along the longest edge"
+/* A cuboid's quarters are mirror images of each other but where it is its corners alone. */
+#define BOX_FINENESS(fallback)                                                                 \
+    {                                                                                          \
+        "fineness", fallback, 1, 512, EDGE ", rounded up to an even number; 1: the corners", 1 \
+    }
 #define END                    \
     {                          \
         NULL, 0, 0, 0, NULL, 0 \
@@ -43,11 +48,15 @@ static const ms_shape_parameter cone[] = {LENGTH("r", 1, "radius of the base"), 
 static const ms_shape_parameter dumbbell[] = {LENGTH("R", 1, "radius of the balls"),
                                               LENGTH("distance", 3, "between the balls' centres, along x"),
                                               LENGTH("neck", 0.4, "radius of the neck"), FINENESS(34, TURN), END};
-static const ms_shape_parameter cube[] = {LENGTH("a", 1, "edge"), FINENESS(16, EDGE), END};
+static const ms_shape_parameter bowl[] = {LENGTH("R", 1, "outer radius"), LENGTH("wall", 0.1, "thickness of the wall"),
+                                          FINENESS(48, TURN), END};
+static const ms_shape_parameter cross[] = {LENGTH("length", 10, "of each bar"),
+                                           LENGTH("width", 1, "of each bar, which is square"), FINENESS(40, EDGE), END};
+static const ms_shape_parameter cube[] = {LENGTH("a", 1, "edge"), BOX_FINENESS(16), END};
 static const ms_shape_parameter box[] = {LENGTH("a", 3, "edge along x"), LENGTH("b", 2, "edge along y"),
-                                         LENGTH("c", 1, "edge along z"), FINENESS(24, EDGE), END};
+                                         LENGTH("c", 1, "edge along z"), BOX_FINENESS(24), END};
 static const ms_shape_parameter plate[] = {LENGTH("a", 5, "edge along x"), LENGTH("b", 5, "edge along y"),
-                                           LENGTH("c", 0.1, "thickness, along z"), FINENESS(50, EDGE), END};
+                                           LENGTH("c", 0.1, "thickness, along z"), BOX_FINENESS(50), END};
 static const ms_shape_parameter tetrahedron[] = {LENGTH("a", 1, "edge"), FINENESS(16, EDGE), END};
 static const ms_shape_parameter octahedron[] = {LENGTH("a", 1, "from the centre to the vertices"), FINENESS(16, EDGE),
                                                 END};
@@ -74,6 +83,8 @@ const ms_shape_kind ms_shape_kinds[] = {
     {"cone", "cone about z", cone, ms_shape_cone, ms_shape_cone_volume},
     {"dumbbell", "two balls joined by a cylindrical neck, along x", dumbbell, ms_shape_dumbbell,
      ms_shape_dumbbell_volume},
+    {"bowl", "half a hollow ball, about z, its opening upward", bowl, ms_shape_bowl, ms_shape_bowl_volume},
+    {"cross", "three square bars along the axes, one through the other", cross, ms_shape_cross, ms_shape_cross_volume},
     {"cube", "cube", cube, ms_shape_cube, ms_shape_cube_volume},
     {"box", "cuboid", box, ms_shape_box, ms_shape_box_volume},
     {"plate", "thin cuboid", plate, ms_shape_box, ms_shape_box_volume},

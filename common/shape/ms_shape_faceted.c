@@ -90,15 +90,15 @@ static ms_status weld_faces(ms_mesh *mesh, const soup *faces, const double half[
     return status;
 }
 
-/* One square of a box's face; (u, v) is its lower corner, in lattice steps of 2. */
-static void add_square(soup *faces, int axis, int side, int level, int u, int v)
+/* One square of a face; (u, v) is its lower corner, its sides are `step` of the lattice. */
+static void add_square(soup *faces, int axis, int side, int level, int u, int v, int step)
 {
     uint64_t corner[4];
     for (int k = 0; k < 4; k++) {
         int p[3];
         p[axis] = side * level;
-        p[(axis + 1) % 3] = u + (k == 1 || k == 2 ? 2 : 0);
-        p[(axis + 2) % 3] = v + (k >= 2 ? 2 : 0);
+        p[(axis + 1) % 3] = u + (k == 1 || k == 2 ? step : 0);
+        p[(axis + 2) % 3] = v + (k >= 2 ? step : 0);
         corner[k] = pack_lattice(p);
     }
     /* The diagonals of neighbouring quarters are mirror images, as the body is. */
@@ -116,10 +116,10 @@ static ms_status make_box(ms_mesh *mesh, const double edge[3], double fineness, 
     *mesh = (ms_mesh){0};
     double longest = fmax(edge[0], fmax(edge[1], edge[2]));
     double half[3];
-    int count[3]; /* even, so that the middle planes are cut */
+    int count[3]; /* even, so that the middle planes are cut; 1: the corners alone */
     for (int axis = 0; axis < 3; axis++) {
         half[axis] = edge[axis] / 2;
-        count[axis] = 2 * (int)fmax(1, ceil(fineness * edge[axis] / longest / 2));
+        count[axis] = fineness < 2 ? 1 : 2 * (int)fmax(1, ceil(fineness * edge[axis] / longest / 2));
     }
     size_t squares = 0;
     for (int axis = 0; axis < 3; axis++) {
@@ -136,7 +136,7 @@ static ms_status make_box(ms_mesh *mesh, const double edge[3], double fineness, 
         int n_v = count[(axis + 2) % 3];
         for (int u = -n_u; u < n_u; u += 2) {
             for (int v = -n_v; v < n_v; v += 2) {
-                add_square(&faces, axis, face % 2 ? 1 : -1, count[axis], u, v);
+                add_square(&faces, axis, face % 2 ? 1 : -1, count[axis], u, v, 2);
             }
         }
     }
@@ -166,6 +166,66 @@ ms_status ms_shape_cube(ms_mesh *mesh, const double *value, ms_error *err)
 double ms_shape_cube_volume(const double *value)
 {
     return value[0] * value[0] * value[0];
+}
+
+/* The limb of the bar along `axis` towards `side`: its end, and its four sides. */
+static void add_limb(soup *faces, int axis, int side, int across, int limb)
+{
+    for (int u = -across; u < across; u++) {
+        for (int v = -across; v < across; v++) {
+            add_square(faces, axis, side, across + limb, u, v, 1);
+        }
+        for (int k = 0; k < limb; k++) {
+            const int from = side > 0 ? across + k : -across - k - 1;
+            for (int face = -1; face <= 1;
+                 face += 2) { /* of add_square's u and v the limb is once one, once the other */
+                add_square(faces, (axis + 2) % 3, face, across, from, u, 1);
+                add_square(faces, (axis + 1) % 3, face, across, u, from, 1);
+            }
+        }
+    }
+}
+
+/* Lattice steps are `across` to half the width of a bar, and `limb` from there to its end. */
+static void stretch_limbs(ms_mesh *mesh, int across, int limb, double half_width, double half_length)
+{
+    for (size_t v = 0; v < mesh->n_vertices; v++) {
+        for (int axis = 0; axis < 3; axis++) {
+            const double at = fabs(mesh->vertex[v][axis]), beyond = at - across;
+            const double length =
+                beyond > 0 ? half_width + (half_length - half_width) * (beyond / limb) : half_width * (at / across);
+            mesh->vertex[v][axis] = copysign(length, mesh->vertex[v][axis]);
+        }
+    }
+}
+
+/* value: length, width, fineness */
+ms_status ms_shape_cross(ms_mesh *mesh, const double *value, ms_error *err)
+{
+    *mesh = (ms_mesh){0};
+    const double length = value[0], width = value[1];
+    if (width >= length) {
+        return ms_fail(err, MS_ERR_ARG, "width = %g leaves no limbs to bars of length = %g", width, length);
+    }
+    const int across = (int)fmax(1, round(0.5 * value[2] * width / length));
+    const int limb = (int)fmax(1, round(0.5 * value[2] * (1 - width / length)));
+    soup faces;
+    ms_status status = soup_begin(&faces, 6 * 2 * (size_t)(4 * across * across + 8 * across * limb), err);
+    if (status != MS_OK) {
+        return status;
+    }
+    for (int end = 0; end < 6; end++) {
+        add_limb(&faces, end / 2, end % 2 ? 1 : -1, across, limb);
+    }
+    status = weld_faces(mesh, &faces, (const double[3]){1, 1, 1}, (const int[3]){1, 1, 1}, err);
+    stretch_limbs(mesh, across, limb, width / 2, length / 2);
+    free(faces.corner);
+    return status;
+}
+
+double ms_shape_cross_volume(const double *value)
+{
+    return value[1] * value[1] * (3 * value[0] - 2 * value[1]);
 }
 
 /* Every second corner of a cube, and the faces between them, wound outward. */

@@ -1,6 +1,7 @@
 #include <gsl/gsl_math.h>
 #include <math.h>
 
+#include "mesh/ms_inertia.h"
 #include "ms_shape_build.h"
 
 /* Segments around the axis: about four times those of a quarter turn, a multiple of 8. */
@@ -184,4 +185,40 @@ double ms_shape_dumbbell_volume(const double *value)
     double cap_volume = M_PI * cap * cap * (3 * ball - cap) / 3;
     double neck_volume = M_PI * neck * neck * (value[1] - 2 * shoulder);
     return 2 * (4.0 / 3.0 * M_PI * ball * ball * ball - cap_volume) + neck_volume;
+}
+
+static ms_status move_to_centre(ms_mesh *mesh, ms_error *err)
+{
+    ms_body body;
+    const ms_status status = ms_inertia_mesh(&body, mesh, err);
+    for (size_t v = 0; v < mesh->n_vertices && status == MS_OK; v++) {
+        mesh->vertex[v][2] -= body.centroid[2];
+    }
+    return status;
+}
+
+/* value: R, wall, fineness */
+ms_status ms_shape_bowl(ms_mesh *mesh, const double *value, ms_error *err)
+{
+    *mesh = (ms_mesh){0};
+    const double outer = value[0], inner = outer - value[1];
+    if (!(inner > 0)) {
+        return ms_fail(err, MS_ERR_ARG, "wall = %g must be below the radius R = %g", value[1], outer);
+    }
+    const int turn = (int)value[2];
+    ms_profile profile;
+    ms_status status = ms_shape_profile_begin(&profile, 2 * turn + 2, -inner, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    ms_shape_profile_arc(&profile, (ms_arc){.radius = inner, .from = M_PI, .to = M_PI_2}, inner, 0, turn);
+    ms_shape_profile_line(&profile, outer, 0, 1);
+    ms_shape_profile_arc(&profile, (ms_arc){.radius = outer, .from = M_PI_2, .to = M_PI}, 0, -outer, turn);
+    status = revolve_and_free(mesh, &profile, value[2], err);
+    return status == MS_OK ? move_to_centre(mesh, err) : status;
+}
+
+double ms_shape_bowl_volume(const double *value)
+{
+    return 2.0 / 3.0 * M_PI * (gsl_pow_3(value[0]) - gsl_pow_3(value[0] - value[1]));
 }

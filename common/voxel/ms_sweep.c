@@ -19,6 +19,7 @@ typedef struct sweep {
     const ms_mesh *mesh;
     ms_grid *grid;  /* without voxels where `take` takes the crossings */
     double cell[3]; /* sides of its voxels */
+    double off[3];  /* of the middle of the mesh's box from that of the grid, in voxels */
     int a, b, c;
     int rays;   /* rays per voxel along b and along c */
     int parity; /* 0: inside by coverage; 1: sets bit a by the parity of crossings */
@@ -45,10 +46,15 @@ static void sweep_free(sweep *s)
     free(s->plane_triangle);
 }
 
+/* @param from the centre of the box, voxels */
+static int32_t place_across(const sweep *s, int axis, double from)
+{
+    return (int32_t)(rint(from * ACROSS) + (s->grid->n[axis] - 1) * (ACROSS / 2) + rint(s->off[axis] * ACROSS));
+}
+
 /* Measured from the centre of the box, so that mirrored vertices round to mirrored places. */
 static void place_vertices(sweep *s)
 {
-    const ms_grid *grid = s->grid;
     double lo[3], hi[3], centre[3];
     ms_mesh_box(lo, hi, s->mesh);
     for (int a = 0; a < 3; a++) {
@@ -57,9 +63,9 @@ static void place_vertices(sweep *s)
     for (size_t v = 0; v < s->mesh->n_vertices; v++) {
         const double *p = s->mesh->vertex[v];
         double b = (p[s->b] - centre[s->b]) / s->cell[s->b], c = (p[s->c] - centre[s->c]) / s->cell[s->c];
-        s->vertices[v].b = (int32_t)(rint(b * ACROSS) + (grid->n[s->b] - 1) * (ACROSS / 2));
-        s->vertices[v].c = (int32_t)(rint(c * ACROSS) + (grid->n[s->c] - 1) * (ACROSS / 2));
-        s->vertices[v].a = (p[s->a] - centre[s->a]) / s->cell[s->a] + 0.5 * grid->n[s->a];
+        s->vertices[v].b = place_across(s, s->b, b);
+        s->vertices[v].c = place_across(s, s->c, c);
+        s->vertices[v].a = (p[s->a] - centre[s->a]) / s->cell[s->a] + 0.5 * s->grid->n[s->a] + s->off[s->a];
     }
 }
 
@@ -443,10 +449,16 @@ static ms_status execute_sweep(sweep *s, ms_error *err)
     return status;
 }
 
-ms_status ms_sweep(ms_grid *grid, const ms_mesh *mesh, int axis, int rays, int parity, ms_error *err)
+ms_status ms_sweep(ms_grid *grid, const ms_mesh *mesh, const double off[3], int axis, int rays, int parity,
+                   ms_error *err)
 {
-    sweep s = {
-        .mesh = mesh, .grid = grid, .cell = {grid->h, grid->h, grid->h}, .a = axis, .rays = rays, .parity = parity};
+    sweep s = {.mesh = mesh,
+               .grid = grid,
+               .cell = {grid->h, grid->h, grid->h},
+               .off = {off[0], off[1], off[2]},
+               .a = axis,
+               .rays = rays,
+               .parity = parity};
     return execute_sweep(&s, err);
 }
 

@@ -8,7 +8,8 @@
 /**
  * Sends rays x rays parallel rays through each voxel and marks what they find inside.
  *
- * @param[in,out] grid   with the box of the mesh in its middle and a hull around it
+ * @param[in,out] grid   with the box of the mesh within it and a hull around it
+ * @param         off    how far the middle of the box lies from that of the grid along each axis, voxels
  * @param         mesh   all coordinates finite; at least one triangle
  * @param         axis   along which the rays run: 0, 1, 2
  * @param         rays   per voxel and axis across: a power of two up to 8
@@ -17,7 +18,8 @@
  *                       voxels beyond whose centre the number of crossings is odd
  * @return MS_OK; MS_ERR_NOMEM
  */
-ms_status ms_sweep(ms_grid *grid, const ms_mesh *mesh, int axis, int rays, int parity, ms_error *err);
+ms_status ms_sweep(ms_grid *grid, const ms_mesh *mesh, const double off[3], int axis, int rays, int parity,
+                   ms_error *err);
 
 /** A ray counts as the four rays infinitely near it; a set of them has a bit for each. */
 enum { MS_SWEEP_NEAR_RAYS = 4 };

@@ -89,8 +89,9 @@ ms_status ms_target_add_distance(ms_target *target, ms_error *err)
     return status;
 }
 
-ms_status ms_target_voxels_from_solid(ms_target *target, const ms_mesh *mesh, const ms_solid *solid, double h,
-                                      ms_voxel_rule rule, ms_error *err)
+/* @param shift of the lattice under the mesh, voxels; NULL: none */
+static ms_status make_voxels(ms_target *target, const ms_mesh *mesh, const ms_solid *solid, double h,
+                             ms_voxel_rule rule, const double *shift, ms_error *err)
 {
     memset(target, 0, sizeof *target);
     target->mesh = mesh;
@@ -98,8 +99,8 @@ ms_status ms_target_voxels_from_solid(ms_target *target, const ms_mesh *mesh, co
     target->overlapping = solid && solid->overlapping;
     target->rule = rule;
     target->body = solid ? solid->body : target->body;
-    ms_status status = solid ? ms_voxelize(&target->grid, mesh, h, rule, err)
-                             : ms_voxelize_open(&target->grid, &target->disagree, mesh, h, err);
+    ms_status status = solid ? ms_voxelize_moved(&target->grid, mesh, h, rule, shift, err)
+                             : ms_voxelize_open_moved(&target->grid, &target->disagree, mesh, h, shift, err);
     if (status == MS_OK) {
         status = sum_up(target, err);
     }
@@ -112,8 +113,15 @@ ms_status ms_target_voxels_from_solid(ms_target *target, const ms_mesh *mesh, co
     return status;
 }
 
-ms_status ms_target_voxels_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
-                                     ms_error *err)
+ms_status ms_target_voxels_from_solid(ms_target *target, const ms_mesh *mesh, const ms_solid *solid, double h,
+                                      ms_voxel_rule rule, ms_error *err)
+{
+    return make_voxels(target, mesh, solid, h, rule, NULL, err);
+}
+
+/* As make_voxels, of a mesh whose body is not known yet. */
+static ms_status measure_and_make_voxels(ms_target *target, const ms_mesh *mesh, int closed, double h,
+                                         ms_voxel_rule rule, const double *shift, ms_error *err)
 {
     ms_solid solid;
     const ms_status status = closed ? ms_solid_mesh(&solid, mesh, err) : MS_OK;
@@ -121,13 +129,25 @@ ms_status ms_target_voxels_from_mesh(ms_target *target, const ms_mesh *mesh, int
         memset(target, 0, sizeof *target);
         return status;
     }
-    return ms_target_voxels_from_solid(target, mesh, closed ? &solid : NULL, h, rule, err);
+    return make_voxels(target, mesh, closed ? &solid : NULL, h, rule, shift, err);
+}
+
+ms_status ms_target_voxels_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
+                                     ms_error *err)
+{
+    return measure_and_make_voxels(target, mesh, closed, h, rule, NULL, err);
 }
 
 ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
                               ms_error *err)
 {
-    ms_status status = ms_target_voxels_from_mesh(target, mesh, closed, h, rule, err);
+    return ms_target_from_mesh_moved(target, mesh, closed, h, rule, NULL, err);
+}
+
+ms_status ms_target_from_mesh_moved(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
+                                    const double shift[3], ms_error *err)
+{
+    ms_status status = measure_and_make_voxels(target, mesh, closed, h, rule, shift, err);
     return status == MS_OK ? ms_target_add_distance(target, err) : status;
 }
 

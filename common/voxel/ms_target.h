@@ -65,6 +65,10 @@ MS_API double ms_target_default_bytes(void);
 MS_API ms_status ms_target_from_mesh(ms_target *target, const ms_mesh *mesh, int closed, double h, ms_voxel_rule rule,
                                      ms_error *err);
 
+/** As ms_target_from_mesh, with the lattice moved under the mesh (ms_voxelize_moved). @param shift voxels; NULL: not */
+MS_API ms_status ms_target_from_mesh_moved(ms_target *target, const ms_mesh *mesh, int closed, double h,
+                                           ms_voxel_rule rule, const double shift[3], ms_error *err);
+
 /**
  * The box lo <= (i,j,k) < hi of the voxels of a label.
  *

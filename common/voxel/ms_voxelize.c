@@ -80,8 +80,9 @@ static int is_finite(const ms_mesh *mesh)
     return finite;
 }
 
-/* The grid around the mesh, with the box of the mesh in its middle. */
-static ms_status alloc_around(ms_grid *grid, const ms_mesh *mesh, double h, ms_error *err)
+/* The grid around the mesh, with the box of the mesh in its middle, or `off` that by so many voxels. */
+static ms_status alloc_around(ms_grid *grid, double off[3], const ms_mesh *mesh, double h, const double *shift,
+                              ms_error *err)
 {
     double lo[3], hi[3], extent[3], origin[3];
     int n[3];
@@ -102,8 +103,18 @@ static ms_status alloc_around(ms_grid *grid, const ms_mesh *mesh, double h, ms_e
             return ms_fail(err, MS_ERR_LIMIT, "%.0f voxels along %c are more than %d; use a larger voxel size",
                            extent[a], "xyz"[a], MS_GRID_MAX_EXTENT);
         }
+        if (shift && !(shift[a] >= 0 && shift[a] < 1)) {
+            return ms_fail(err, MS_ERR_ARG, "a lattice is moved by 0 or more and less than 1 voxel, not by %g",
+                           shift[a]);
+        }
         n[a] = (int)extent[a];
         origin[a] = lo[a] + 0.5 * (hi[a] - lo[a]) - 0.5 * h * (n[a] - 1);
+        off[a] = 0;
+        if (shift && shift[a] > 0) { /* one voxel more at the upper end, where less than one is missing now */
+            n[a]++;
+            origin[a] -= h * shift[a];
+            off[a] = shift[a] - 0.5;
+        }
     }
     return ms_grid_alloc(grid, n, h, origin, err);
 }
@@ -122,19 +133,33 @@ static ms_status finish_grid(ms_grid *grid, ms_status status, ms_error *err)
 
 ms_status ms_voxelize(ms_grid *grid, const ms_mesh *mesh, double h, ms_voxel_rule rule, ms_error *err)
 {
-    ms_status status = alloc_around(grid, mesh, h, err);
+    return ms_voxelize_moved(grid, mesh, h, rule, NULL, err);
+}
+
+ms_status ms_voxelize_moved(ms_grid *grid, const ms_mesh *mesh, double h, ms_voxel_rule rule, const double shift[3],
+                            ms_error *err)
+{
+    double off[3];
+    ms_status status = alloc_around(grid, off, mesh, h, shift, err);
     if (status != MS_OK) {
         return status;
     }
-    return finish_grid(grid, ms_sweep(grid, mesh, 0, rule == MS_VOXEL_HALF ? 4 : 1, 0, err), err);
+    return finish_grid(grid, ms_sweep(grid, mesh, off, 0, rule == MS_VOXEL_HALF ? 4 : 1, 0, err), err);
 }
 
 ms_status ms_voxelize_open(ms_grid *grid, size_t *disagree, const ms_mesh *mesh, double h, ms_error *err)
 {
+    return ms_voxelize_open_moved(grid, disagree, mesh, h, NULL, err);
+}
+
+ms_status ms_voxelize_open_moved(ms_grid *grid, size_t *disagree, const ms_mesh *mesh, double h, const double shift[3],
+                                 ms_error *err)
+{
     *disagree = 0;
-    ms_status status = alloc_around(grid, mesh, h, err);
+    double off[3];
+    ms_status status = alloc_around(grid, off, mesh, h, shift, err);
     for (int axis = 0; axis < 3 && status == MS_OK; axis++) {
-        status = ms_sweep(grid, mesh, axis, 1, 1, err);
+        status = ms_sweep(grid, mesh, off, axis, 1, 1, err);
     }
     if (status == MS_OK) {
         const size_t voxels = ms_grid_voxels(grid);

@@ -56,6 +56,15 @@ MS_API void ms_voxelize_extents(double n[3], const ms_mesh *mesh, double h);
 MS_API ms_status ms_voxelize(ms_grid *grid, const ms_mesh *mesh, double h, ms_voxel_rule rule, ms_error *err);
 
 /**
+ * As ms_voxelize, with the lattice moved under the mesh, one voxel more along each axis along which it is.
+ *
+ * @param shift 0 or more and below 1, voxels: how far the lattice lies towards lower coordinates than that of
+ *              ms_voxelize; NULL: nowhere
+ */
+MS_API ms_status ms_voxelize_moved(ms_grid *grid, const ms_mesh *mesh, double h, ms_voxel_rule rule,
+                                   const double shift[3], ms_error *err);
+
+/**
  * Voxelises a mesh with holes: the majority of the crossing parities along x, y and z at
  * each voxel's centre.
  *
@@ -63,6 +72,10 @@ MS_API ms_status ms_voxelize(ms_grid *grid, const ms_mesh *mesh, double h, ms_vo
  * @return as ms_voxelize
  */
 MS_API ms_status ms_voxelize_open(ms_grid *grid, size_t *disagree, const ms_mesh *mesh, double h, ms_error *err);
+
+/** As ms_voxelize_open, with the lattice moved as by ms_voxelize_moved. */
+MS_API ms_status ms_voxelize_open_moved(ms_grid *grid, size_t *disagree, const ms_mesh *mesh, double h,
+                                        const double shift[3], ms_error *err);
 
 MS_C_END
 

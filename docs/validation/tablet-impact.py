@@ -137,8 +137,9 @@ def impact(folder, template, places, theta):
 def plot(folder, sizes):
     if not shutil.which("gnuplot"):
         return
-    commands = ["set datafile separator ','", "set terminal svg size 900,380", "set output 'tablet-impact.svg'",
-                "set multiplot layout 1,2", "set xlabel 'impact angle, degrees'", "set key left"]
+    commands = ["set datafile separator ','", "set terminal svg size 900,440 background rgb 'white'",
+                "set output 'tablet-impact.svg'", "set multiplot layout 1,2", "set xlabel 'impact angle, degrees'",
+                "set key outside below maxcols 2", "set xrange [-3:93]"]
     for title, column in (("velocity after / before", 0), ("spin after * band radius / velocity before", 1)):
         curves = [f"'tablet-impact.csv' skip 1 using 1:{2 + column} with lines title 'e = 0.6'",
                   f"'tablet-impact.csv' skip 1 using 1:{4 + column} with lines title 'e of the damping'"]

@@ -3,21 +3,25 @@
 #define MS_CHART_H
 
 #include <stddef.h>
+#include <stdio.h>
 
 #include "base/ms_error.h"
+#include "ms_chart_look.h"
 
 enum { MS_CHART_LABEL = 24 };
 
 typedef struct ms_chart_point {
     double x, y;
-    char label[MS_CHART_LABEL]; /* stands beside the point; "" for none */
+    char label[MS_CHART_LABEL]; /* stands beside the point where there is room; "" for none */
     double top;                 /* of a band: it reaches from y to here */
+    double low, high;           /* of x: a bar lies from here to there, both above 0; 0: none */
 } ms_chart_point;
 
 typedef enum ms_chart_style {
     MS_CHART_CURVE,  /* points joined by a line; line and point types differ from series to series */
     MS_CHART_POINTS, /* points alone */
     MS_CHART_LINE,   /* a grey line without points */
+    MS_CHART_LEVEL,  /* a dashed line across the chart at y; x does not count */
     MS_CHART_BAND,   /* pale, in the colour of the next curve and not in the legend */
     MS_CHART_FRONT   /* a broad grey staircase behind the rest: y falls at each x, and holds from there on */
 } ms_chart_style;
@@ -27,10 +31,12 @@ typedef struct ms_chart_series {
     ms_chart_style style;
     size_t count;
     const ms_chart_point *point; /* borrowed */
+    ms_chart_look look;
 } ms_chart_series;
 
 typedef struct ms_chart {
     const char *title, *x_label, *y_label;
+    const char *note; /* below the title, smaller; NULL: none */
     int x_log, y_log;
     double y_least; /* a smaller y is drawn here, and the axis says so: for zeros on a log axis; 0: none */
     size_t n_series;
@@ -39,6 +45,18 @@ typedef struct ms_chart {
 
 /** What ms_chart_write and ms_chart_draw put behind the stem; ends with NULL. */
 extern const char *const MS_CHART_ENDINGS[];
+
+/**
+ * Whether there is anything that a chart shows and a sentence does not: two points, and where curves go by x, a curve
+ * of two.
+ */
+int ms_chart_is_one(const ms_chart *chart);
+
+/** Whether there is a point or more to tell of. */
+int ms_chart_has_points(const ms_chart *chart);
+
+/** Says in words what the points of a chart are, on one line: x and y of each with the name of its series. */
+void ms_chart_say(FILE *stream, const ms_chart *chart);
 
 /**
  * Writes STEM.dat and STEM.gp, from which gnuplot makes STEM.svg and STEM.png. A point that has no place (not finite,

@@ -177,7 +177,7 @@ static void put_triangle(ms_picture *picture, const ms_view *view, double corner
             const double u = (x * ac[1] - y * ac[0]) / area, v = (y * ab[0] - x * ab[1]) / area;
             if (u >= 0 && v >= 0 && u + v <= 1) {
                 const size_t at = (size_t)(view->y + j) * (size_t)picture->width + (size_t)(view->x + i);
-                put(picture, at, a[2] + u * ab[2] + v * ac[2], normal, 0);
+                put(picture, at, a[2] + u * ab[2] + v * ac[2], normal, MS_RENDER_SHAPE);
             }
         }
     }
@@ -235,6 +235,19 @@ static void render_grid(ms_picture *picture, const ms_view *view, const ms_grid 
     }
 }
 
+/* A dark line where one part ends and another or nothing begins. */
+static void draw_edges(ms_picture *picture, const ms_view *view)
+{
+    for (int j = view->y; j < view->y + view->size - 1; j++) {
+        for (int i = view->x; i < view->x + view->size - 1; i++) {
+            const size_t at = (size_t)j * (size_t)picture->width + (size_t)i, below = at + (size_t)picture->width;
+            if (picture->part[at] != picture->part[at + 1] || picture->part[at] != picture->part[below]) {
+                picture->grey[at] = 40;
+            }
+        }
+    }
+}
+
 void ms_render_target(ms_picture *picture, const ms_view *view, const ms_target *target)
 {
     if (target->mesh) {
@@ -242,6 +255,7 @@ void ms_render_target(ms_picture *picture, const ms_view *view, const ms_target 
     } else {
         render_grid(picture, view, &target->grid);
     }
+    draw_edges(picture, view);
 }
 
 static void put_sphere(ms_picture *picture, const ms_view *view, const ms_sphere *sphere, uint32_t part)
@@ -270,14 +284,7 @@ void ms_render_clump(ms_picture *picture, const ms_view *view, const ms_clump *c
     for (size_t s = 0; s < clump->n_spheres; s++) {
         put_sphere(picture, view, &clump->sphere[s], (uint32_t)s + 1);
     }
-    for (int j = view->y; j < view->y + view->size - 1; j++) {
-        for (int i = view->x; i < view->x + view->size - 1; i++) {
-            const size_t at = (size_t)j * (size_t)picture->width + (size_t)i, below = at + (size_t)picture->width;
-            if (picture->part[at] != picture->part[at + 1] || picture->part[at] != picture->part[below]) {
-                picture->grey[at] = 40;
-            }
-        }
-    }
+    draw_edges(picture, view);
 }
 
 static void put_number(uint8_t out[4], uint32_t value)

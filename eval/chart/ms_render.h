@@ -13,8 +13,10 @@ typedef struct ms_picture {
     int width, height;
     uint8_t *grey;
     float *depth;   /* towards the viewer; -HUGE_VALF: nothing there */
-    uint32_t *part; /* which sphere; 0 of a shape */
+    uint32_t *part; /* which sphere, from 1; MS_RENDER_SHAPE of a shape; 0 where nothing is */
 } ms_picture;
+
+#define MS_RENDER_SHAPE UINT32_MAX
 
 /** How a square of a picture looks at the world. */
 typedef struct ms_view {
@@ -37,7 +39,7 @@ ms_status ms_render_view(ms_view *view, const ms_target *target, int x, int y, i
 /** The same of a clump alone. @return as above; MS_ERR_NOMEM; as ms_particle_from_spheres */
 ms_status ms_render_clump_view(ms_view *view, const ms_clump *clump, int x, int y, int size, ms_error *err);
 
-/** The mesh of the target, or the faces of its voxels. Cost: triangles + pixels. */
+/** The mesh of the target, or the faces of its voxels, with a dark line around it. Cost: triangles + pixels. */
 void ms_render_target(ms_picture *picture, const ms_view *view, const ms_target *target);
 
 /** Spheres, with a dark line where one ends. Cost: spheres x pixels of one. */

@@ -13,6 +13,7 @@
 #include "ms_commands.h"
 #include "stability/ms_hard_shapes.h"
 #include "stability/ms_stability_charts.h"
+#include "stability/ms_stability_report.h"
 #include "stability/ms_stability_walk.h"
 #include "stability/ms_statistics.h"
 
@@ -24,12 +25,14 @@ static const ms_flag FLAGS[] = {
     {"until-dice", 0, "V", "also seek the number of spheres with which the method meets D = V, up to 10 N"},
     MS_MIN_RADIUS_FLAG,
     {"perturb", 0, "KIND",
-     "axes, rotation, shift, resolution, noise, refine, decimate, seed, order or threads; may be repeated (all)"},
+     "axes, rotation, shift, lattice, resolution, noise, refine, decimate, seed, order or threads; may be repeated "
+     "(all)"},
     {"runs", 0, "R", "runs of each perturbation (5)"},
     {"seed", 0, "S", "seed of the methods and of the perturbations (1)"},
     {"output", 'o', "FILE", "a row for each run as CSV, written as they come; - for standard output (stability.csv)"},
     {"resume", 0, NULL, "go on with the rows that are in FILE"},
     {"charts", 0, "DIR", "charts of D into this folder, as SVG and PNG; takes gnuplot"},
+    {"report", 0, "FILE", "a page of all rows with the charts, if any, and clumps in 3-D (.html)"},
     {"json", 0, NULL, "the summary as JSON on standard output"},
     MS_INPUT_FLAGS,
     {0},
@@ -39,8 +42,9 @@ typedef struct stability_arguments {
     ms_input_flags input;
     ms_methods methods;
     double spheres, runs, seed;
-    const char *output, *charts;
-    int json, resume;
+    const char *output, *charts, *report;
+    int json, resume, argc;
+    char *const *argv;
     const char *built_in[MS_HARD_SHAPES_MOST]; /* names */
     ms_stability_plan plan;                    /* what follows */
 } stability_arguments;
@@ -89,7 +93,7 @@ static ms_status take_stability_flag(void *context, const char *name, const char
     } else if (strcmp(name, "resume") == 0) {
         a->resume = 1;
     } else {
-        *(name[0] == 'c' ? &a->charts : &a->output) = value;
+        *(name[0] == 'c' ? &a->charts : strcmp(name, "report") == 0 ? &a->report : &a->output) = value;
     }
     return MS_OK;
 }
@@ -141,6 +145,10 @@ static ms_status resolve_stability(stability_arguments *a, const char *const *sh
                              a->methods.method[m].name);
         }
     }
+    a->plan.keeps_clumps = a->report != NULL;
+    if (status == MS_OK && a->report && ms_files_is_stream(a->output)) {
+        status = ms_fail(err, MS_ERR_ARG, "--report is made of the rows of a file; name one with -o");
+    }
     if (status == MS_OK && a->json && strcmp(a->output, "-") == 0) {
         status = ms_fail(err, MS_ERR_ARG, "--json and -o - both write to standard output; choose one of them");
     }
@@ -162,6 +170,9 @@ static ms_status check_stability_files(ms_files *files, const stability_argument
     }
     if (status == MS_OK) {
         status = ms_files_add(files, a->output, MS_FILE_WRITTEN, err);
+    }
+    if (status == MS_OK && a->report) {
+        status = ms_files_add(files, a->report, MS_FILE_WRITTEN, err);
     }
     if (status == MS_OK) {
         status = ms_files_check(files, err);
@@ -197,6 +208,16 @@ static ms_status report_stability(const stability_arguments *a, const ms_stabili
     if (status == MS_OK && a->charts) {
         status = ms_files_make_folder(a->charts, err);
         status = status == MS_OK ? ms_stability_charts(a->charts, run, count, err) : status;
+    }
+    if (status == MS_OK && a->report) {
+        const ms_stability_report report = {.plan = &a->plan,
+                                            .run = run,
+                                            .n_runs = count,
+                                            .csv = &rows->csv,
+                                            .charts = a->charts,
+                                            .argc = a->argc,
+                                            .argv = a->argv};
+        status = ms_stability_report_write(a->report, &report, err);
     }
     return status == MS_OK ? check_any_gave(run, count, err) : status;
 }
@@ -236,6 +257,7 @@ static ms_status try_all(const stability_arguments *a, ms_error *err)
     if (rows.stream && rows.stream != stdout) {
         fclose(rows.stream); /* each row was flushed */
     }
+    ms_stability_free(run, run ? count : 0);
     free(run);
     return status;
 }
@@ -257,7 +279,12 @@ static int execute_stability(const ms_command *command, const stability_argument
 
 static int run_stability(const ms_command *command, int argc, char **argv)
 {
-    stability_arguments a = {.spheres = DEFAULT_SPHERES, .runs = DEFAULT_RUNS, .seed = 1, .output = "stability.csv"};
+    stability_arguments a = {.spheres = DEFAULT_SPHERES,
+                             .runs = DEFAULT_RUNS,
+                             .seed = 1,
+                             .output = "stability.csv",
+                             .argc = argc,
+                             .argv = argv};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);

@@ -82,8 +82,9 @@ char *ms_compare_key(const ms_compare_row *row)
 
 static int is_text(int column)
 {
-    static const int TEXTS[] = {MS_COLUMN_SHAPE, MS_COLUMN_CHECKSUM, MS_COLUMN_GENERATOR, MS_COLUMN_OPTIONS,
-                                MS_COLUMN_FLAGS, MS_COLUMN_STOPPED,  MS_COLUMN_VERSION,   MS_COLUMN_CAUSE};
+    static const int TEXTS[] = {MS_COLUMN_SHAPE,   MS_COLUMN_CHECKSUM, MS_COLUMN_GENERATOR,
+                                MS_COLUMN_OPTIONS, MS_COLUMN_FLAGS,    MS_COLUMN_STOPPED,
+                                MS_COLUMN_MACHINE, MS_COLUMN_VERSION,  MS_COLUMN_CAUSE};
     for (size_t t = 0; t < sizeof TEXTS / sizeof *TEXTS; t++) {
         if (TEXTS[t] == column) {
             return 1;

@@ -34,10 +34,13 @@
     X(DISTANCE, "seconds_distance") \
     X(DESCRIBE, "seconds_describe") \
     X(GENERATE, "seconds_generate") \
+    X(FASTEST, "seconds_least") \
+    X(SLOWEST, "seconds_most") \
     X(SCORE, "seconds_score") \
     X(CORRECT, "seconds_correct") \
     X(REPEATS, "repeats") \
     X(MEMORY, "peak_memory_kb") \
+    X(MACHINE, "machine") \
     X(THREADS, "threads") \
     X(BESIDE, "beside") \
     X(VERSION, "version") \

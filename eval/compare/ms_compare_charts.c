@@ -83,6 +83,19 @@ static int is_first(const records *all, size_t at, int method)
     return 1;
 }
 
+static ms_chart_point make_point(const ms_compare_record *row, const chart_kind *k)
+{
+    ms_chart_point point = {.x = ms_compare_record_number(row, k->x), .y = ms_compare_record_number(row, k->y)};
+    if (k->front) {
+        snprintf(point.label, MS_CHART_LABEL, "%s", row->field[MS_COLUMN_SPHERES]);
+    }
+    if (k->x == MS_COLUMN_GENERATE && ms_compare_record_number(row, MS_COLUMN_REPEATS) > 1) {
+        point.low = ms_compare_record_number(row, MS_COLUMN_FASTEST);
+        point.high = ms_compare_record_number(row, MS_COLUMN_SLOWEST);
+    }
+    return point;
+}
+
 /* The points of a method; a clump of another tool has no number that it was asked for. */
 static size_t collect(ms_chart_point *point, const records *all, const ms_compare_record *first, const chart_kind *k)
 {
@@ -93,12 +106,7 @@ static size_t collect(ms_chart_point *point, const records *all, const ms_compar
         const double value = ms_compare_record_number(one, k->fixed);
         if (ms_compare_records_same_shape(one, first) && ms_compare_records_same_method(one, first) &&
             (value == fixed || isnan(value))) {
-            point[count] =
-                (ms_chart_point){.x = ms_compare_record_number(one, k->x), .y = ms_compare_record_number(one, k->y)};
-            if (k->front) {
-                snprintf(point[count].label, MS_CHART_LABEL, "%s", one->field[MS_COLUMN_SPHERES]);
-            }
-            count++;
+            point[count++] = make_point(one, k);
         }
     }
     return count;
@@ -146,6 +154,27 @@ static void free_draft(draft *d)
     free(d->point);
 }
 
+/* A clump of another tool, of which it is not known how long it took. */
+static int is_timeless(const ms_compare_record *row, const chart_kind *k)
+{
+    return k->x == MS_COLUMN_GENERATE && ms_compare_record_is_clump(row);
+}
+
+/* The caller frees it; NULL without memory. */
+static char *name_series(const ms_compare_record *row, const chart_kind *k)
+{
+    char *method = ms_compare_record_method(row), *name = NULL;
+    if (!method || !is_timeless(row, k)) {
+        return method;
+    }
+    const size_t room = strlen(method) + strlen(row->field[MS_COLUMN_SPHERES]) + 32;
+    if ((name = malloc(room))) {
+        snprintf(name, room, "%s, %s spheres, no time", method, row->field[MS_COLUMN_SPHERES]);
+    }
+    free(method);
+    return name;
+}
+
 /* The front, or what is expected, comes first, so that it is drawn behind the others. */
 static ms_status fill_draft(draft *d, const records *all, const ms_compare_record *shape, const chart_kind *k,
                             ms_error *err)
@@ -162,11 +191,13 @@ static ms_status fill_draft(draft *d, const records *all, const ms_compare_recor
         if (ms_compare_records_same_shape(&all->record[r], shape) && is_first(all, r, 1)) {
             ms_chart_point *point = d->point + d->n_points;
             const size_t count = collect(point, all, &all->record[r], k);
-            char *name = d->name[d->n_series] = ms_compare_record_method(&all->record[r]);
+            char *name = d->name[d->n_series] = name_series(&all->record[r], k);
             if (!name) {
                 return ms_fail(err, MS_ERR_NOMEM, "no memory for a chart of %zu rows", all->count);
             }
-            d->series[d->n_series++] = (ms_chart_series){name, MS_CHART_CURVE, count, point};
+            d->series[d->n_series++] =
+                (ms_chart_series){name, is_timeless(&all->record[r], k) ? MS_CHART_LEVEL : MS_CHART_CURVE, count, point,
+                                  ms_compare_record_look(&all->record[r])};
             d->n_points += count;
         }
     }
@@ -174,12 +205,16 @@ static ms_status fill_draft(draft *d, const records *all, const ms_compare_recor
         ms_chart_point *front = d->point + d->n_points;
         const size_t count = ms_chart_pareto(front, d->point, d->n_points);
         for (size_t p = 0; p < count; p++) {
-            front[p].label[0] = '\0';
+            front[p] = (ms_chart_point){.x = front[p].x, .y = front[p].y};
         }
-        d->series[0] = (ms_chart_series){"Pareto front", MS_CHART_FRONT, count, front};
+        d->series[0] =
+            (ms_chart_series){.name = "Pareto front", .style = MS_CHART_FRONT, .count = count, .point = front};
     } else if (expected) {
         ms_chart_point *line = d->point + d->n_points;
-        d->series[0] = (ms_chart_series){"expected least", MS_CHART_LINE, collect_expected(line, all, shape), line};
+        d->series[0] = (ms_chart_series){.name = "expected least",
+                                         .style = MS_CHART_LINE,
+                                         .count = collect_expected(line, all, shape),
+                                         .point = line};
     }
     return MS_OK;
 }
@@ -189,8 +224,56 @@ static void name_shape(char *out, size_t size, const ms_compare_record *shape)
     ms_compare_name(out, size, shape->field[MS_COLUMN_SHAPE], shape->field[MS_COLUMN_LABEL]);
 }
 
+/* The value of a column where all timed rows of the shape have the same; NULL where they differ or there is none. */
+static const char *find_common(const ms_compare_record *row, size_t count, const ms_compare_record *shape,
+                               ms_column column)
+{
+    const char *found = NULL;
+    for (size_t r = 0; r < count; r++) {
+        if (row[r].field[MS_COLUMN_GENERATE][0] && (!shape || ms_compare_records_same_shape(&row[r], shape))) {
+            if (found && strcmp(found, row[r].field[column]) != 0) {
+                return NULL;
+            }
+            found = row[r].field[column];
+        }
+    }
+    return found;
+}
+
+void ms_compare_charts_timing(char *out, size_t size, const ms_compare_record *row, size_t count,
+                              const ms_compare_record *shape)
+{
+    const char *machine = find_common(row, count, shape, MS_COLUMN_MACHINE);
+    const char *threads = find_common(row, count, shape, MS_COLUMN_THREADS);
+    const char *repeats = find_common(row, count, shape, MS_COLUMN_REPEATS);
+    const char *beside = find_common(row, count, shape, MS_COLUMN_BESIDE);
+    char runs[48] = "medians of different numbers of runs";
+    if (repeats) {
+        snprintf(runs, sizeof runs, strcmp(repeats, "1") == 0 ? "single runs" : "medians of %.8s runs", repeats);
+    }
+    snprintf(out, size, "%s; threads: %s; %s%s", machine ? machine : "several machines", threads ? threads : "several",
+             runs, beside && strcmp(beside, "0") == 0 ? "" : "; others beside them");
+}
+
+/* What the bars are. The median of a method lies between the least and the most of n runs with a probability of
+ * 1 - 2^(1-n) (order statistics: David and Nagaraja 2003, section 7.1). */
+static void add_bars(char *out, size_t size, const records *all, const ms_compare_record *shape)
+{
+    const char *repeats = find_common(all->record, all->count, shape, MS_COLUMN_REPEATS);
+    const double n = repeats ? strtod(repeats, NULL) : 1;
+    const size_t length = strlen(out);
+    if (n > 1) {
+        snprintf(out + length, size - length, "; bars: least to most, %.3g %% confidence", 100 * (1 - pow(2, 1 - n)));
+    }
+}
+
 ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, FILE *words, ms_error *err)
 {
+    if (!ms_chart_is_one(chart) && ms_chart_has_points(chart)) {
+        fprintf(words, "no chart %s, but words: ", stem);
+        ms_chart_say(words, chart);
+        return MS_OK;
+    }
     ms_status status = ms_chart_write(chart, stem, err);
     if (status == MS_ERR_ARG) { /* every run failed: the rows say why */
         fprintf(stderr, "%s\n", err->text);
@@ -205,7 +288,7 @@ ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, FILE *
 static ms_status draw_compare_chart(const records *all, const ms_compare_record *shape, const chart_kind *k,
                                     ms_error *err)
 {
-    char name[256], title[512], at[64];
+    char name[256], title[512], at[64], note[256] = "";
     draft d = {0};
     const double fixed = greatest(all, shape, k->fixed);
     const size_t room = strlen(all->folder) + sizeof name + 32;
@@ -214,11 +297,16 @@ static ms_status draw_compare_chart(const records *all, const ms_compare_record 
     snprintf(at, sizeof at, k->fixed == MS_COLUMN_CELLS ? " (%g cells)" : " (up to %g spheres)", fixed);
     snprintf(title, sizeof title, "%s: %s%s%s%s", name, k->what ? k->what : k->y_label, k->what ? "" : " by ",
              k->what ? "" : k->x_label, isnan(fixed) ? "" : at);
+    if (k->x == MS_COLUMN_GENERATE) {
+        ms_compare_charts_timing(note, sizeof note, all->record, all->count, shape);
+        add_bars(note, sizeof note, all, shape);
+    }
     ms_status status = stem ? fill_draft(&d, all, shape, k, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for a chart");
     if (status == MS_OK) {
         const ms_chart chart = {.title = title,
                                 .x_label = k->x_label,
                                 .y_label = k->y_label,
+                                .note = k->x == MS_COLUMN_GENERATE ? note : NULL,
                                 .x_log = 1,
                                 .y_log = 1,
                                 .y_least = 1e-6,

@@ -24,8 +24,21 @@
  */
 ms_status ms_compare_charts(const ms_compare_records *all, const char *folder, FILE *words, ms_error *err);
 
-/** Writes and draws one, and says so; of one without a point it says that, and is done. @return as above */
+/**
+ * Writes and draws one, and says so. What is no chart (ms_chart_is_one), as a single point, is said in words instead,
+ * and of one without any point that.
+ * @return as above
+ */
 ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, FILE *words, ms_error *err);
+
+/**
+ * How the times of a shape were measured: machine, threads, of how many runs they are the medians, and whether others
+ * ran beside.
+ *
+ * @param shape NULL: of all rows
+ */
+void ms_compare_charts_timing(char *out, size_t size, const ms_compare_record *row, size_t count,
+                              const ms_compare_record *shape);
 
 /** Adds the files of all charts that there can be of a shape, by its name (ms_compare_name). */
 ms_status ms_compare_charts_list(ms_files *files, const char *folder, const char *shape, ms_error *err);

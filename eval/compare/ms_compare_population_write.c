@@ -241,6 +241,7 @@ typedef struct curves {
     ms_chart_point *point;
     char **name;
     double *room;
+    char timing[256]; /* how times were measured */
 } curves;
 
 static void fill_curves(curves *d, const ms_compare_population *p, ms_column column, double over)
@@ -252,8 +253,9 @@ static void fill_curves(curves *d, const ms_compare_population *p, ms_column col
             band[n] = (ms_chart_point){.x = p->number[n], .y = s.lower / over, .top = s.upper / over};
             curve[n] = (ms_chart_point){.x = p->number[n], .y = s.mean / over};
         }
-        d->series[2 * m] = (ms_chart_series){d->name[m], MS_CHART_BAND, p->n_numbers, band};
-        d->series[2 * m + 1] = (ms_chart_series){d->name[m], MS_CHART_CURVE, p->n_numbers, curve};
+        const ms_chart_look look = ms_compare_record_look(p->method[m]);
+        d->series[2 * m] = (ms_chart_series){d->name[m], MS_CHART_BAND, p->n_numbers, band, look};
+        d->series[2 * m + 1] = (ms_chart_series){d->name[m], MS_CHART_CURVE, p->n_numbers, curve, look};
     }
 }
 
@@ -261,17 +263,13 @@ static ms_status draw_population(const ms_compare_population *p, curves *d, cons
                                  ms_column column, FILE *words, ms_error *err)
 {
     char title[120];
-    int is_beside = 0;
-    for (size_t n = 0; n < p->n_numbers && column == MS_COLUMN_GENERATE; n++) {
-        is_beside |= ms_compare_population_is_beside(p, n);
-    }
     const double over = column == MS_COLUMN_GENERATE ? ms_compare_population_time(p, d->room) : 1;
-    snprintf(title, sizeof title, "%zu shapes: mean, and a band from quartile to quartile%s", p->n_shapes,
-             is_beside ? "; runs side by side" : "");
+    snprintf(title, sizeof title, "%zu shapes: mean, and a band from quartile to quartile", p->n_shapes);
     fill_curves(d, p, column, over);
     const ms_chart chart = {.title = title,
                             .x_label = "number of spheres",
                             .y_label = label,
+                            .note = column == MS_COLUMN_GENERATE ? d->timing : NULL,
                             .y_log = 1,
                             .y_least = 1e-6,
                             .n_series = 2 * p->n_methods,
@@ -320,13 +318,15 @@ static int describe_kind(int kind, const char **name, const char **label, ms_col
 }
 
 /* All charts; without gnuplot their scripts are written nevertheless, and the first failure is reported. */
-static ms_status draw_charts(const ms_compare_population *p, const char *folder, FILE *words, ms_error *err)
+static ms_status draw_charts(const ms_compare_population *p, const ms_compare_records *all, const char *folder,
+                             FILE *words, ms_error *err)
 {
     const char *name, *label;
     ms_column column;
     curves d;
     ms_error why;
     ms_status status = begin_curves(&d, p, err);
+    ms_compare_charts_timing(d.timing, sizeof d.timing, all->record, all->count, NULL);
     for (int k = 0; status != MS_ERR_NOMEM && describe_kind(k, &name, &label, &column); k++) {
         char file[64];
         snprintf(file, sizeof file, "population-%s", name);
@@ -354,7 +354,7 @@ ms_status ms_compare_population_write(const ms_compare_records *all, const char 
     fprintf(words, "wrote %s/population.csv, best.csv, population.json\n", folder);
     status = ms_compare_population_make(&p, all, all->record[all->count - 1].field[MS_COLUMN_CELLS], err);
     if (status == MS_OK) {
-        status = draw_charts(&p, folder, words, err);
+        status = draw_charts(&p, all, folder, words, err);
         ms_compare_population_free(&p);
     }
     return status;

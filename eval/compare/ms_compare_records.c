@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ms_generator.h"
+
 double ms_compare_record_number(const ms_compare_record *r, ms_column column)
 {
     return ms_csv_number(r->field[column]);
@@ -63,4 +65,15 @@ char *ms_compare_record_method(const ms_compare_record *r)
         snprintf(name, room, "%s%s%s", r->field[MS_COLUMN_GENERATOR], options[0] ? ":" : "", options);
     }
     return name;
+}
+
+ms_chart_look ms_compare_record_look(const ms_compare_record *r)
+{
+    const char *name = r->field[MS_COLUMN_GENERATOR], *options = r->field[MS_COLUMN_OPTIONS];
+    for (int g = 0; ms_generators[g] && !ms_compare_record_is_clump(r); g++) {
+        if (strcmp(ms_generators[g]->name, name) == 0) {
+            return (ms_chart_look){g + 1, options[0] ? ms_chart_look_variant(options) : 0};
+        }
+    }
+    return (ms_chart_look){MS_CHART_LOOK_OTHER, ms_chart_look_variant(name)};
 }

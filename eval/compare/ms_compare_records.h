@@ -2,6 +2,7 @@
 #ifndef MS_COMPARE_RECORDS_H
 #define MS_COMPARE_RECORDS_H
 
+#include "chart/ms_chart_look.h"
 #include "chart/ms_csv.h"
 #include "ms_compare.h"
 
@@ -28,6 +29,10 @@ int ms_compare_record_is_clump(const ms_compare_record *r);
 
 /** The method with its options, for people; the caller frees it; NULL without memory. */
 char *ms_compare_record_method(const ms_compare_record *r);
+
+/** How it looks in every chart: the colour is the generator's, points and dashes go by the options, too; grey, by its
+ * name, where it is another tool's. */
+ms_chart_look ms_compare_record_look(const ms_compare_record *r);
 
 int ms_compare_records_agree(const ms_compare_record *a, const ms_compare_record *b, ms_column column);
 int ms_compare_records_same_shape(const ms_compare_record *a, const ms_compare_record *b);

@@ -13,8 +13,14 @@
 #include "chart/ms_render.h"
 #include "clump/formats/ms_read.h"
 #include "clump/formats/ms_write.h"
+#include "measure/ms_metrics.h"
 
-enum { TILE = 220, MOST_ROWS = 4, HEAD = 40 };
+enum { TILE = 220, CAPTION = 26, ROW = TILE + CAPTION, MOST_ROWS = 4, HEAD = 40 };
+
+/* What stands under a tile: its true number of spheres and D; empty without a clump. */
+typedef struct sheet_caption {
+    char text[48];
+} sheet_caption;
 
 /* FOLDER/SHAPE-NAME; the caller frees it. */
 static char *make_path(const ms_compare_sheet *sheet, const char *name, ms_error *err)
@@ -91,27 +97,40 @@ static double row_number(const ms_compare_sheet *sheet, size_t row)
     return sheet->asked[rows > 1 ? row * (sheet->n_asked - 1) / (rows - 1) : 0];
 }
 
-static ms_status draw_clump(ms_picture *picture, const ms_view *view, const ms_compare_sheet *sheet,
-                            const ms_method *method, double asked, ms_error *err)
+static ms_status draw_clump(ms_picture *picture, sheet_caption *caption, const ms_view *view,
+                            const ms_compare_sheet *sheet, const ms_target *target, const ms_clump *clump,
+                            ms_error *err)
+{
+    ms_score score;
+    ms_render_clump(picture, view, clump);
+    const ms_status status = ms_metrics_score_clump(&score, NULL, target, clump, sheet->max_voxels, err);
+    snprintf(caption->text, sizeof caption->text, "n = %zu, D = %.4f", clump->n_spheres, score.dice);
+    return status;
+}
+
+static ms_status draw_tile(ms_picture *picture, sheet_caption *caption, const ms_view *view,
+                           const ms_compare_sheet *sheet, const ms_target *target, const ms_method *method,
+                           double asked, ms_error *err)
 {
     ms_clump clump;
     if (!method->generator) {
-        ms_render_clump(picture, view, &method->clump[sheet->at].clump);
-        return MS_OK;
+        return draw_clump(picture, caption, view, sheet, target, &method->clump[sheet->at].clump, err);
     }
     char *path = ms_compare_sheet_path(sheet, method, asked, err);
     ms_status status = path ? MS_OK : MS_ERR_NOMEM;
     if (path && access(path, F_OK) != 0) {
         fprintf(stderr, "%s is not there: its place on the contact sheet is empty\n", path);
     } else if (path && (status = ms_read_spheres(&clump, path, err)) == MS_OK) {
-        ms_render_clump(picture, view, &clump);
+        status = draw_clump(picture, caption, view, sheet, target, &clump, err);
         ms_clump_free(&clump);
     }
     free(path);
     return status;
 }
 
-static ms_status draw_tiles(ms_picture *picture, const ms_compare_sheet *sheet, const ms_target *target, ms_error *err)
+/* @param[out] caption rows x methods; empty before */
+static ms_status draw_tiles(ms_picture *picture, sheet_caption *caption, const ms_compare_sheet *sheet,
+                            const ms_target *target, ms_error *err)
 {
     ms_view view;
     ms_status status = ms_render_view(&view, target, 0, 0, TILE, err);
@@ -123,8 +142,9 @@ static ms_status draw_tiles(ms_picture *picture, const ms_compare_sheet *sheet, 
             const ms_method *method = &sheet->methods->method[m];
             if (method->generator || row == 0) { /* a clump of another tool is there once */
                 view.x = (int)(m + 1) * TILE;
-                view.y = (int)row * TILE;
-                status = draw_clump(picture, &view, sheet, method, row_number(sheet, row), err);
+                view.y = (int)row * ROW;
+                status = draw_tile(picture, &caption[row * sheet->methods->count + m], &view, sheet, target, method,
+                                   row_number(sheet, row), err);
             }
         }
     }
@@ -139,7 +159,8 @@ static void put_sheet_label(FILE *stream, const char *text, double x, double y, 
 }
 
 /* Puts words to the tiles; y of gnuplot's picture goes upward. */
-static void put_sheet_script(FILE *stream, const ms_compare_sheet *sheet, const ms_picture *picture)
+static void put_sheet_script(FILE *stream, const ms_compare_sheet *sheet, const ms_picture *picture,
+                             const sheet_caption *caption)
 {
     const int width = picture->width, height = picture->height + HEAD;
     fputs("# Draws the contact sheet of ", stream);
@@ -163,21 +184,26 @@ static void put_sheet_script(FILE *stream, const ms_compare_sheet *sheet, const 
     }
     for (size_t row = 0; row < count_rows(sheet); row++) {
         char number[64];
-        snprintf(number, sizeof number, "n = %g", row_number(sheet, row));
-        put_sheet_label(stream, number, TILE - 8, picture->height - (double)row * TILE - 16, "right");
+        snprintf(number, sizeof number, "asked for: %g", row_number(sheet, row));
+        put_sheet_label(stream, number, TILE - 8, picture->height - (double)row * ROW - 16, "right");
+        for (size_t m = 0; m < sheet->methods->count; m++) {
+            put_sheet_label(stream, caption[row * sheet->methods->count + m].text, ((double)m + 1.5) * TILE,
+                            picture->height - (double)(row + 1) * ROW + 0.5 * CAPTION, "center");
+        }
     }
     fputs("plot ", stream);
     ms_escape_gnuplot_file(stream, sheet->shape, "-tiles.png");
     fputs(" binary filetype=png with rgbimage\n", stream);
 }
 
-static ms_status write_script(const ms_compare_sheet *sheet, const ms_picture *picture, ms_error *err)
+static ms_status write_script(const ms_compare_sheet *sheet, const ms_picture *picture, const sheet_caption *caption,
+                              ms_error *err)
 {
     ms_output output;
     char *path = make_path(sheet, "sheet.gp", err);
     ms_status status = path ? ms_output_open(&output, path, err) : MS_ERR_NOMEM;
     if (status == MS_OK) {
-        put_sheet_script(output.stream, sheet, picture);
+        put_sheet_script(output.stream, sheet, picture, caption);
         status = ms_output_close(&output, MS_OK, err);
     }
     free(path);
@@ -188,17 +214,23 @@ ms_status ms_compare_sheet_draw(const ms_compare_sheet *sheet, const ms_target *
 {
     ms_picture picture = {0};
     char *tiles = make_path(sheet, "tiles.png", err), *stem = make_path(sheet, "sheet", err);
-    ms_status status = tiles && stem ? ms_render_picture_alloc(&picture, (int)(sheet->methods->count + 1) * TILE,
-                                                               (int)count_rows(sheet) * TILE, err)
-                                     : MS_ERR_NOMEM;
+    sheet_caption *caption = calloc(count_rows(sheet) * sheet->methods->count, sizeof *caption);
+    ms_status status = tiles && stem ? MS_OK : MS_ERR_NOMEM;
+    if (status == MS_OK && !caption) {
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory for the contact sheet");
+    }
     if (status == MS_OK) {
-        status = draw_tiles(&picture, sheet, target, err);
+        status = ms_render_picture_alloc(&picture, (int)(sheet->methods->count + 1) * TILE,
+                                         (int)count_rows(sheet) * ROW, err);
+    }
+    if (status == MS_OK) {
+        status = draw_tiles(&picture, caption, sheet, target, err);
     }
     if (status == MS_OK) {
         status = ms_render_picture_write(&picture, tiles, err);
     }
     if (status == MS_OK) {
-        status = write_script(sheet, &picture, err);
+        status = write_script(sheet, &picture, caption, err);
     }
     if (status == MS_OK) {
         status = ms_chart_draw(stem, err);
@@ -207,6 +239,7 @@ ms_status ms_compare_sheet_draw(const ms_compare_sheet *sheet, const ms_target *
         fprintf(words, "drew %s.png\n", stem);
     }
     ms_render_picture_free(&picture);
+    free(caption);
     free(tiles);
     free(stem);
     return status;

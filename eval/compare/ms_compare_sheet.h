@@ -15,6 +15,7 @@ typedef struct ms_compare_sheet {
     const ms_methods *methods;
     const double *asked; /* numbers of spheres, ascending */
     size_t n_asked;
+    size_t max_voxels; /* of a grid that a clump is scored on */
 } ms_compare_sheet;
 
 /** Keeps a clump for the sheet as FOLDER/SHAPE-METHOD-N.csv. @return as ms_write_clump */
@@ -33,7 +34,8 @@ ms_status ms_compare_sheet_list(ms_files *files, const ms_compare_sheet *sheet, 
 
 /**
  * Draws FOLDER/SHAPE-sheet.png: the shape, then a column for each method, a row for each number of spheres, four rows
- * at most. A clump that was not kept, as that of a run that failed, leaves its place empty.
+ * at most; under each clump its true number of spheres and its D on the grid of the target. A clump that was not kept,
+ * as that of a run that failed, leaves its place empty.
  *
  * @param words where it says what it drew
  * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM; as ms_chart_draw

@@ -8,6 +8,7 @@
 
 #include "cli/ms_expectation.h"
 #include "cli/ms_files.h"
+#include "cli/ms_machine.h"
 #include "ms_compare.h"
 #include "ms_compare_charts.h"
 #include "ms_compare_plan.h"
@@ -30,6 +31,7 @@ typedef struct compare_walk {
     const ms_compare_plan *plan;
     compare_result **result; /* of each run that is done and not taken; NULL without memory */
     ms_csv *csv;
+    ms_machine machine;
     size_t made, failed; /* rows; of those made how many failed */
     size_t remarked;     /* of the others: the method has a remark on the clump */
     ms_error first_cause;
@@ -86,7 +88,8 @@ static ms_compare_sheet plan_sheet(const ms_comparison *a, const char *name, siz
                               .at = at,
                               .methods = &a->methods,
                               .asked = a->asked.value,
-                              .n_asked = a->asked.count};
+                              .n_asked = a->asked.count,
+                              .max_voxels = ms_input_max_voxels(&a->input)};
 }
 
 /* For the contact sheet: charts are drawn of runs in turn, so that no other run is at it.
@@ -119,9 +122,10 @@ static void draw_sheet(compare_walk *w, const ms_compare_stage *stage)
 }
 
 /* One row, of the first spheres of what a trial or another tool gave. */
-static ms_status judge_clump(compare_walk *w, compare_result *result, const ms_compare_run *run, double asked,
-                             const ms_trial *trial, double seconds)
+static ms_status judge_clump(compare_walk *w, compare_result *result, const ms_compare_run *run, size_t k,
+                             const ms_trial *trial)
 {
+    const double asked = run->asked[k];
     const ms_method *method = run->method;
     const ms_clump *clump = method->generator ? &trial->clump : &method->clump[run->stage->at].clump;
     const size_t n = asked < (double)clump->n_spheres ? (size_t)asked : clump->n_spheres;
@@ -129,7 +133,9 @@ static ms_status judge_clump(compare_walk *w, compare_result *result, const ms_c
     if (method->generator) {
         row->text[MS_COLUMN_STOPPED] =
             ms_stop_name(asked <= (double)clump->n_spheres ? MS_STOP_SPHERES : trial->reason);
-        row->number[MS_COLUMN_GENERATE] = seconds;
+        row->number[MS_COLUMN_GENERATE] = trial->seconds[k];
+        row->number[MS_COLUMN_FASTEST] = trial->fastest[k];
+        row->number[MS_COLUMN_SLOWEST] = trial->slowest[k];
         row->number[MS_COLUMN_MEMORY] = trial->memory;
     }
     keep_clump(w, run, asked, clump, n);
@@ -203,14 +209,14 @@ static void make_rows(compare_walk *w, compare_result *result, const ms_compare_
         compare_result *r = &result[k];
         ms_compare_plan_checksum(r->checksum, shared->input.checksum);
         r->row = ms_compare_plan_row(w->a, run->stage, run->method, run->asked[k], r->checksum);
+        r->row.text[MS_COLUMN_MACHINE] = w->machine.text;
         r->row.number[MS_COLUMN_THREADS] = omp_get_max_threads();
         r->row.number[MS_COLUMN_BESIDE] = beside;
         r->cause = cause;
         if (shared->status == MS_OK) {
             put_input(&r->row, &shared->input);
         }
-        const int failed = made != MS_OK ||
-                           judge_clump(w, r, run, run->asked[k], &trial, trial.seconds ? trial.seconds[k] : 0) != MS_OK;
+        const int failed = made != MS_OK || judge_clump(w, r, run, k, &trial) != MS_OK;
         put_cause(r, &trial, failed);
     }
     ms_trial_free(&trial);
@@ -352,7 +358,7 @@ ms_status ms_compare_walk(ms_csv *csv, const ms_comparison *comparison, ms_error
 {
     ms_compare_plan plan;
     ms_status status = ms_compare_plan_make(&plan, comparison, csv, err);
-    compare_walk w = {.a = comparison, .plan = &plan, .csv = csv};
+    compare_walk w = {.a = comparison, .plan = &plan, .csv = csv, .machine = ms_machine_read()};
     if (status != MS_OK) {
         return status;
     }

@@ -117,10 +117,14 @@ ms_status ms_trial_make(ms_trial *trial, const ms_trial_run *run, const ms_targe
     const size_t n = run->n_asked, repeats = (size_t)run->repeats;
     memset(trial, 0, sizeof *trial);
     double *seconds = malloc(repeats * n * sizeof *seconds), *one = malloc(repeats * sizeof *one);
-    trial->seconds = malloc(n * sizeof *trial->seconds);
+    trial->seconds = malloc(3 * n * sizeof *trial->seconds);
     ms_status status = seconds && one && trial->seconds
                            ? MS_OK
                            : ms_fail(err, MS_ERR_NOMEM, "no memory for the times of %zu runs", repeats);
+    if (status == MS_OK) {
+        trial->fastest = trial->seconds + n;
+        trial->slowest = trial->fastest + n;
+    }
     if (!run->beside) {
         forget_peak();
     }
@@ -132,7 +136,9 @@ ms_status ms_trial_make(ms_trial *trial, const ms_trial_run *run, const ms_targe
         for (size_t r = 0; r < repeats; r++) {
             one[r] = seconds[r * n + k];
         }
-        trial->seconds[k] = median(one, repeats);
+        trial->seconds[k] = median(one, repeats); /* which sorts them */
+        trial->fastest[k] = one[0];
+        trial->slowest[k] = one[repeats - 1];
     }
     free(seconds);
     free(one);
@@ -146,7 +152,7 @@ void ms_trial_free(ms_trial *trial)
 {
     ms_clump_free(&trial->clump);
     free(trial->seconds);
-    trial->seconds = NULL;
+    trial->seconds = trial->fastest = trial->slowest = NULL;
 }
 
 static void put_metrics(ms_compare_row *row, const ms_metrics *metrics)

@@ -23,9 +23,10 @@ typedef struct ms_trial_run {
 typedef struct ms_trial {
     ms_clump clump; /* of the largest number */
     ms_stop_reason reason;
-    ms_error remarks; /* of the method on it; "" without */
-    double *seconds;  /* for each number: until there were as many spheres; of the largest the whole run */
-    double memory;    /* largest resident memory of the runs, kB; NAN where other runs were beside it */
+    ms_error remarks;          /* of the method on it; "" without */
+    double *seconds;           /* for each number: until there were as many spheres; of the largest the whole run */
+    double *fastest, *slowest; /* of the runs of which that is the median; within `seconds` */
+    double memory;             /* largest resident memory of the runs, kB; NAN where other runs were beside it */
 } ms_trial;
 
 /**

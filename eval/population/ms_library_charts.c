@@ -46,8 +46,9 @@ static ms_status write_chart(const ms_library *l, int d, const char *folder, ms_
     for (size_t j = 0; j < l->choice.k; j++) {
         few[j] = (ms_chart_point){.x = table->grain[l->choice.grain[j]].shape[d], .y = l->choice.weight[j]};
     }
-    const ms_chart_series series[] = {{"all grains", MS_CHART_LINE, make_stairs(all, table->count), all},
-                                      {"library", MS_CHART_CURVE, make_stairs(few, l->choice.k), few}};
+    const ms_chart_series series[] = {
+        {.name = "all grains", .style = MS_CHART_LINE, .count = make_stairs(all, table->count), .point = all},
+        {.name = "library", .style = MS_CHART_CURVE, .count = make_stairs(few, l->choice.k), .point = few}};
     const ms_chart chart = {.title = "",
                             .x_label = ms_library_descriptors[d],
                             .y_label = l->goal.by_mass ? "share of the mass" : "share of the grains",

@@ -372,14 +372,33 @@ ms_status ms_scene_make(ms_scene *scene, const ms_manifest *manifest, const ms_s
     return status;
 }
 
-/* The same number for each shape, or its last where it has fewer, of no more spheres than the templates chosen. */
+/* `each` spheres for every particle, or as many as the largest template of its shape has. */
+static ms_allocation sum_even(const ms_scene *scene, const ms_share *share, size_t *n, size_t each)
+{
+    for (size_t s = 0; s < scene->count; s++) {
+        n[s] = each < share[s].most ? each : share[s].most;
+    }
+    return ms_allocate_sum(share, n, scene->count);
+}
+
+/* As many spheres as the templates chosen take, the same number for every particle; what does not go into that is one
+ * more for the same part of the particles of each shape, so that the mean D is between those of both numbers. */
 static void spread_evenly(ms_scene *scene, const ms_share *share, size_t *n)
 {
-    scene->even_each = (size_t)(scene->sum.spheres / scene->sum.particles);
-    for (size_t s = 0; s < scene->count; s++) {
-        n[s] = scene->even_each < share[s].most ? scene->even_each : share[s].most;
+    const uint64_t spheres = scene->sum.spheres;
+    size_t each = 1;
+    ms_allocation few = sum_even(scene, share, n, each), more = sum_even(scene, share, n, each + 1);
+    while (more.spheres <= spheres && more.spheres > few.spheres) {
+        each++;
+        few = more;
+        more = sum_even(scene, share, n, each + 1);
     }
-    scene->even = ms_allocate_sum(share, n, scene->count);
+    const uint64_t step = more.spheres - few.spheres;
+    const double part = step > 0 ? (double)(spheres - few.spheres) / (double)step : 0;
+    scene->even = few;
+    scene->even.spheres = step > 0 ? spheres : few.spheres;
+    scene->even.error += part * (more.error - few.error);
+    scene->even_each = (double)each + part;
 }
 
 /* Of a search, which knows one template smaller than the one chosen of each shape. */

@@ -47,7 +47,7 @@ typedef struct ms_scene {
     ms_allocation sum;  /* of the templates chosen; slack of MS_GOAL_MEAN and MS_GOAL_BUDGET */
     double least_gain;  /* ms_allocate_gain */
     int is_searched;    /* ms_scene_is_searched: most numbers of spheres were not run, and nothing is spread evenly */
-    size_t even_each;   /* the same number of spheres for each shape, of no more in all */
+    double even_each;   /* as many spheres, the same number for each particle: one more for a part of each shape's */
     ms_allocation even; /* what that comes to */
 } ms_scene;
 

@@ -67,7 +67,7 @@ void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal)
             (unsigned long long)sum->particles);
     fprintf(stream, "  %-26s %.5f\n", "mean D", sum->error);
     if (scene->count > 1 && !scene->is_searched) {
-        fprintf(stream, "  %-26s %.5f with %zu for each shape, %llu in all\n", "mean D, spread evenly",
+        fprintf(stream, "  %-26s %.5f with %.4g for each particle, %llu in all\n", "mean D, spread evenly",
                 scene->even.error, scene->even_each, (unsigned long long)scene->even.spheres);
     }
     fprintf(stream, "  %-26s takes %.2g off the sum of D over the particles\n", "least useful sphere",
@@ -131,7 +131,7 @@ void ms_scene_add_json(json_t **json, const ms_scene *scene, const ms_goal *goal
     ms_json_object_set(json, "slack", together ? json_real(sum->slack) : json_null());
     ms_json_object_set(json, "even",
                        scene->is_searched ? json_null()
-                                          : json_pack("{s:I,s:I,s:f}", "each", (json_int_t)scene->even_each, "spheres",
+                                          : json_pack("{s:f,s:I,s:f}", "each", scene->even_each, "spheres",
                                                       (json_int_t)even->spheres, "mean_dice", even->error));
     ms_json_object_set(json, "smallest",
                        json_pack("{s:f,s:o}", "radius", ms_clump_smallest_radius(ms_scene_clump(smallest)), "shape",

@@ -48,13 +48,28 @@ static ms_status turn_randomly(ms_changed *c, const ms_change_order *order, ms_e
     return ms_perturb_motion_random_turn(&c->motion, (uint64_t)order->level, err);
 }
 
-/* Places that fill the cube evenly: multiples of the powers of 1 / 1.2207, the root of x^4 = x + 1. */
-static ms_status shift_voxels(ms_changed *c, const ms_change_order *order, ms_error *err)
+/* Parts of a voxel that fill the cube evenly: multiples of the powers of 1 / 1.2207, the root of x^4 = x + 1. */
+static double find_part(double level, int axis)
 {
     static const double STEP[3] = {0.81917251339616444, 0.67104360670378921, 0.54970047790197029};
+    return fmod(level * STEP[axis], 1);
+}
+
+/* The grid is laid around the box of the shape, so that it goes with it: what is left is rounding. */
+static ms_status shift_voxels(ms_changed *c, const ms_change_order *order, ms_error *err)
+{
     (void)err;
     for (int a = 0; a < 3; a++) {
-        c->motion.shift[a] = c->voxel_size * fmod(order->level * STEP[a], 1);
+        c->motion.shift[a] = c->voxel_size * find_part(order->level, a);
+    }
+    return MS_OK;
+}
+
+static ms_status move_lattice(ms_changed *c, const ms_change_order *order, ms_error *err)
+{
+    (void)err;
+    for (int a = 0; a < 3; a++) {
+        c->lattice[a] = find_part(order->level, a);
     }
     return MS_OK;
 }
@@ -134,6 +149,10 @@ const ms_change ms_changes[] = {
      .level = "number of the shift by parts of a voxel",
      .level_of = level_number,
      .apply = shift_voxels},
+    {.name = "lattice",
+     .level = "number of the shift of the lattice by parts of a voxel",
+     .level_of = level_number,
+     .apply = move_lattice},
     {.name = "resolution",
      .level = "cells over those asked for, 0.5 to 2",
      .axis = "cells / cells asked for",

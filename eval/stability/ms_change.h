@@ -12,8 +12,9 @@ struct ms_change;
 /** What a change may change. It begins as the shape and the run are without it. */
 typedef struct ms_changed {
     ms_mesh mesh;
-    ms_motion motion; /* of the mesh, after all else; undone on the spheres */
-    uint64_t seed;    /* of the method */
+    ms_motion motion;  /* of the mesh, after all else; undone on the spheres */
+    double lattice[3]; /* how far the lattice is moved under the shape, voxels */
+    uint64_t seed;     /* of the method */
     double voxel_size;
     int threads;
 } ms_changed;

@@ -13,6 +13,7 @@ typedef struct ms_hard_shape {
     double deq;      /* voxel size = diameter of the ball of equal volume / this, where no flag says another */
     int only;        /* nonzero: no flag changes that */
     double holes;    /* part of the triangles that is taken away */
+    double apart;    /* a copy of it stands so far along x: two bodies that overlap; 0: none */
 } ms_hard_shape;
 
 extern const ms_hard_shape ms_hard_shapes[];

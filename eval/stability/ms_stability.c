@@ -42,6 +42,9 @@ static ms_status make_target(ms_target *target, const ms_changed *c, const ms_st
 {
     double n[3];
     ms_voxelize_extents(n, &c->mesh, c->voxel_size);
+    for (int a = 0; a < 3; a++) {
+        n[a] += c->lattice[a] > 0; /* as ms_voxelize_moved */
+    }
     const double squares = ms_mesh_area(&c->mesh) / (c->voxel_size * c->voxel_size);
     const double bytes = ms_target_bytes(n, squares, s->flags->need);
     if (bytes > s->flags->max_memory) {
@@ -49,7 +52,8 @@ static ms_status make_target(ms_target *target, const ms_changed *c, const ms_st
                        n[1], n[2]);
     }
     ms_queue_need_memory(s->place, bytes, s->flags->max_memory);
-    return ms_target_from_mesh(target, &c->mesh, s->input->report.closed, c->voxel_size, s->flags->rule, err);
+    return ms_target_from_mesh_moved(target, &c->mesh, s->input->report.closed, c->voxel_size, s->flags->rule,
+                                     c->lattice, err);
 }
 
 static uint64_t sum_spheres(const ms_clump *clump)
@@ -94,8 +98,19 @@ static ms_status run_method(ms_stability_run *run, ms_error *remarks, const ms_t
     if (status == MS_OK && run->until_dice > 0) {
         status = seek_number(run, job, err);
     }
-    ms_clump_free(&clump);
+    if (status == MS_OK && s->keep) {
+        run->clump = clump;
+    } else {
+        ms_clump_free(&clump);
+    }
     return status;
+}
+
+void ms_stability_free(ms_stability_run *run, size_t count)
+{
+    for (size_t r = 0; r < count; r++) {
+        ms_clump_free(&run[r].clump);
+    }
 }
 
 void ms_stability_try(ms_stability_run *run, const ms_stability *s)

@@ -27,6 +27,7 @@ typedef struct ms_stability {
     uint64_t seed;         /* of all runs */
     const ms_input_flags *flags;
     ms_queue_place *place;
+    int keep; /* nonzero: the clump stays with the run */
 } ms_stability;
 
 /** A run: what it is, and what it gave. What it did not get to is NAN or 0. */
@@ -51,6 +52,7 @@ typedef struct ms_stability_run {
     size_t spheres_until; /* number with which the method met the mismatch asked for; 0: not with 10 times `asked` */
     double seconds;       /* of the method */
     uint64_t checksum;    /* of the spheres, moved back */
+    ms_clump clump;       /* these, where they are kept; ms_stability_free */
     ms_error cause;       /* why it failed or is unusable; of the others what the method remarks; "" without */
 } ms_stability_run;
 
@@ -61,6 +63,9 @@ typedef struct ms_stability_run {
  * @param[in,out] run shape, method, change, number, level and what is asked for; gets all else
  */
 void ms_stability_try(ms_stability_run *run, const ms_stability *s);
+
+/** Frees the clumps that runs have kept. */
+void ms_stability_free(ms_stability_run *run, size_t count);
 
 /** What a method is called in tables: NAME or NAME:OPTIONS, cut if it is long. */
 typedef struct ms_label {

@@ -35,7 +35,7 @@ size_t ms_stability_count(const ms_stability_plan *plan)
     return each * plan->n_shapes * plan->methods->count;
 }
 
-static ms_status read_shape(ms_input *input, const char *name, ms_input_flags *flags, ms_error *err)
+ms_status ms_stability_read_shape(ms_input *input, const char *name, ms_input_flags *flags, ms_error *err)
 {
     ms_choice choice = {.typed = name};
     const ms_hard_shape *built_in = ms_hard_shapes_find(&choice);
@@ -57,7 +57,7 @@ static ms_status sum_shape(uint64_t *checksum, const char *name, const ms_input_
 {
     ms_input input;
     ms_input_flags own = *flags;
-    const ms_status status = read_shape(&input, name, &own, err);
+    const ms_status status = ms_stability_read_shape(&input, name, &own, err);
     if (status == MS_OK) {
         *checksum = input.checksum;
         ms_input_free(&input);
@@ -120,7 +120,7 @@ static ms_status plan_shape(stability_walk *w, size_t s, ms_error *err)
                             .min_radius = plan->min_radius,
                             .until_dice = plan->until_dice};
     ms_status status = MS_OK;
-    ms_shared_input_begin(&w->shared[s], plan->shape[s], read_shape, plan->flags, 0);
+    ms_shared_input_begin(&w->shared[s], plan->shape[s], ms_stability_read_shape, plan->flags, 0);
     if (w->n_runs < w->rows->csv.n_rows) {
         status = sum_shape(&run.shape_checksum, plan->shape[s], plan->flags, err);
     }
@@ -139,7 +139,7 @@ static ms_status plan_shapes(stability_walk *w, ms_error *err)
         status = plan_shape(w, begun, err);
     }
     for (size_t s = begun; s < w->plan->n_shapes; s++) { /* so that all can be ended */
-        ms_shared_input_begin(&w->shared[s], w->plan->shape[s], read_shape, w->plan->flags, 0);
+        ms_shared_input_begin(&w->shared[s], w->plan->shape[s], ms_stability_read_shape, w->plan->flags, 0);
     }
     if (status == MS_OK && w->n_runs < w->rows->csv.n_rows) {
         status = ms_fail(err, MS_ERR_ARG, "%s: holds %zu rows of other runs behind these; name another file",
@@ -154,8 +154,11 @@ static void work_run(void *context, size_t at, ms_queue_place *place)
     ms_shared_input *shared = w->job[at].shared;
     ms_stability_run *run = &w->run[w->job[at].run];
     if (ms_shared_input_need(shared, place) == MS_OK) {
-        const ms_stability s = {
-            .input = &shared->input, .seed = w->plan->seed, .flags = w->plan->flags, .place = place};
+        const ms_stability s = {.input = &shared->input,
+                                .seed = w->plan->seed,
+                                .flags = w->plan->flags,
+                                .place = place,
+                                .keep = w->plan->keeps_clumps};
         ms_stability_try(run, &s);
         run->beside = ms_queue_beside(place);
     } else {

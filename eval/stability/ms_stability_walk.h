@@ -14,7 +14,8 @@ typedef struct ms_stability_plan {
     size_t spheres;
     double min_radius, until_dice; /* 0: not asked for */
     uint64_t seed;
-    int runs; /* of each change */
+    int runs;         /* of each change */
+    int keeps_clumps; /* nonzero: with the runs */
     const ms_input_flags *flags;
     ms_input_text said; /* these and the two above, as text */
 } ms_stability_plan;
@@ -27,6 +28,13 @@ typedef struct ms_stability_rows {
 
 /** How many runs there are. */
 size_t ms_stability_count(const ms_stability_plan *plan);
+
+/**
+ * Reads a built-in shape or a file, which is a mesh.
+ * @param[in,out] flags get the voxel size of a built-in shape
+ * @return MS_OK; as ms_hard_shapes_read, ms_input_read; MS_ERR_ARG for a volume
+ */
+ms_status ms_stability_read_shape(ms_input *input, const char *name, ms_input_flags *flags, ms_error *err);
 
 /** Is every shape there, and a mesh? @return MS_OK; as ms_input_read; MS_ERR_ARG for a volume */
 ms_status ms_stability_try_shapes(const ms_stability_plan *plan, ms_error *err);

@@ -76,13 +76,23 @@ function read(raw) {
 /* ---- values and their scale ---- */
 /* How far each corner of the shape is outside the first spheres. */
 function findGaps() {
-  const c = scene.mesh.corners, s = scene.spheres, gap = new Float32Array(c.length / 3);
+  const c = scene.mesh.corners, gap = new Float32Array(c.length / 3), s = new Float32Array(4 * first);
+  const order = Array.from({length: first}, (_, k) => 4 * k).sort((p, q) => scene.spheres[p] - scene.spheres[q]);
+  const widest = order.reduce((most, k) => Math.max(most, scene.spheres[k + 3]), 0);
+  order.forEach((k, at) => s.set(scene.spheres.subarray(k, k + 4), 4 * at));
+  let nearest = 0; /* of the corner before; from there outwards along x, as far as a sphere can reach */
   for (let v = 0; v < gap.length; v++) {
-    const x = c[3 * v], y = c[3 * v + 1], z = c[3 * v + 2];
+    const x = c[3 * v], y = c[3 * v + 1], z = c[3 * v + 2], from = nearest;
     let least = Infinity;
-    for (let k = 0; k < 4 * first && least > 0; k += 4) {
-      const a = x - s[k], b = y - s[k + 1], d = z - s[k + 2];
-      least = Math.min(least, Math.sqrt(a * a + b * b + d * d) - s[k + 3]);
+    for (let way = 4; way >= -4; way -= 8) {
+      let k = way > 0 ? from : from - 4;
+      for (; k >= 0 && k < s.length && least > 0 && way * (s[k] - x) < 4 * (least + widest); k += way) {
+        const a = x - s[k], b = y - s[k + 1], d = z - s[k + 2], off = Math.sqrt(a * a + b * b + d * d) - s[k + 3];
+        if (off < least) {
+          least = off;
+          nearest = k;
+        }
+      }
     }
     gap[v] = Math.max(0, least);
   }

@@ -69,8 +69,8 @@ class Columns(Case):
                          NORMALS.replace(" ", ",") + ",smallest_radius_ratio,work,"
                          "pieces,inertia_union,coverage_cut," + ",".join(DESCRIPTORS) + ",expected,inertia_corrected,epsilon,"
                          "products_epsilon,centre_epsilon,voxel_size,"
-                         "seconds_read,seconds_voxelize,seconds_distance,seconds_describe,seconds_generate,seconds_score,"
-                         "seconds_correct,repeats,peak_memory_kb,threads,beside,version,cause")
+                         "seconds_read,seconds_voxelize,seconds_distance,seconds_describe,seconds_generate,seconds_least,"
+                         "seconds_most,seconds_score,seconds_correct,repeats,peak_memory_kb,machine,threads,beside,version,cause")
 
     def test_csv_of_stability(self):
         self.mskit("stability", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10, "--runs", 1, "--perturb", "seed")

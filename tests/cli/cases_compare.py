@@ -17,8 +17,8 @@ import zlib
 
 from support import MSKIT, TIMEOUT, Case, box_obj, fnv1a, npy
 
-TIMES = ("seconds_read", "seconds_voxelize", "seconds_distance", "seconds_describe", "seconds_generate", "seconds_score",
-         "seconds_correct", "peak_memory_kb", "beside")
+TIMES = ("seconds_read", "seconds_voxelize", "seconds_distance", "seconds_describe", "seconds_generate", "seconds_least",
+         "seconds_most", "seconds_score", "seconds_correct", "peak_memory_kb", "beside")
 RUN = ("-g", "mss", "-g", "setcover", "-g", "variational", "-n", "3,6", "--cells", "12",
        "-j", "1")
 
@@ -385,7 +385,7 @@ class Charts(Compare):
             self.assertIn("number of spheres", texts)
             self.assertTrue(set(titles) <= set(texts), "the legend names them")
             self.check_axes(f"charts/box-{kind}.gp", [p for b in blocks for p in b])
-        self.check_front("time", "seconds_generate", methods[:3], rows)  # a clump from a file took no time that is known
+        self.check_front("time", "seconds_generate", methods[:3] + ["o'dd, 2 spheres, no time"], rows)
         self.check_front("work", "work", methods, rows)
         self.assertEqual(len(self.svg("charts/box-resolution.svg")[0]), 4)
         self.check_sheet(columns=5, rows=3)
@@ -396,6 +396,10 @@ class Charts(Compare):
         """Every point has its number of spheres; the front is the one found here by brute force."""
         titles, texts = self.svg(f"charts/box-{kind}.svg")
         front, *blocks = self.blocks(f"charts/box-{kind}.dat")
+        if kind == "time":  # a clump from a file took no time that is known: a line across the chart
+            line = blocks.pop()
+            self.assertEqual({y for _, y, _ in line}, {float(f"{float(rows[-1]['dice']):.9g}")})
+            self.assertIn(f"{rows[0]['machine']}; threads: {rows[0]['threads']}; single runs", texts)
         points = [p for b in blocks for p in b]
         self.assertEqual(titles, ["Pareto front"] + methods)
         self.assertEqual([p[2] for p in points], [r["n"] for r in rows if r[column]])
@@ -419,30 +423,47 @@ class Charts(Compare):
                              zlib.crc32(data[at + 4:at + 8 + size]))
             at += 12 + size
         width, height, *kind = struct.unpack(">IIBBBBB", parts[b"IHDR"])
-        self.assertEqual((width, height, kind), (220 * columns, 220 * rows, [8, 0, 0, 0, 0]))
+        self.assertEqual((width, height, kind), (220 * columns, 246 * rows, [8, 0, 0, 0, 0]))
         pixels = zlib.decompress(parts[b"IDAT"])
         self.assertEqual(len(pixels), (width + 1) * height)
         for row in range(rows):
             for column in range(columns):
-                dark = sum(value < 255 for y in range(220 * row, 220 * row + 220) for value in
+                dark = sum(value < 255 for y in range(246 * row, 246 * row + 220) for value in
                            pixels[y * (width + 1) + 1 + 220 * column:y * (width + 1) + 1 + 220 * (column + 1)])
                 is_there = row == 0 or 0 < column < columns - 1
                 self.assertEqual(dark > 2000, is_there, f"tile {column}, {row}")
         script = self.read("charts/box-sheet.gp").decode()
-        for word in ("mss:boost=2,confine", "setcover", "n = 3", "n = 6", "n = 9"):
+        for word in ("mss:boost=2,confine", "setcover", "asked for: 3", "asked for: 6", "asked for: 9"):
             self.assertIn(f"set label '{word}'", script)
         self.assertIn(r'set label "o\047dd"', script)
 
     def test_without_gnuplot(self):
         """A clear error; results and scripts are there."""
-        result = self.mskit("compare", "box.obj", "-g", "mss", "-n", "3", "--cells", "8", "--charts", "charts", code=1,
+        result = self.mskit("compare", "box.obj", "-g", "mss", "-n", "3,4", "--cells", "8", "--charts", "charts", code=1,
                             env={**os.environ, "PATH": self.dir})
         self.assert_says(result, "gnuplot-nox", "box-sheet.gp")
-        self.assertEqual(len(self.rows()), 1)
+        self.assertEqual(len(self.rows()), 2)
         names = sorted(os.listdir(self.path("charts")))
-        sheet = ["box-mss-3.csv", "box-sheet.gp", "box-tiles.png"]
-        kinds = ["dice", "normal_median", "time", "work", "inertia"] + (["corrected"] if self.rows()[0]["epsilon"] else [])
+        sheet = ["box-mss-3.csv", "box-mss-4.csv", "box-sheet.gp", "box-tiles.png"]
+        masses = sum(row["epsilon"] != "" for row in self.rows())
+        kinds = ["dice", "normal_median", "time", "work", "inertia"] + (["corrected"] if masses == 2 else [])
         self.assertEqual(names, sorted(sheet + [f"box-{k}.{e}" for k in kinds for e in ("dat", "gp")]))
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed (package gnuplot-nox)")
+    def test_a_point_is_no_chart(self):
+        """It is said in words; points of times have bars from the fastest run to the slowest, of which one is the median."""
+        result = self.mskit("compare", "box.obj", "-g", "mss", "-g", "fcm", "-n", "3", "--cells", "8", "--repeat", "3",
+                            "--charts", "charts")
+        rows = self.rows()
+        said = "; ".join(f"{r['generator']}: number of spheres 3, mismatch D {float(r['dice']):.4g}" for r in rows)
+        self.assertIn(f"no chart charts/box-dice, but words: {said}\n", result.out)
+        self.assertNotIn("box-dice.svg", os.listdir(self.path("charts")))
+        bars = [line.split(" ") for line in self.read("charts/box-time.dat").decode().splitlines() if line.count(" ") == 4]
+        for bar, row in zip((bar for bar in bars if bar[0] != "#"), rows, strict=True):
+            for value, column in zip((bar[0], bar[3], bar[4]), ("seconds_generate", "seconds_least", "seconds_most")):
+                self.assert_close(float(value), float(row[column]), 1e-8)
+            self.assertTrue(float(row["seconds_least"]) <= float(row["seconds_generate"]) <= float(row["seconds_most"]))
+        self.assertIn("medians of 3 runs; bars: least to most, 75 % confidence", self.read("charts/box-time.svg").decode())
 
     def test_same_names(self):
         os.mkdir(self.path("other"))

@@ -81,7 +81,7 @@ class Tables(Population):
         run = self.mskit("compare", "shapes/box-0.obj", "-g", "mss", "-n", "1", "--cells", "6", "-j", "1", "--clump",
                          "tool=given", "-o", "out/c.csv", "--charts", "out", "--report", "out/r.html", "--json")
         self.assertEqual([row["generator"] for row in run.json], ["mss", "tool"])
-        self.assertIn("drew out/box-0-dice.svg", run.err)
+        self.assertIn("drew out/box-0-work.svg", run.err)
         page = self.read("out/r.html").decode()
         scenes = json.loads(re.search(r'id="scenes">(.*?)</script>', page, re.S).group(1))
         self.assertEqual([scene["name"] for scene in scenes], ["shapes/box-0.obj, mss, 1 spheres",

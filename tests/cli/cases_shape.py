@@ -22,6 +22,8 @@ KINDS = (
     ("cone", ("r=1.2", "h=3.1"), PI * 1.2**2 * 3.1 / 3,
      [0.3 * 1.2**2] + [3 / 80 * (4 * 1.2**2 + 3.1**2)] * 2),
     ("dumbbell", ("R=1.1", "distance=3.5", "neck=0.3"), None, None),
+    ("bowl", ("R=1.2", "wall=0.3"), 2 / 3 * PI * (1.2**3 - 0.9**3), None),
+    ("cross", ("length=7", "width=1.5"), 3 * 7 * 1.5**2 - 2 * 1.5**3, None),
     ("cube", ("a=1.7",), 1.7**3, [1.7**2 / 6] * 3),
     ("box", ("a=3", "b=2", "c=1"), 6, [(2**2 + 1) / 12, (3**2 + 1) / 12, (3**2 + 2**2) / 12]),
     ("plate", ("a=5", "b=4", "c=0.1"), 2, [(16 + 0.01) / 12, (25 + 0.01) / 12, (25 + 16) / 12]),
@@ -29,7 +31,7 @@ KINDS = (
     ("octahedron", ("a=1.7",), 4 / 3 * 1.7**3, [1.7**2 / 5] * 3),
     ("grain", ("r=1.2",), 4 / 3 * PI * 1.2**3, None),
 )
-FLAT = ("cube", "box", "plate", "tetrahedron", "octahedron", "grain")  # a grain is scaled to its volume
+FLAT = ("cross", "cube", "box", "plate", "tetrahedron", "octahedron", "grain")  # a grain is scaled to its volume
 
 
 def dumbbell_volume(ball, distance, neck):

@@ -1,14 +1,16 @@
 """mskit stability: what a result owes to things that should not matter."""
+import base64
 import csv
 import io
 import json
 import math
 import os
+import re
 import shutil
 
 from support import Case, box_obj, npy, read_obj
 
-KINDS = ("axes", "rotation", "shift", "resolution", "noise", "refine", "decimate", "seed", "order", "threads")
+KINDS = ("axes", "rotation", "shift", "lattice", "resolution", "noise", "refine", "decimate", "seed", "order", "threads")
 
 
 def rows_of(text):
@@ -229,7 +231,7 @@ class Stability(Case):
         rows = self.rows("-g", "mss", "-n", "1", "--perturb", "threads", "--runs", "1")
         names = [row["shape"] for row in rows if row["perturbation"] == "none"]
         self.assertEqual(names, ["plate", "needle", "cube", "tetrahedron", "shell", "torus", "dumbbell", "cone",
-                                 "rough", "speck", "open"])
+                                 "rough", "speck", "open", "bowl", "limbs", "cavity", "corners", "pair"])
         self.assertEqual({row["status"] for row in rows}, {"ok"})
 
     def test_charts(self):
@@ -268,6 +270,32 @@ class Stability(Case):
             found.append((head.split("'")[1], [tuple(float(w) for w in line.split()[:2]) for line in lines]))
         return found
 
+    def test_report(self):
+        """All rows; of each shape and method two clumps, the unchanged one and the worst, with as many spheres as theirs."""
+        args = ("speck", "pair", "-g", "mss", "-n", "3", "--deq", "10", "--perturb", "noise", "--perturb", "seed", "--runs",
+                "2", "-o", "s.csv", "--report", "r.html")
+        self.mskit("stability", *args)
+        rows = rows_of(self.read("s.csv").decode())
+        page = self.read("r.html").decode()
+        table = re.findall(r"<tr( data-scene=\"(\d+)\")?><td>(speck|pair)", page)
+        self.assertEqual([shape for *_, shape in table], [row["shape"] for row in rows])
+        shown = [row for (_, scene, _), row in zip(table, rows, strict=True) if scene]
+        wanted = []
+        for shape in ("speck", "pair"):
+            own = [row for row in rows if row["shape"] == shape]
+            wanted += [own[0], max(own[1:], key=lambda row: float(row["dice"]))][:2 if any(
+                float(row["dice"]) > float(own[0]["dice"]) for row in own) else 1]
+        self.assertEqual(shown, wanted)
+        scenes = json.loads(re.search(r'id="scenes">(.*?)</script>', page, re.S).group(1))
+        self.assertEqual([scene["name"] for scene in scenes],
+                         [f"{row['shape']}, mss, {row['perturbation']} {float(row['level']):g}, {row['n']} spheres"
+                          for row in wanted])
+        for scene, row in zip(scenes, wanted):
+            self.assertEqual(len(base64.b64decode(scene["spheres"])), 16 * int(row["n"]))
+            self.assertIn("mesh", scene)
+        self.mskit("stability", *args, "--resume")
+        self.assertNotIn("<tr data-scene", self.read("r.html").decode(), "clumps of a run before are not known")
+
     def test_help_names_every_perturbation(self):
         refused = self.mskit("stability", "cube", "--perturb", "nonsense", code=2).err
         known = refused.split("choose from ")[1].split("\n")[0].split(", ")
@@ -291,6 +319,7 @@ class Stability(Case):
             (("--until-dice", "0"), ("--until-dice", "1e-09 to 1")),
             (("-n", "0"), ("--spheres",)),
             (("--json", "-o", "-"), ("standard output",)),
+            (("--report", "r.html", "-o", "-"), ("--report", "-o")),
         ):
             with self.subTest(args=args):
                 self.assert_refused("stability", "cube", *args, code=2, says=says)

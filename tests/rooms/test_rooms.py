@@ -50,7 +50,7 @@ ROOMS = {
     "eval/queue": ["common/base", "eval/cli"],
     "eval/scene": ["common/base", "common/clump", "common/expect", "common/measure", "generators", "eval/cli", "eval/queue"],
     "eval/stability": ["common/base", "common/clump", "common/measure", "common/mesh", "common/shape", "common/voxel",
-                       "generators", "eval/chart", "eval/cli", "eval/queue"],
+                       "generators", "eval/chart", "eval/cli", "eval/queue", "eval/view"],
     "eval/view": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",
                   "common/mesh/formats", "common/voxel", "eval/chart"],
 }

@@ -78,13 +78,16 @@ static void volumes_are_the_known_ones(void **state)
         double volume;
     } known;
     static const known list[] = {
-        {"torus", {3, 1, 34}, 59.21762640653615},                                                     /* 6 pi^2 */
-        {"ellipsoid", {2, 1, 1, 56}, 8.377580409572781},                                              /* 8 pi / 3 */
-        {"hollow", {2, 1, 48}, 29.321531433504735},                                                   /* 28 pi / 3 */
-        {"octahedron", {1, 16}, 1.3333333333333333},     {"tetrahedron", {6, 16}, 25.45584412271571}, /* 18 sqrt 2 */
+        {"torus", {3, 1, 34}, 59.21762640653615},        /* 6 pi^2 */
+        {"ellipsoid", {2, 1, 1, 56}, 8.377580409572781}, /* 8 pi / 3 */
+        {"hollow", {2, 1, 48}, 29.321531433504735},      /* 28 pi / 3 */
+        {"octahedron", {1, 16}, 1.3333333333333333},
+        {"tetrahedron", {6, 16}, 25.45584412271571},   /* 18 sqrt 2 */
         {"needle", {4, 1, 32}, 10.471975511965978},    /* 2 pi + 4 pi / 3 */
         {"tablet", {1, 2, 1, 48}, 10.471975511965978}, /* half balls as caps: a needle again */
         {"cone", {1, 3, 48}, 3.141592653589793},
+        {"bowl", {1, 0.5, 48}, 1.8325957145940461}, /* 7 pi / 12 */
+        {"cross", {10, 1, 40}, 28},
     };
     (void)state;
     for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
@@ -192,9 +195,10 @@ static void mirror_symmetry_is_exact(void **state)
         const char *planes;
     } symmetry;
     static const symmetry list[] = {
-        {"ball", "0123"},  {"ellipsoid", "012"}, {"hollow", "0123"},   {"tablet", "0123"},     {"torus", "0123"},
-        {"needle", "012"}, {"cylinder", "0123"}, {"cone", "013"},      {"dumbbell", "012"},    {"cube", "0123"},
-        {"box", "012"},    {"plate", "0123"},    {"tetrahedron", "3"}, {"octahedron", "0123"},
+        {"ball", "0123"},     {"ellipsoid", "012"},   {"hollow", "0123"},   {"tablet", "0123"},
+        {"torus", "0123"},    {"needle", "012"},      {"cylinder", "0123"}, {"cone", "013"},
+        {"dumbbell", "012"},  {"cube", "0123"},       {"box", "012"},       {"plate", "0123"},
+        {"tetrahedron", "3"}, {"octahedron", "0123"}, {"bowl", "013"},      {"cross", "0123"},
     };
     (void)state;
     for (size_t k = 0; k < sizeof list / sizeof *list; k++) {

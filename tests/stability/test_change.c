@@ -18,7 +18,8 @@ static ms_changed begin_change(const ms_mesh *mesh)
 static int differs(const ms_changed *a, const ms_changed *b)
 {
     return a->seed != b->seed || a->voxel_size != b->voxel_size || a->threads != b->threads ||
-           memcmp(&a->motion, &b->motion, sizeof a->motion) != 0 || a->mesh.n_vertices != b->mesh.n_vertices ||
+           memcmp(&a->motion, &b->motion, sizeof a->motion) != 0 ||
+           memcmp(a->lattice, b->lattice, sizeof a->lattice) != 0 || a->mesh.n_vertices != b->mesh.n_vertices ||
            a->mesh.n_triangles != b->mesh.n_triangles ||
            memcmp(a->mesh.vertex, b->mesh.vertex, a->mesh.n_vertices * sizeof *a->mesh.vertex) != 0 ||
            memcmp(a->mesh.triangle, b->mesh.triangle, a->mesh.n_triangles * sizeof *a->mesh.triangle) != 0;
@@ -69,7 +70,7 @@ static void levels_are_as_the_table_says(void **state)
     assert_close(ms_change_level(noise, SEED, 1, 1), sqrt(0.001 * 0.03), 1e-15);
     assert_true(ms_change_level(order, SEED, 3, 5) == SEED + 3);
     assert_null(ms_change_find("none", &err)); /* always there, not to be asked for */
-    assert_non_null(strstr(err.text, "axes, rotation, shift"));
+    assert_non_null(strstr(err.text, "axes, rotation, shift, lattice"));
 }
 
 static void the_docs_name_each(void **state)

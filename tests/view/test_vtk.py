@@ -35,6 +35,33 @@ class Vtk(unittest.TestCase):
             points = [data.GetCell(cell).GetPoints().GetPoint(k) for k in range(3)]
             self.expect_on_sphere(points, sphere)
 
+    def test_the_script_of_the_docs(self):
+        """All but its window: the clump coloured by its radii, the shape beside it and as large."""
+        with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "formats.md"),
+                  encoding="utf-8") as stream:
+            script = stream.read().split("```python\n")[1].split("\nwindow, interactor")[0]
+        self.assertIn("clump.vtp", script)
+        with tempfile.TemporaryDirectory() as folder:
+            for command in (("shape", "ellipsoid", "fineness=8", "-o", "shape.stl"),
+                            ("generate", "shape.stl", "-g", "mss", "-n", "5", "--cells", "16", "-o", "clump.vtp",
+                             "-o", "clump.csv")):
+                subprocess.run([MSKIT, *command], cwd=folder, check=True, capture_output=True)
+            said = subprocess.run([sys.executable, "-c", script + "\nprint(renderer.GetActors().GetNumberOfItems(), "
+                                   "*clump.GetBounds(), *shape.GetBounds(), *spheres.GetScalarRange())"],
+                                  cwd=folder, check=True, capture_output=True, text=True).stdout.split()
+            with open(os.path.join(folder, "clump.csv"), encoding="utf-8") as stream:
+                radii = [float(line.split(",")[3]) for line in list(stream)[1:]]
+        actors, *numbers = (float(word) for word in said)
+        clump, shape, scale = numbers[:6], numbers[6:12], numbers[12:]
+        self.assertEqual(actors, 2)
+        for found, radius in zip(scale, (min(radii), max(radii))):
+            self.assertAlmostEqual(found, radius, delta=1e-6)
+        self.assertLess(clump[1], shape[0], "they stand side by side")
+        for a, b, whole in zip(clump, shape, (None, None, -1, 1, -1, 1)):
+            if whole:
+                self.assertAlmostEqual(b, whole, delta=1e-6)
+                self.assertAlmostEqual(a, whole, delta=0.1)
+
     def expect_on_sphere(self, points, sphere):
         """Corners on it, wound so that the triangle looks outward."""
         from_centre = [[p[k] - sphere[k] for k in range(3)] for p in points]

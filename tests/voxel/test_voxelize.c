@@ -324,6 +324,45 @@ static void volumes_converge_and_grids_are_symmetric(void **state)
     }
 }
 
+/* A box of whole voxels on a moved lattice: less than half a voxel away each is inside as before, further on the next
+ * one; its centres have moved with the lattice. */
+static void a_moved_lattice_moves_the_voxels(void **state)
+{
+    (void)state;
+    ms_mesh box = cuboid(-1, 3, 0, 5, 2, 8); /* 4 x 5 x 6 */
+    static const double SHIFT[3] = {0.25, 0, 0.75};
+    for (int kind = 0; kind < 3; kind++) {
+        ms_grid still = voxels_of(&box, 1, MS_VOXEL_HALF), grid;
+        size_t disagree = 0;
+        assert_int_equal(kind < 2 ? ms_voxelize_moved(&grid, &box, 1, both_rules[kind], SHIFT, NULL)
+                                  : ms_voxelize_open_moved(&grid, &disagree, &box, 1, SHIFT, NULL),
+                         MS_OK);
+        assert_int_equal(disagree, 0);
+        assert_int_equal(ms_grid_count(&grid), 4 * 5 * 6);
+        expect_hull(&grid);
+        for (int a = 0; a < 3; a++) {
+            assert_true(grid.origin[a] == still.origin[a] - SHIFT[a]);
+            assert_int_equal(grid.n[a], still.n[a] + (SHIFT[a] > 0));
+        }
+        const int first = MS_GRID_HULL; /* along z the first layer holds a quarter of the box alone */
+        assert_int_equal(grid.inside[ms_grid_index(&grid, first, first, first)], 0);
+        assert_int_equal(grid.inside[ms_grid_index(&grid, first, first, first + 1)], 1);
+        assert_int_equal(grid.inside[ms_grid_index(&grid, first + 3, first + 4, first + 6)], 1);
+        assert_int_equal(grid.inside[ms_grid_index(&grid, first + 4, first, first + 1)], 0);
+        ms_grid_free(&still);
+        ms_grid_free(&grid);
+    }
+    for (int bad = 0; bad < 2; bad++) {
+        ms_grid grid;
+        ms_error err = {{0}};
+        const double shift[3] = {0, bad ? 1 : -0.1, 0};
+        assert_int_equal(ms_voxelize_moved(&grid, &box, 1, MS_VOXEL_HALF, shift, &err), MS_ERR_ARG);
+        expect_message(&err, bad ? "not by 1" : "not by -0.1");
+        assert_null(grid.inside);
+    }
+    ms_mesh_free(&box);
+}
+
 static void a_cavity_stays_empty(void **state)
 {
     (void)state;
@@ -401,6 +440,7 @@ int main(void)
         cmocka_unit_test(an_octahedron_on_the_lattice_is_exact),
         cmocka_unit_test(a_mesh_snapped_to_the_lattice_stays_symmetric),
         cmocka_unit_test(volumes_converge_and_grids_are_symmetric),
+        cmocka_unit_test(a_moved_lattice_moves_the_voxels),
         cmocka_unit_test(a_cavity_stays_empty),
         cmocka_unit_test(a_far_mesh_has_the_same_voxels),
         cmocka_unit_test(any_number_of_threads_gives_the_same_bits),

@@ -1,0 +1,42 @@
+"""Tables in Markdown, and a document's parts between <!-- NAME --> and <!-- end -->, for the scripts beside this one."""
+import csv
+import re
+import sys
+
+
+def read(path):
+    with open(path, newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def markdown(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def fill(document, parts):
+    """Replaces what stands between the marks; each part must have its mark."""
+    with open(document, encoding="utf-8") as stream:
+        text = stream.read()
+    for name, part in parts.items():
+        pattern = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.DOTALL)
+        if not pattern.search(text):
+            sys.exit(f"{document} has no mark <!-- {name} -->")
+        text = pattern.sub(lambda found, part=part: found[1] + part + "\n" + found[2], text)
+    with open(document, "w", encoding="utf-8") as stream:
+        stream.write(text)
+    print(f"tables: {document}")
+
+
+def main():
+    """docs/tables.py DOCUMENT NAME=FILE...: what FILE holds between the marks of NAME."""
+    parts = {}
+    for argument in sys.argv[2:]:
+        name, path = argument.split("=", 1)
+        with open(path, encoding="utf-8") as stream:
+            parts[name] = stream.read().strip()
+    fill(sys.argv[1], parts)
+
+
+if __name__ == "__main__":
+    main()

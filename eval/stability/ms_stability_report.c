@@ -1,0 +1,162 @@
+#include "ms_stability_report.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/ms_file.h"
+#include "ms_stability_charts.h"
+#include "view/ms_view_page.h"
+#include "view/ms_view_report.h"
+#include "view/ms_view_scene.h"
+
+/* Triangles of a shape in one scene: 100 of them take about 10 MB. */
+enum { TRIANGLES = 8000, MOST_COLUMNS = 32 + MS_MEASURES };
+
+/* What of a row is shown. */
+static const char *const SHOWN[] = {"shape", "generator", "options", "perturbation", "level",         "status", "n",
+                                    "dice",  "coverage",  "pieces",  "n_until",      "inertia_error", "cause"};
+
+enum { N_SHOWN = sizeof SHOWN / sizeof *SHOWN };
+
+static int is_same_group(const ms_stability_run *a, const ms_stability_run *b)
+{
+    return a->shape == b->shape && a->method == b->method;
+}
+
+/* Of the runs whose clump is known: that on the unchanged shape, and the worst one of its shape and method. */
+static int is_shown(const ms_stability_report *report, size_t at)
+{
+    const ms_stability_run *run = &report->run[at];
+    if (run->clump.n_spheres == 0 || run->change == &ms_changes[0]) {
+        return run->clump.n_spheres > 0;
+    }
+    for (size_t r = 0; r < report->n_runs; r++) {
+        const ms_stability_run *other = &report->run[r];
+        const double more = other->metrics.score.dice - run->metrics.score.dice;
+        if (is_same_group(other, run) && other->clump.n_spheres > 0 && (more > 0 || (more == 0 && r < at))) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static ms_status put_scene(FILE *stream, const ms_stability_run *run, const ms_target *target, ms_error *err)
+{
+    char name[512];
+    snprintf(name, sizeof name, "%.200s, %.128s, %s %g, %zu spheres", run->shape, ms_stability_label(run->method).text,
+             run->change->name, run->level, run->clump.n_spheres);
+    const ms_view_scene scene = {.name = name,
+                                 .clump = &run->clump,
+                                 .target = target,
+                                 .ordered = ms_generator_is_nested(run->method->generator, &run->method->settings),
+                                 .most_triangles = TRIANGLES};
+    return ms_view_scene_write(stream, &scene, err);
+}
+
+/* All of a shape, which is read once more; its rows stand together. @param written of all shapes so far */
+static ms_status put_shape(FILE *stream, const ms_stability_report *report, size_t from, const long *scene,
+                           size_t *written, ms_error *err)
+{
+    ms_input input;
+    ms_input_flags flags = *report->plan->flags;
+    ms_status status = ms_stability_read_shape(&input, report->run[from].shape, &flags, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    const ms_target target = {.mesh = &input.mesh, .closed = input.report.closed};
+    for (size_t r = from; r < report->n_runs && report->run[r].shape == report->run[from].shape && status == MS_OK;
+         r++) {
+        if (scene[r] >= 0) {
+            fputs((*written)++ > 0 ? "," : "", stream);
+            status = put_scene(stream, &report->run[r], &target, err);
+        }
+    }
+    ms_input_free(&input);
+    return status;
+}
+
+/* Those that there can be. @param[out] files hold their paths, of which `chart` are those of the pictures */
+static ms_status list_pictures(const char ***chart, size_t *count, ms_files *files, const ms_stability_report *report,
+                               ms_error *err)
+{
+    ms_status status = MS_OK;
+    if (report->charts) {
+        status = ms_stability_charts_list(files, report->charts, report->plan->methods, err);
+    }
+    *chart = malloc((files->count + 1) * sizeof **chart);
+    for (size_t f = 0; *chart && f < files->count; f++) {
+        const char *ending = strrchr(files->file[f].path, '.');
+        if (ending && strcmp(ending, ".svg") == 0) {
+            (*chart)[(*count)++] = files->file[f].path;
+        }
+    }
+    return *chart ? status : ms_fail(err, MS_ERR_NOMEM, "no memory for the report");
+}
+
+/* The table up to its scenes. */
+static ms_status begin_page(FILE *stream, const ms_stability_report *report, const long *scene, char *header,
+                            ms_error *err)
+{
+    ms_files files = {0};
+    char *column[MOST_COLUMNS];
+    const char **chart = NULL;
+    size_t shown[N_SHOWN], n_shown = 0, n_charts = 0;
+    const size_t n_columns = ms_csv_split(column, MOST_COLUMNS, header);
+    for (size_t k = 0; k < N_SHOWN; k++) {
+        for (size_t c = 0; c < n_columns; c++) {
+            if (strcmp(SHOWN[k], column[c]) == 0) {
+                shown[n_shown++] = c;
+            }
+        }
+    }
+    ms_status status = list_pictures(&chart, &n_charts, &files, report, err);
+    if (status == MS_OK) {
+        const ms_view_report page = {.title = "stability of clumps",
+                                     .argc = report->argc,
+                                     .argv = report->argv,
+                                     .column = (const char *const *)column,
+                                     .shown = shown,
+                                     .n_columns = n_columns,
+                                     .n_shown = n_shown,
+                                     .csv = report->csv,
+                                     .scene = scene,
+                                     .chart = chart,
+                                     .n_charts = n_charts};
+        status = ms_view_report_begin(stream, &page, err);
+    }
+    free(chart);
+    ms_files_free(&files);
+    return status;
+}
+
+static ms_status write_page(FILE *stream, const ms_stability_report *report, long *scene, char *header, ms_error *err)
+{
+    long scenes = 0;
+    size_t written = 0;
+    for (size_t r = 0; r < report->n_runs; r++) {
+        scene[r] = is_shown(report, r) ? scenes++ : -1;
+    }
+    ms_status status = begin_page(stream, report, scene, header, err);
+    for (size_t r = 0; r < report->n_runs && status == MS_OK; r++) {
+        if (r == 0 || report->run[r].shape != report->run[r - 1].shape) {
+            status = put_shape(stream, report, r, scene, &written, err);
+        }
+    }
+    ms_view_page_end(stream);
+    return status;
+}
+
+ms_status ms_stability_report_write(const char *path, const ms_stability_report *report, ms_error *err)
+{
+    ms_output output;
+    char *header = ms_stability_line(NULL);
+    long *scene = calloc(report->n_runs + 1, sizeof *scene);
+    ms_status status =
+        header && scene ? ms_output_open(&output, path, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the report");
+    if (status == MS_OK) {
+        status = ms_output_close(&output, write_page(output.stream, report, scene, header, err), err);
+    }
+    free(header);
+    free(scene);
+    return status;
+}
