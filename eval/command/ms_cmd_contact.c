@@ -24,6 +24,7 @@ static const ms_flag FLAGS[] = {
     {"poses", 0, "N", "orientations drawn at random, and pairs of faces (1000)"},
     {"overlap", 0, "PART[,PART]...", "largest overlap of a contact / r_eq (0.0005,0.002,0.01)"},
     {"restitution", 0, "E", "coefficient of restitution of one contact (0.5)"},
+    {"factors", 0, NULL, "also one modulus and one restitution that would undo it, with their price"},
     {"seed", 0, "S", "seed of the orientations (1)"},
     {"json", 0, NULL, "as JSON"},
     {"csv", 0, NULL, "the contacts as CSV"},
@@ -39,7 +40,7 @@ typedef struct contact_arguments {
     ms_contact_options options;
     const char *clump, *target;
     const char *of_shape; /* a flag about the shape; NULL without */
-    int json, csv;
+    int json, csv, factors;
 } contact_arguments;
 
 /* What the clump stands for, and both bodies about its centre of mass. */
@@ -104,6 +105,8 @@ static ms_status take_contact_flag(void *context, const char *name, const char *
         return take_overlaps(&a->options, value, err);
     } else if (strcmp(name, "json") == 0 || strcmp(name, "csv") == 0) {
         *(name[0] == 'j' ? &a->json : &a->csv) = 1;
+    } else if (strcmp(name, "factors") == 0) {
+        a->factors = 1;
     } else {
         return take_number(a, name, value, err);
     }
@@ -210,6 +213,9 @@ static json_t *contact_json(const contact_arguments *a, const ms_contact *contac
                              (json_int_t)spheres, "orientations", (json_int_t)a->options.orientations,
                              "single_restitution", a->options.restitution, "seed", (json_int_t)a->options.seed);
     ms_json_object_merge(&json, ms_contact_report_json(contact));
+    if (a->factors) {
+        ms_json_object_merge(&json, ms_contact_report_factors_json(contact, a->options.restitution));
+    }
     return json;
 }
 
@@ -232,6 +238,9 @@ static ms_status execute_contact(const contact_arguments *a, ms_error *err)
         } else {
             printf("%s, %zu spheres\n", ms_file_name(a->clump), b.spheres.n_spheres);
             ms_contact_report_print(stdout, &contact);
+            if (a->factors) {
+                ms_contact_report_factors(stdout, &contact, a->options.restitution);
+            }
         }
         ms_contact_free(&contact);
     }
@@ -246,6 +255,9 @@ static ms_status resolve_contact(const contact_arguments *a, ms_error *err)
     const char *const inputs[] = {a->clump, a->target};
     if (a->json && a->csv) {
         return ms_fail(err, MS_ERR_ARG, "--json and --csv write to standard output; choose one of them");
+    }
+    if (a->factors && a->csv) {
+        return ms_fail(err, MS_ERR_ARG, "--factors are a table of their own; leave out --csv, or give --json");
     }
     if (a->of_shape && !a->target) {
         return ms_fail(err, MS_ERR_ARG, "--%s is of a shape; give --target SHAPE beside it", a->of_shape);
@@ -279,7 +291,8 @@ static int run_contact(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_contact = {
     .name = "contact",
     .summary = "how many spheres of a clump touch at once, what rebounds, and how it lies beside its shape",
-    .usage = "CLUMP [--target SHAPE] [--poses N] [--overlap PART] [--restitution E] [--seed S] [--json | --csv]",
+    .usage =
+        "CLUMP [--target SHAPE] [--poses N] [--overlap PART] [--restitution E] [--factors] [--seed S] [--json | --csv]",
     .example = "mskit contact grain.csv --target grain.stl --overlap 0.001",
     .flags = FLAGS,
     .run = run_contact,

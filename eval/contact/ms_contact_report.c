@@ -6,6 +6,7 @@
 #include "chart/ms_csv.h"
 #include "cli/ms_json_object.h"
 #include "cli/ms_report.h"
+#include "ms_factors.h"
 
 static const char *const AGAINST[] = {[MS_CONTACT_PLANE] = "plane", [MS_CONTACT_PARTICLE] = "particle"};
 static const char *const WHERE[] = {[MS_CONTACT_RANDOM] = "random", [MS_CONTACT_POSES] = "poses"};
@@ -111,6 +112,38 @@ void ms_contact_report_print(FILE *stream, const ms_contact *c)
         print_poses(stream, c, &c->shape, "shape");
     }
     fputs("\n  (heights and barriers in r_eq; e: none is the part of which nothing rebounds)\n", stream);
+}
+
+void ms_contact_report_factors(FILE *stream, const ms_contact *c, double single)
+{
+    fputs("\n  to make the mean contact like one    factors               price at random and in poses\n"
+          "  what     where  overlap     modulus  ask for e     least stiffness  greatest e\n",
+          stream);
+    for (size_t r = 0; r < c->n_rows; r++) {
+        const ms_contact_row *row = &c->row[r];
+        if (row->most > 0) {
+            const ms_factors f = ms_factors_of(c, row, single);
+            fprintf(stream, "  %-8s %-6s %-8.3g %10.4g %10.3f %19.4g %11.3f\n", AGAINST[row->against],
+                    WHERE[row->where], row->overlap, f.modulus, f.restitution, f.softest, f.bounciest);
+        }
+    }
+    fputs("  (none is the default: one number makes a corner as much too soft as it makes a face right)\n", stream);
+}
+
+json_t *ms_contact_report_factors_json(const ms_contact *c, double single)
+{
+    json_t *list = json_array();
+    for (size_t r = 0; r < c->n_rows; r++) {
+        const ms_contact_row *row = &c->row[r];
+        if (row->most > 0) {
+            const ms_factors f = ms_factors_of(c, row, single);
+            ms_json_object_append(&list, json_pack("{s:s,s:s,s:f,s:f,s:f,s:f,s:f}", "against", AGAINST[row->against],
+                                                   "where", WHERE[row->where], "overlap", row->overlap, "modulus",
+                                                   f.modulus, "restitution", f.restitution, "softest", f.softest,
+                                                   "bounciest", f.bounciest));
+        }
+    }
+    return json_pack("{s:o}", "factors", list);
 }
 
 void ms_contact_report_csv(FILE *stream, const ms_contact *c)

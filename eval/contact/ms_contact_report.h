@@ -9,6 +9,10 @@
 
 void ms_contact_report_print(FILE *stream, const ms_contact *contact);
 
+/** Factors that would undo it, row by row, with their price. @param single restitution of one contact */
+void ms_contact_report_factors(FILE *stream, const ms_contact *contact, double single);
+json_t *ms_contact_report_factors_json(const ms_contact *contact, double single);
+
 /** A line for each thing touched and overlap; what is not known is empty. */
 void ms_contact_report_csv(FILE *stream, const ms_contact *contact);
 

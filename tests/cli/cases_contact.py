@@ -48,6 +48,24 @@ class Contact(Case):
             self.assert_close(row[name], truth, 1e-6, name)
         self.assertEqual((row["counts"][0][0], row["overdamped"], row["missed"]), (6, 0, 0))
 
+    def test_factors(self):
+        """On its face the clump stands on six, at random mostly on one, which pays: a sixth of the stiffness."""
+        args = ("six.csv", "--target", "box.obj", "--overlap", "0.001")
+        found = self.contact(*args, "--factors")
+        self.assertNotIn("factors", self.contact(*args))
+        self.assertEqual([(f["against"], f["where"]) for f in found["factors"]],
+                         [(r["against"], r["where"]) for r in found["contacts"]])
+        factors, = (f for f in found["factors"] if (f["against"], f["where"]) == ("plane", "poses"))
+        r_eq = (3 * 6 / (4 * math.pi))**(1 / 3)
+        self.assert_close(factors["modulus"], 1 / (6 * math.sqrt(0.5 / r_eq)), 1e-6, "modulus")
+        asked = math.exp(-math.pi * math.sqrt(B2 / 6 / (1 - B2 / 6)))
+        self.assert_close(factors["restitution"], asked, 1e-6, "restitution")
+        self.assert_close(factors["softest"], 1 / 6, 1e-6, "softest")
+        self.assert_close(factors["bounciest"], asked, 1e-6, "bounciest")
+        self.assertRegex(self.mskit("contact", *args, "--factors", "--poses", "50").out,
+                         r"plane +poses +0\.001 +0\.2\d+ +0\.75\d +0\.1667 +0\.75")
+        self.assertIn("leave out --csv", self.mskit("contact", *args, "--factors", "--csv", code=2).err)
+
     def test_second_particle(self):
         """Face on face the six lie on at most their like, and on two each where they stand between four."""
         row = self.row(self.contact("six.csv", "--target", "box.obj", "--overlap", "0.001"), "particle", "poses")

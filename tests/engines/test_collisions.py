@@ -24,7 +24,8 @@ CLUMPS = {
     "rod": [(-2.8, 0, 0, 0.8), (2.8, 0, 0, 0.8), (0, 0, 0, 1.1), (-1.4, 0.1, 0, 1), (-1.4, -0.1, 0, 1), (1.4, 0, 0.1, 1),
             (1.4, 0, -0.1, 1)],
     "ball": [(0, 0, 0, 2), (-0.5, 0, 0, 1), (0.5, 0, 0, 1), (0, 0.3, 0, 1), (0, -0.3, 0, 1)],
-    "table": [(x, y, 0, 1.1) for x in (-2, 2) for y in (-1, 1)],
+    **{f"feet{n * n}": [((2 * i - n + 1) * 3 / n, (2 * j - n + 1) * 1.5 / n, 0, 1.1) for i in range(n) for j in range(n)]
+       for n in (2, 3, 4)},
 }
 
 
@@ -62,6 +63,8 @@ def along(a, direction, length):
 class Engine(unittest.TestCase):
     """An engine runs bodies, each a place and a velocity, and says how they move at the start and at the end."""
     program = None
+    attracts = True  # what damps a contact may pull
+    finer = 1  # steps than those of the script
     clumps = {}
 
     @classmethod
@@ -116,7 +119,7 @@ class Engine(unittest.TestCase):
         """Its own restitution on the floor of the script."""
         radius = max(s[3] for s in clump.spheres)
         ((_, before, _, _),), ((_, after, spin, _),) = self.run_bodies(
-            clump, [([0, 0, radius + GAP], [0, 0, -SPEED])], steps=3 * STEPS)
+            clump, [([0, 0, radius + GAP], [0, 0, -SPEED])], steps=math.ceil(3 * STEPS * self.finer))
         self.assertAlmostEqual(before[2], -SPEED, delta=1e-6 * SPEED)
         self.assertLess(math.hypot(*spin) * clump.reach, 1e-3 * SPEED)
         return after[2] / SPEED
@@ -124,24 +127,48 @@ class Engine(unittest.TestCase):
     def test_floor(self):
         self.assertAlmostEqual(self.floor(self.clumps["ball"]), RESTITUTION, delta=0.02 * RESTITUTION)
 
+    def test_step_of_the_body(self):
+        """That of the comment, for as many contacts as there are spheres, is stable; ten times as long a one is not."""
+        clump = self.clumps["feet16"]
+        script = clump.script("c.yade.py")
+        step, = re.findall(r"(?m)^O.dt = (.*)", script)
+        bound, = re.findall(r"(?m)^# of its reach .*, to (\S+) s on all", script)
+        self.finer = float(step) / float(bound)
+        self.assertLess(abs(self.floor(clump)), RESTITUTION)
+        self.finer /= 10
+        self.assertGreater(abs(self.floor(clump)), 1, "energy from nothing")
 
-def bounce(damping, attraction):
-    """Restitution of a ball of mass 1 on a Hertz spring of stiffness 1 that is damped as x^(1/4), by small steps."""
-    x, v, step = 0.0, 1.0, 1e-4
-    while x >= 0:
-        force = -x ** 1.5 - damping * x ** 0.25 * v
-        v += step * (force if attraction else min(force, 0))
-        x += step * v
-    return -v
+    def refine(self, script):
+        """The step, divided."""
+        refined = re.sub(r"(?m)^(timestep |O\.dt = )(.*)", lambda m: m[1] + repr(float(m[2]) / self.finer), script)
+        self.assertEqual(refined == script, self.finer == 1)
+        return refined
+
+    def test_contacts_at_once(self):
+        self.finer = 5
+        for number in (4, 9, 16):
+            with self.subTest(number=number):
+                found = self.floor(self.clumps[f"feet{number}"])
+                self.assertAlmostEqual(found, closed_form(number, self.attracts), delta=0.003)
 
 
-def find_four(attraction):
-    """On four feet, each of which is damped as if it bore the body alone: the ratio of damping is twice that of one."""
-    low, high = 0, 2
-    for _ in range(20):
+def rebound(ratio, attracts):
+    """Restitution at a ratio of damping: of a linear oscillator, as of a Hertz contact that is damped as overlap^(1/4)
+    (Antypov and Elliott 2011), until the overlap is 0; or until the force is, where none may attract (Schwager and
+    Poeschel 2007)."""
+    if ratio >= 1:
+        return 0 if attracts else math.exp(-2 * ratio * math.acosh(ratio) / math.sqrt(ratio ** 2 - 1))
+    phase = math.pi if attracts else 2 * math.acos(ratio)
+    return math.exp(-ratio * phase / math.sqrt(1 - ratio ** 2))
+
+
+def closed_form(number, attracts):
+    """e(N) of contacts that are each damped as if they bore the body alone: the ratio is root N times that of one."""
+    low, high = 0, 0.9
+    for _ in range(60):
         middle = (low + high) / 2
-        low, high = (middle, high) if bounce(middle, attraction) > RESTITUTION else (low, middle)
-    return bounce(2 * low, attraction)
+        low, high = (middle, high) if rebound(middle, attracts) > RESTITUTION else (low, middle)
+    return rebound(low * math.sqrt(number), attracts)
 
 
 STATE = "x y z vx vy vz omegax omegay omegaz"
@@ -158,6 +185,7 @@ class Liggghts(Engine):
 
     def run_bodies(self, clump, bodies, steps=STEPS):
         script = engines.without_fall(clump.script("c.liggghts.in")).replace(" orientation random", "")
+        script = self.refine(script)
         if len(bodies) > 1:
             script = engines.alone(script)
         insert = re.search(r"(?m)^fix insert .*\n", script).group(0).replace("all_in yes", "all_in no")
@@ -181,17 +209,16 @@ run {steps}
         states = read_states(clump, "states.txt", len(bodies))
         return states[0], states[-1]
 
-    def test_four_contacts(self):
-        self.assertAlmostEqual(self.floor(self.clumps["table"]), find_four(True), delta=0.01)
-
 
 class Lammps(Engine):
     program = "lmp"
     before = ""  # commands before the run that is measured
+    heavier = 1  # the atoms than the body's mass divided among them
+    orient = ""  # bodies are turned about any axis
 
     def run_bodies(self, clump, bodies, steps=STEPS):
         """Bodies inserted with one seed are turned alike. A second run would damp walls wrongly."""
-        script = engines.without_fall(clump.script("c.lammps.in"))
+        script = self.refine(engines.without_fall(clump.script("c.lammps.in")))
         if len(bodies) > 1:
             script = engines.alone(script)
         insert = re.search(r"(?m)^fix insert .*\n", script).group(0)
@@ -200,8 +227,14 @@ class Lammps(Engine):
             inserts += f"region at{k} block " + " ".join(f"{x!r} {x!r}" for x in place) + "\n"
             inserts += re.sub(r" near \S+", "", insert.replace("fix insert", f"fix insert{k}")
                               .replace("region above", f"region at{k}").rstrip())
-            inserts += "".join(f" v{axis} {v!r} {v!r}" for axis, v in zip("xyz", velocity)) + "\n"
+            inserts += self.orient + "".join(f" v{axis} {v!r} {v!r}" for axis, v in zip("xyz", velocity)) + "\n"
         script = re.sub(r"(?m)^fix insert .*\n", lambda _: inserts, script)
+        head, masses = clump.script("c.lammps").split("Masses\n\n")
+        rows = [line.split() for line in masses.splitlines()]
+        clump.write("heavier.lammps", head + "Masses\n\n"
+                    + "".join(f"{number} {self.heavier * float(mass)!r}\n" for number, mass in rows))
+        script = script.replace('"c.lammps"', '"heavier.lammps"')
+        self.assertIn("heavier.lammps", script)
         clump.write("bodies.in", script + self.before + f"""
 compute bodies all rigid/local move mass inertiax inertiay inertiaz
 dump bodies all local {steps + 1} bodies.txt c_bodies[1] c_bodies[2] c_bodies[3] c_bodies[4]
@@ -219,20 +252,37 @@ run {steps + 1}
         states = read_states(clump, "states.txt", len(bodies))
         return states[0], states[-1]
 
+    def test_contacts_at_once(self):
+        self.orient = " orient 0 0 1"
+        super().test_contacts_at_once()
+
+    def test_step_of_the_body(self):
+        self.orient = " orient 0 0 1"
+        super().test_step_of_the_body()
+
     def test_floor_of_a_second_run(self):
         """The cure that docs/templates.md tells: the walls are fixed again before it."""
         fix = re.search(r"(?m)^fix floor .*\n", self.clumps["ball"].script("c.lammps.in")).group(0)
         self.before = "run 1\nunfix floor\n" + fix
         self.test_floor()
 
+    def test_mass_of_members(self):
+        """It damps nothing: the mass of the body does, whatever the atoms weigh."""
+        self.heavier = 10
+        self.test_floor()
+
 
 class Yade(Engine):
     program = "yade"
+    attracts = False
+    heavier = 1  # members than the body
 
     def run_bodies(self, clump, bodies, steps=STEPS):
         head, tail = clump.script("c.yade.py").split("reach, side =")
+        head = head.replace("state.mass = mass  #", f"state.mass = {self.heavier} * mass  #")
         wall = re.search(r"(?m)^O\.bodies\.append\(wall\(0.*\n", tail).group(0) if len(bodies) == 1 else ""
         law = re.search(r"(?ms)^O\.engines = .*?^O\.dt = .*?\n", tail).group(0).replace("(0, 0, -9.81)", "(0, 0, 0)")
+        law = self.refine(law)
         clump.write("bodies.py", head + wall + law + f"""
 clumps = [particle(Vector3(place)) for place, velocity in {bodies!r}]
 for clump, (place, velocity) in zip(clumps, {bodies!r}):
@@ -254,9 +304,11 @@ for part in range(2):
         motions = [clump.motion(rows[k:k + 3]) for k in range(0, len(rows), 3)]
         return motions[:len(bodies)], motions[len(bodies):]
 
-    def test_four_contacts(self):
-        """YADE lets no force attract."""
-        self.assertAlmostEqual(self.floor(self.clumps["table"]), find_four(False), delta=0.01)
+    def test_mass_of_members(self):
+        """It is what damps: ten times that of the body damp as ten contacts do."""
+        self.heavier = 10
+        found = self.floor(self.clumps["ball"])
+        self.assertAlmostEqual(found, closed_form(10, self.attracts), delta=0.003)
 
 
 if __name__ == "__main__":

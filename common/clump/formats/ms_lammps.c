@@ -288,6 +288,7 @@ static void start_lammps_drop(FILE *stream, const ms_script_drop *d, int carrier
     }
     write_lammps_law(stream, d->young);
     write_lammps_walls(stream, 0, (const double[]){-d->side, -d->side}, (const double[]){d->side, d->side});
+    ms_script_drop_steps(stream, d);
     fprintf(stream, "timestep %s\n", ms_script_number(d->step, &b));
     fputs("fix gravity all gravity 9.81 vector 0 0 -1 disable\n\n", stream);
 }

@@ -90,6 +90,7 @@ static void start_liggghts_drop(FILE *stream, const ms_script_drop *d, double bi
     fprintf(stream, "neighbor %s bin\nneigh_modify delay 0\n\n", ms_script_number(bin, &a));
     write_liggghts_law(stream, d->young);
     write_liggghts_walls(stream, (const double[]){0, -d->side, d->side, -d->side, d->side});
+    ms_script_drop_steps(stream, d);
     fprintf(stream, "timestep %s\n", ms_script_number(d->step, &a));
     fputs("fix gravity all gravity 9.81 vector 0 0 -1\n\n", stream);
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/ms_escape.h"
+#include "ms_stable.h"
 
 static const double GRAVITY = 9.81, POISSON = 0.3;
 static const double LOOSEN_STEPS = 10000, SLOWING_STEPS = 5;
@@ -35,14 +36,28 @@ static ms_script_drop make_drop(double reach, double radius, double density)
     return (ms_script_drop){.reach = reach,
                             .young = young,
                             .step = step_of(radius, density, young),
+                            .one = HUGE_VAL,
+                            .all = HUGE_VAL,
                             .end = 4 * sqrt(4 * reach / GRAVITY),
                             .side = 4 * reach};
 }
 
+/* The least of what the bodies bear. */
+static void bound_steps(ms_script_drop *drop, const ms_clump *clump, double scale, const ms_particle *particle)
+{
+    const ms_stable_law law = {.young = drop->young, .poisson = POISSON, .overlap = drop->reach / 1000};
+    double one, all;
+    ms_stable_step(&one, &all, clump, scale, particle, &law);
+    drop->one = fmin(drop->one, one);
+    drop->all = fmin(drop->all, all);
+}
+
 ms_script_drop ms_script_drop_of(const ms_content *content)
 {
-    return make_drop(ms_template_reach(content->clump), ms_clump_smallest_radius(content->clump),
-                     content->particle->density);
+    ms_script_drop drop = make_drop(ms_template_reach(content->clump), ms_clump_smallest_radius(content->clump),
+                                    content->particle->density);
+    bound_steps(&drop, content->clump, 1, content->particle);
+    return drop;
 }
 
 ms_script_drop ms_script_drop_of_mixture(const ms_packing *mixture)
@@ -54,7 +69,11 @@ ms_script_drop ms_script_drop_of_mixture(const ms_packing *mixture)
         reach = fmax(reach, kind->scale * ms_template_reach(&kind->clump));
         lightest = fmin(lightest, kind->particle.mass);
     }
-    return make_drop(reach, radius_of(lightest, density), density);
+    ms_script_drop drop = make_drop(reach, radius_of(lightest, density), density);
+    for (size_t k = 0; k < mixture->count; k++) {
+        bound_steps(&drop, &mixture->placed[k].clump, mixture->placed[k].scale, &mixture->placed[k].particle);
+    }
+    return drop;
 }
 
 ms_script_settle ms_script_settle_of(const ms_packing *packing)
@@ -111,6 +130,14 @@ void ms_script_settle_title(FILE *stream, const char *name, const char *command,
 {
     write_title(stream, "Lets", name, "come to rest in the box around it", command, suffix);
     fputc('\n', stream);
+}
+
+void ms_script_drop_steps(FILE *stream, const ms_script_drop *drop)
+{
+    fprintf(stream,
+            "# A step by convention, after the Rayleigh time. What bounds it is the body: pressed by a thousandth\n"
+            "# of its reach it is stable to %.3g s on one contact, to %.3g s on all its spheres at once.\n",
+            drop->one, drop->all);
 }
 
 void ms_script_drop_run(FILE *stream, const ms_script_drop *drop)

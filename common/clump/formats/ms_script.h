@@ -12,6 +12,8 @@ typedef struct ms_script_drop {
     double reach; /* of the particle around its centre of mass */
     double young; /* stiff enough for overlaps of a per mille of its size, and what LIGGGHTS demands */
     double step;  /* a tenth of the Rayleigh time of the smallest sphere */
+    double one;   /* largest stable step of a body that a contact presses by a thousandth of the reach, */
+    double all;   /* and that as many contacts as it has spheres press so (ms_stable.h) */
     double end;   /* time for one particle to fall and come to rest; n of them get sqrt(1 + n/4) times that */
     double side;  /* half the width of the box */
 } ms_script_drop;
@@ -26,6 +28,9 @@ void ms_script_title(FILE *stream, const char *name, const char *command, const 
 
 /** Likewise of a mixture: "Drops particles of the mixture NAME into a box: ...; five hundred of them: ...". */
 void ms_script_mixture_title(FILE *stream, const char *name, const char *command, const char *suffix, const char *more);
+
+/** A comment: which steps the body would bear. */
+void ms_script_drop_steps(FILE *stream, const ms_script_drop *drop);
 
 /** The end of a drop in LIGGGHTS and LAMMPS: its steps, by the number n of particles, and their run. */
 void ms_script_drop_run(FILE *stream, const ms_script_drop *drop);

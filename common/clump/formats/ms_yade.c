@@ -100,6 +100,7 @@ static void write_yade_engines(FILE *stream, const char *gravity, double step)
 static void write_yade_fall(FILE *stream, const ms_script_drop *drop)
 {
     write_yade_box(stream);
+    ms_script_drop_steps(stream, drop);
     write_yade_engines(stream, "-9.81", drop->step);
     fprintf(stream, "for part in range(10):\n    O.run(math.ceil(%.0f * math.sqrt(1 + n / 4)), True)\n",
             ceil(drop->end / drop->step / 10));
