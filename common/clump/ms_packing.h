@@ -1,5 +1,6 @@
 /** Clumps in their places, as a scan has them: where they overlap, and how far they have to shrink until they do not.
- * A mixture is the same without places: kinds of particles, each with a share. Private. */
+ * A mixture is the same without places: kinds of particles, each with a share; in a scene each has a count, and all are
+ * in one vessel. Private. */
 #ifndef MS_PACKING_H
 #define MS_PACKING_H
 
@@ -16,12 +17,15 @@ typedef struct ms_placed {
     double size;          /* radius of the ball of equal volume, metres */
     double scale;         /* of its spheres and their distances from the centre; mass and inertia are as they were */
     double share;         /* in a mixture: of all particles, by number */
+    size_t count;         /* in a scene: particles of this kind */
 } ms_placed;
 
 /** A zeroed struct is empty. */
 typedef struct ms_packing {
     ms_placed *placed;
     size_t count;
+    double width[2]; /* of a scene's vessel: a box along x and y, or a cylinder's diameter twice; metres; 0: any box */
+    int is_round;    /* it is a cylinder */
 } ms_packing;
 
 /** Two clumps that are in or near each other. */

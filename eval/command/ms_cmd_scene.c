@@ -7,12 +7,12 @@
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "cli/ms_json_object.h"
-#include "cli/ms_outputs.h"
 #include "cli/ms_record.h"
 #include "cli/ms_report.h"
 #include "cli/ms_until.h"
+#include "clump/formats/ms_json.h"
 #include "ms_commands.h"
-#include "scene/ms_scene.h"
+#include "scene/ms_scene_engines.h"
 
 enum { DEFAULT_MAX_SPHERES = 100 };
 
@@ -29,7 +29,11 @@ static const ms_flag FLAGS[] = {
     MS_MIN_RADIUS_FLAG,
     MS_RECIPE_FLAGS,
     {"output", 'o', "DIR", "write the templates into this folder, each by the name of its shape"},
-    {"format", 0, "F", "format of the templates: csv, json or vtk (csv)"},
+    {"format", 0, "F", "format of the templates (csv); repeated: of each; liggghts, lammps, yade bring a script, too"},
+    {"particles", 0, "N", "how many there are of a shape that is given without a manifest (1)"},
+    {"equal-volume", 0, NULL,
+     "scale each template about the centroid of its shape until its union has the shape's volume"},
+    MS_SCENE_ENGINE_FLAGS,
     {"json", 0, NULL, "as JSON"},
     MS_INPUT_FLAGS,
     {0},
@@ -38,12 +42,14 @@ static const ms_flag FLAGS[] = {
 typedef struct scene_arguments {
     const char *source; /* manifest or shape */
     ms_goal goal;
-    double max_spheres, min_radius;
+    double max_spheres, min_radius, particles; /* particles 0: not given */
     ms_recipe recipe;
     ms_input_flags input;
+    ms_scene_engines engines;
     const char *folder;
-    const ms_format *format;
-    int json;
+    const ms_format *format[MS_OUTPUTS_FORMATS];
+    size_t n_formats;
+    int equal_volume, json;
 } scene_arguments;
 
 static ms_status set_goal(ms_goal *goal, ms_goal_kind kind, double value, ms_error *err)
@@ -101,12 +107,17 @@ static ms_status take_goal(int *taken, ms_goal *goal, const char *name, const ch
 
 static ms_status take_template_format(scene_arguments *a, const char *name, ms_error *err)
 {
-    a->format = ms_write_format_find(name, err);
-    if (a->format && a->format->need != MS_NEED_SPHERES) {
-        return ms_fail(err, MS_ERR_ARG, "a %s template needs the mass of the particle: use mskit correct on each",
-                       name);
+    const ms_format *format = ms_write_format_find(name, err);
+    for (size_t f = 0; f < a->n_formats && format; f++) {
+        if (a->format[f] == format) {
+            return ms_fail(err, MS_ERR_ARG, "--format %s is given twice", name);
+        }
     }
-    return a->format ? MS_OK : MS_ERR_ARG;
+    if (!format) {
+        return MS_ERR_ARG;
+    }
+    a->format[a->n_formats++] = format; /* there are fewer formats than room */
+    return MS_OK;
 }
 
 static ms_status take_scene_flag(void *context, const char *name, const char *value, ms_error *err)
@@ -117,8 +128,14 @@ static ms_status take_scene_flag(void *context, const char *name, const char *va
     if (!taken) {
         status = take_goal(&taken, &a->goal, name, value, err);
     }
+    if (!taken) {
+        status = ms_scene_engines_flag(&taken, &a->engines, name, value, err);
+    }
     if (taken) {
         return status;
+    }
+    if (strcmp(name, "particles") == 0) {
+        return ms_flags_whole(&a->particles, name, value, 1, MS_MANIFEST_MAX_PARTICLES, err);
     }
     if (strcmp(name, "max-spheres") == 0) {
         return ms_flags_whole(&a->max_spheres, name, value, 1, MS_SCENE_MAX_SPHERES, err);
@@ -133,8 +150,8 @@ static ms_status take_scene_flag(void *context, const char *name, const char *va
     if (strcmp(name, "format") == 0) {
         return take_template_format(a, value, err);
     }
-    if (strcmp(name, "json") == 0) {
-        a->json = 1;
+    if (strcmp(name, "json") == 0 || strcmp(name, "equal-volume") == 0) {
+        *(name[0] == 'j' ? &a->json : &a->equal_volume) = 1;
         return MS_OK;
     }
     return ms_recipe_flag(&taken, &a->recipe, name, value, err);
@@ -171,37 +188,65 @@ static ms_status resolve_goal(ms_goal *goal, const ms_manifest *manifest, const 
 
 /* FOLDER/NAME.ENDING, where NAME is that of the shape without folder and ending. The caller frees it; NULL without
  * memory. */
-static char *template_path(const scene_arguments *a, const char *shape)
+static char *template_path(const char *folder, const char *shape, const ms_format *format)
 {
     size_t length;
     const char *stem = ms_files_stem(&length, shape);
-    const size_t room = strlen(a->folder) + length + strlen(a->format->ending) + 3;
+    const size_t room = strlen(folder) + length + strlen(format->ending) + 3;
     char *path = malloc(room);
     if (path) {
-        const int start = snprintf(path, room, "%s/", a->folder);
-        snprintf(path + start, room - (size_t)start, "%.*s.%s", (int)length, stem, a->format->ending);
+        const int start = snprintf(path, room, "%s/", folder);
+        snprintf(path + start, room - (size_t)start, "%.*s.%s", (int)length, stem, format->ending);
         ms_escape_file_name(path + start);
+        if (ms_write_check_path(path, format, NULL) != MS_OK) {
+            ms_escape_script_name(path + start);
+        }
     }
     return path;
 }
 
-/* Names the file of each template. Without a folder there are none. */
+/* The shape before, if there is one, whose template would be the same file. */
+static ms_status check_template(const ms_outputs *outputs, const ms_manifest *manifest, size_t r, size_t f,
+                                ms_error *err)
+{
+    const char *path = outputs[r].file[f].path;
+    for (size_t before = 0; before < r; before++) {
+        if (strcmp(outputs[before].file[f].path, path) == 0) {
+            return ms_fail(err, MS_ERR_ARG, "the templates of %s and %s would both be %s; rename one of the shapes",
+                           manifest->row[before].path, manifest->row[r].path, path);
+        }
+    }
+    return MS_OK;
+}
+
+/* Names the files of each template. Without a folder there are none. */
 static ms_status plan_outputs(ms_outputs *outputs, const scene_arguments *a, const ms_manifest *manifest, ms_error *err)
 {
     ms_status status = MS_OK;
     for (size_t r = 0; a->folder && r < manifest->count && status == MS_OK; r++) {
-        const char *shape = manifest->row[r].path;
-        char *path = template_path(a, shape);
-        if (!path) {
-            return ms_fail(err, MS_ERR_NOMEM, "no memory for the names of %zu templates", manifest->count);
-        }
-        outputs[r] = (ms_outputs){.folder = a->folder, .file = {{path, path, a->format}}, .n_files = 1};
-        for (size_t before = 0; before < r && status == MS_OK; before++) {
-            if (strcmp(outputs[before].file[0].path, path) == 0) {
-                status =
-                    ms_fail(err, MS_ERR_ARG, "the templates of %s and %s would both be %s; rename one of the shapes",
-                            manifest->row[before].path, shape, path);
+        outputs[r].folder = a->folder;
+        for (size_t f = 0; f < a->n_formats && status == MS_OK; f++) {
+            char *path = template_path(a->folder, manifest->row[r].path, a->format[f]);
+            if (!path) {
+                return ms_fail(err, MS_ERR_NOMEM, "no memory for the names of %zu templates", manifest->count);
             }
+            outputs[r].file[outputs[r].n_files++] = (ms_output_file){path, path, a->format[f]};
+            status = check_template(outputs, manifest, r, f, err);
+        }
+    }
+    return status;
+}
+
+/* The scripts of the engines. */
+static ms_status list_scripts(ms_files *files, const scene_arguments *a, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t f = 0; f < a->n_formats && status == MS_OK; f++) {
+        if (a->format[f]->scene.suffix) {
+            char *path = ms_scene_engines_path(a->folder, a->format[f], 1);
+            status = path ? ms_files_add(files, path, MS_FILE_WRITTEN, err)
+                          : ms_fail(err, MS_ERR_NOMEM, "no memory for the names of the scripts");
+            free(path);
         }
     }
     return status;
@@ -223,6 +268,9 @@ static ms_status check_scene_files(const ms_outputs *outputs, const scene_argume
         }
     }
     if (status == MS_OK) {
+        status = list_scripts(&files, a, err);
+    }
+    if (status == MS_OK) {
         status = ms_files_check(&files, err);
     }
     ms_files_free(&files);
@@ -235,6 +283,10 @@ static char *record_of(const scene_arguments *a, const ms_scene_shape *shape)
     json_t *json = ms_scene_record_json(&a->recipe, (size_t)a->max_spheres, a->min_radius);
     ms_json_object_set(&json, "scores", ms_scene_scores_json(shape));
     ms_json_object_set(&json, "input", json_incref(shape->input));
+    if (shape->mass.corrected) {
+        ms_json_object_set(&json, "particle", ms_json_from_particle(&shape->mass.particle));
+        ms_json_object_set(&json, "masses", ms_mass_json(&shape->mass));
+    }
     char *record = json ? json_dumps(json, JSON_COMPACT) : NULL;
     json_decref(json);
     return record;
@@ -243,15 +295,21 @@ static char *record_of(const scene_arguments *a, const ms_scene_shape *shape)
 static ms_status write_templates(const ms_outputs *outputs, const scene_arguments *a, const ms_scene *scene,
                                  ms_error *err)
 {
+    FILE *words = a->json ? stderr : stdout;
     ms_status status = MS_OK;
     for (size_t s = 0; a->folder && s < scene->count && status == MS_OK; s++) {
-        char *record = record_of(a, &scene->shape[s]);
-        const ms_content content = {.clump = ms_scene_clump(&scene->shape[s]), .record = record};
-        status = record ? ms_outputs_write(&outputs[s], &content, a->json ? stderr : stdout, err)
+        const ms_scene_shape *shape = &scene->shape[s];
+        char *record = record_of(a, shape);
+        const ms_content content = {.clump = ms_scene_clump(shape),
+                                    .particle = shape->mass.corrected ? &shape->mass.particle : NULL,
+                                    .record = record};
+        status = record ? ms_outputs_write(&outputs[s], &content, words, err)
                         : ms_fail(err, MS_ERR_NOMEM, "no memory for the record of a template");
         free(record);
     }
-    return status;
+    return status == MS_OK && a->folder && a->engines.mass.density > 0
+               ? ms_scene_engines_write(scene, &a->engines, outputs, a->folder, words, err)
+               : status;
 }
 
 static ms_status report_scene(const scene_arguments *a, const ms_scene *scene, ms_error *err)
@@ -266,10 +324,21 @@ static ms_status report_scene(const scene_arguments *a, const ms_scene *scene, m
     return ms_report_print(stdout, json, err);
 }
 
+/* The templates are settled, and with masses what engines take. */
+static ms_status choose_and_correct(ms_scene *scene, const scene_arguments *a, const ms_outputs *outputs, ms_error *err)
+{
+    ms_status status = ms_scene_choose(scene, &a->goal, err);
+    if (status == MS_OK) {
+        status = ms_scene_engines_correct(scene, &a->engines, ms_input_max_voxels(&a->input), err);
+    }
+    return status == MS_OK && a->engines.mass.density > 0 ? ms_scene_engines_check(scene, &a->engines, outputs, err)
+                                                          : status;
+}
+
 static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, ms_outputs *outputs, ms_error *err)
 {
     ms_scene scene;
-    const ms_scene_run run = {&a->recipe, &a->input, (size_t)a->max_spheres, a->min_radius};
+    const ms_scene_run run = {&a->recipe, &a->input, (size_t)a->max_spheres, a->min_radius, a->equal_volume};
     ms_status status = plan_outputs(outputs, a, manifest, err);
     if (status == MS_OK && a->folder) {
         status = check_scene_files(outputs, a, manifest, err);
@@ -280,7 +349,7 @@ static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, 
     if (status != MS_OK) {
         return status;
     }
-    status = ms_scene_choose(&scene, &a->goal, err);
+    status = choose_and_correct(&scene, a, outputs, err);
     if (status == MS_OK) {
         ms_scene_say_remarks(&scene);
         status = report_scene(a, &scene, err);
@@ -293,12 +362,18 @@ static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, 
 }
 
 /* A manifest is known by its ending; any other file is a shape of which there is one. */
-static ms_status read_manifest(ms_manifest *manifest, const char *source, ms_error *err)
+static int is_manifest(const char *source)
 {
     char ending[16];
     ms_file_ending(ending, source);
-    return strcmp(ending, "csv") == 0 ? ms_manifest_read(manifest, source, err)
-                                      : ms_manifest_of_shape(manifest, source, err);
+    return strcmp(ending, "csv") == 0;
+}
+
+static ms_status read_manifest(ms_manifest *manifest, const scene_arguments *a, ms_error *err)
+{
+    const uint64_t particles = a->particles > 0 ? (uint64_t)a->particles : 1;
+    return is_manifest(a->source) ? ms_manifest_read(manifest, a->source, err)
+                                  : ms_manifest_of_shape(manifest, a->source, particles, err);
 }
 
 static int resolve_and_work(const ms_command *command, scene_arguments *a, const ms_manifest *manifest)
@@ -326,7 +401,7 @@ static int read_and_work(const ms_command *command, scene_arguments *a)
 {
     ms_manifest manifest;
     ms_error err;
-    if (read_manifest(&manifest, a->source, &err) != MS_OK) {
+    if (read_manifest(&manifest, a, &err) != MS_OK) {
         return ms_flags_fail(command, &err);
     }
     const int code = resolve_and_work(command, a, &manifest);
@@ -347,12 +422,20 @@ static int run_scene(const ms_command *command, int argc, char **argv)
     if (argc - first != 1) {
         return ms_flags_wrong_usage(command, "takes one manifest (.csv: shape,count) or one shape");
     }
-    if (a.format && !a.folder) {
+    if (a.n_formats > 0 && !a.folder) {
         return ms_flags_wrong_usage(command, "--format is that of the templates; give -o DIR beside it");
     }
     a.source = argv[first];
-    a.format = a.format ? a.format : ms_write_format_find("csv", &err);
-    ms_status status = ms_recipe_resolve(&a.recipe, &err);
+    if (a.particles > 0 && is_manifest(a.source)) {
+        return ms_flags_wrong_usage(command, "--particles is of a shape; a manifest has its own counts");
+    }
+    if (a.n_formats == 0) {
+        a.format[a.n_formats++] = ms_write_format_find("csv", &err);
+    }
+    ms_status status = ms_scene_engines_resolve(&a.engines, a.format, a.n_formats, &err);
+    if (status == MS_OK) {
+        status = ms_recipe_resolve(&a.recipe, &err);
+    }
     if (status == MS_OK) {
         a.input.cut |= a.goal.measure == &ms_measures[MS_MEASURE_COVERAGE_CUT];
         a.input.need = ms_generator_need(a.recipe.generator, &a.recipe.settings, a.input.cut);
@@ -367,7 +450,8 @@ static int run_scene(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_scene = {
     .name = "scene",
     .summary = "how many spheres each shape of a scene needs, and its templates",
-    .usage = "MANIFEST|SHAPE --budget N|--tolerance MEASURE=V|--mean-tolerance dice=V|--knee PART [-o DIR]",
+    .usage = "MANIFEST|SHAPE --budget N|--tolerance MEASURE=V|--mean-tolerance dice=V|--knee PART [-o DIR [--density "
+             "RHO --format F]...]",
     .example = "mskit scene grain.stl --knee 0.1 --max-spheres 20 --cells 50 -o templates",
     .flags = FLAGS,
     .run = run_scene,

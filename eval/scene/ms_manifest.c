@@ -163,7 +163,7 @@ ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *er
     return status;
 }
 
-ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, ms_error *err)
+ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, uint64_t particles, ms_error *err)
 {
     *manifest = (ms_manifest){.row = calloc(1, sizeof *manifest->row), .count = 1};
     char *path = strdup(shape);
@@ -173,7 +173,7 @@ ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, ms_erro
         *manifest = (ms_manifest){0};
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the shape %s", shape);
     }
-    manifest->row[0] = (ms_manifest_row){path, 1, (double)NAN};
+    manifest->row[0] = (ms_manifest_row){path, particles, (double)NAN};
     return MS_OK;
 }
 

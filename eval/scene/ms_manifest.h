@@ -33,8 +33,8 @@ typedef struct ms_manifest {
  */
 ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *err);
 
-/** One particle of one shape. @return MS_OK; MS_ERR_NOMEM */
-ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, ms_error *err);
+/** Particles of one shape. @return MS_OK; MS_ERR_NOMEM */
+ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, uint64_t particles, ms_error *err);
 
 void ms_manifest_free(ms_manifest *manifest);
 

@@ -9,6 +9,7 @@
 #include "cli/ms_expectation.h"
 #include "cli/ms_progress.h"
 #include "cli/ms_report.h"
+#include "clump/ms_equal_volume.h"
 #include "ms_curve.h"
 #include "queue/ms_queue.h"
 
@@ -127,10 +128,30 @@ static ms_status make_room(ms_scene_shape *shape, size_t count, ms_error *err)
     return MS_OK;
 }
 
+/* Scales each template to the volume of the shape, and judges it anew. */
+static ms_status scale_templates(ms_scene_shape *shape, const ms_target *target, size_t max_voxels, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t n = 0; n < shape->most && status == MS_OK; n++) {
+        ms_equal_volume ignored;
+        ms_metrics metrics;
+        status = ms_equal_volume_scale(&shape->clump[n], &ignored, &shape->body, err);
+        if (status == MS_OK) {
+            status = ms_metrics_compute_kinds(&metrics, NULL, 0, target, &shape->clump[n], max_voxels, err);
+        }
+        if (status == MS_OK) {
+            shape->score[n] = metrics.score;
+        }
+    }
+    return status;
+}
+
 /* @param remarks on the clump: prefixes of one share them, and other templates have their own */
 static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const ms_error *remarks, const ms_run *run,
-                            const ms_generator *generator, size_t max_voxels, ms_error *err)
+                            const ms_scene_run *how, ms_error *err)
 {
+    const ms_generator *generator = how->recipe->generator;
+    const size_t max_voxels = ms_input_max_voxels(how->input);
     ms_status status = make_room(shape, clump->n_spheres, err);
     const size_t most = status == MS_OK ? shape->most : 0;
     for (size_t n = ms_generator_is_nested(generator, run->settings) ? 1 : most; n > 0 && n <= most; n++) {
@@ -138,6 +159,9 @@ static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const 
     }
     if (status == MS_OK) {
         status = ms_curve_clumps(shape->score, shape->clump, shape->remarks, clump, generator, run, max_voxels, err);
+    }
+    if (status == MS_OK && how->equal_volume) {
+        status = scale_templates(shape, run->target, max_voxels, err);
     }
     if (status == MS_OK) {
         choose_numbers(shape);
@@ -153,6 +177,7 @@ typedef struct scene_search {
     ms_run run;
     size_t max_voxels;
     double value; /* to be reached */
+    int equal_volume;
 } scene_search;
 
 /* The template of n spheres. @param[out] reached does it reach the tolerance? */
@@ -161,9 +186,13 @@ static ms_status try_number(int *reached, scene_search *s, size_t n, ms_error *e
     ms_scene_shape *shape = s->shape;
     ms_metrics metrics;
     ms_stop_reason reason;
+    ms_equal_volume ignored;
     s->run.stop.spheres = n;
     ms_generator_keep_remarks(&s->run, &shape->remarks[n - 1]);
     ms_status status = ms_generator_run(&shape->clump[n - 1], &reason, s->generator, &s->run, err);
+    if (status == MS_OK && s->equal_volume) {
+        status = ms_equal_volume_scale(&shape->clump[n - 1], &ignored, &shape->body, err);
+    }
     if (status == MS_OK) {
         status = ms_metrics_compute_kinds(&metrics, NULL, 0, s->run.target, &shape->clump[n - 1], s->max_voxels, err);
     }
@@ -238,7 +267,8 @@ static ms_status search_template(ms_scene_shape *shape, const ms_input *input, c
                       .generator = how->recipe->generator,
                       .run = *run,
                       .max_voxels = ms_input_max_voxels(how->input),
-                      .value = tolerance_of(shape, goal)};
+                      .value = tolerance_of(shape, goal),
+                      .equal_volume = how->equal_volume};
     const ms_status status = make_room(shape, how->max_spheres, err);
     for (size_t n = 0; status == MS_OK && n < shape->most; n++) {
         shape->dice[n] = (double)NAN;
@@ -265,7 +295,7 @@ static ms_status make_all_templates(ms_scene_shape *shape, ms_run *run, const ms
         ms_progress_show(run);
     }
     if (status == MS_OK) {
-        status = make_curve(shape, &clump, &remarks, run, generator, ms_input_max_voxels(how->input), err);
+        status = make_curve(shape, &clump, &remarks, run, how, err);
         ms_clump_free(&clump);
     }
     return status;
@@ -286,6 +316,7 @@ static ms_status make_templates(ms_scene_shape *shape, const char *title, const 
         run.stage = NULL; /* of all runs the first is a small part */
     }
     shape->input = ms_report_input_json(input);
+    shape->body = input->target.body;
     ms_status status;
     if (ms_scene_is_searched(goal, recipe)) {
         status = search_template(shape, input, &run, how, goal, &cause);

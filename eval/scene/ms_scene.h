@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "cli/ms_input.h"
+#include "cli/ms_mass.h"
 #include "cli/ms_recipe.h"
 #include "measure/ms_metrics.h"
 #include "ms_allocate.h"
@@ -37,6 +38,8 @@ typedef struct ms_scene_shape {
     double *dice;      /* D alone; NAN likewise */
     ms_error *remarks; /* what the method remarks on each; "" without */
     json_t *input;     /* as ms_report_input_json */
+    ms_body body;      /* of the shape */
+    ms_mass mass;      /* of the template chosen, where masses were asked for (ms_scene_engines.h) */
     size_t chosen;     /* number of spheres, after ms_scene_choose */
 } ms_scene_shape;
 
@@ -57,6 +60,7 @@ typedef struct ms_scene_run {
     const ms_input_flags *input;
     size_t max_spheres;
     double min_radius; /* 0: none */
+    int equal_volume;  /* scale each template, before it is judged, until its union has the shape's volume */
 } ms_scene_run;
 
 /**

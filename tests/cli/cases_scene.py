@@ -225,6 +225,55 @@ class Templates(Scene):
             self.assertIn(word, out)
 
 
+class Engines(Scene):
+    """Masses and scripts; the engines themselves are in tests/engines."""
+
+    SCENE = (*QUICK, "--budget", "250", "--max-spheres", "8", "--density", "2650", "--unit", "mm")
+
+    def test_scripts_have_the_counts_of_the_manifest(self):
+        out = self.mskit("scene", "scene.csv", *self.SCENE, "--format", "liggghts", "--format", "lammps", "--format", "yade",
+                         "--format", "json", "-o", "out").out
+        for name in ("scene.liggghts.in", "scene.lammps.in", "scene.yade.py"):
+            self.assertIn("wrote out/" + name, out)
+        liggghts, lammps, yade = (self.read("out/" + name).decode() for name in ("scene.liggghts.in", "scene.lammps.in",
+                                                                                   "scene.yade.py"))
+        counts = list(self.COUNTS.values())
+        self.assertEqual(re.findall(r"particles_in_region (\d+)", liggghts),
+                         [str(n) for n in itertools.accumulate(counts)])
+        self.assertEqual([int(n) for n in re.findall(r" deposit (\d+) ", lammps)], counts)
+        self.assertEqual([int(n) for n in re.findall(r"(?m)^    \((\d+), ", yade)], counts)
+        masses = [json.loads(self.read(f"out/{shape[:-4]}.json"))["particle"]["mass"] for shape in self.COUNTS]
+        self.assert_close(masses[0], 2650 * 6e-9, 1e-12, "mass of the box")
+        for mass, given in zip(masses, re.findall(r" mass (\d\S+) inertia", liggghts)):
+            self.assert_close(float(given), mass, 1e-12, "mass")
+
+    def test_equal_volume_is_judged_as_written(self):
+        scene = self.scene(*self.SCENE, "--equal-volume", "-o", "out")
+        self.check_sums(scene)
+        for shape in scene["shapes"]:
+            path = shape["input"]["path"]
+            judged = self.mskit("score", "out/" + path[:-4] + ".csv", "--target", path, "--json", *GRID).json["scores"]
+            self.assertEqual(judged["dice"], shape["scores"]["dice"])
+            self.assert_close(judged["off_volume"], 1, 0.02, "volume on the grid")
+
+    def test_particles_of_one_shape(self):
+        scene = self.scene(*QUICK, "--knee", "0.2", "--particles", "12", source="grain.stl")
+        self.assertEqual(scene["particles"], 12)
+
+    def test_refused(self):
+        script = ("--format", "liggghts", "-o", "out")
+        for args, says in (
+            ((*self.SCENE, "--cylinder", "2", *script), ("box.obj reaches", "--cylinder has 2")),
+            ((*self.SCENE, "--box", "9,2", *script), ("box.obj reaches", "--box has 2")),
+            ((*QUICK, "--knee", "1", "--density", "1", *script), ("box.obj: LIGGGHTS takes no multisphere of one",)),
+            ((*QUICK, "--budget", "300", "--density", "1", "--least-mass", "0.9", *script), ("box.obj:", "mass")),
+        ):
+            with self.subTest(args=args):
+                self.assert_refused("scene", "scene.csv", *args, code=1, says=says)
+        os.rename(self.path("grain.stl"), self.path("scene.stl"))
+        self.assert_refused("scene", "scene.stl", *self.SCENE, *script, code=1, says=("out/scene.liggghts.in",))
+
+
 class Refused(Scene):
     def test_manifests(self):
         self.write("nul.csv", b"shape,count\nbox.obj,\x001\n")
@@ -288,7 +337,15 @@ class Refused(Scene):
             (("--budget", "60", "--max-spheres", "1001"), ("--max-spheres", "1000")),
             (("--budget", "60", "--min-radius", "-1"), ("--min-radius",)),
             (("--budget", "60", "--format", "json"), ("-o DIR",)),
-            (("--budget", "60", "-o", "out", "--format", "lammps"), ("lammps", "mskit correct")),
+            (("--budget", "60", "-o", "out", "--format", "lammps"), ("lammps", "--density RHO")),
+            (("--budget", "60", "-o", "out", "--format", "csv", "--format", "csv"), ("csv", "twice")),
+            (("--budget", "60", "--unit", "mm"), ("--density",)),
+            (("--budget", "60", "-o", "out", "--box", "1,2"), ("--box", "--format liggghts")),
+            (("--budget", "60", "--box", "5"), ("two widths",)),
+            (("--budget", "60", "--box", "5,x"), ("--box", "'x'")),
+            (("--budget", "60", "--box", "5,6", "--cylinder", "5"), ("one vessel",)),
+            (("--budget", "60", "--cylinder", "0"), ("--cylinder",)),
+            (("--budget", "60", "--particles", "3"), ("--particles", "manifest")),
             (("--budget", "60", "-o", ""), ("--output",)),
             (("--budget", "60", "--set", "spacing=1"), ("'spacing'",)),  # an option of mss
             (("--budget", "60", "scene.csv"), ("one manifest",)),

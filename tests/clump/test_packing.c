@@ -57,7 +57,7 @@ static double next_random(unsigned *seed)
 /* Clumps of one to four spheres at random places and turns; every hundredth is ten times as large. */
 static ms_packing make_packing(size_t count, double side)
 {
-    ms_packing packing = {calloc(count, sizeof *packing.placed), count};
+    ms_packing packing = {.placed = calloc(count, sizeof *packing.placed), .count = count};
     unsigned seed = 12345;
     assert_non_null(packing.placed);
     for (size_t p = 0; p < count; p++) {
@@ -130,7 +130,7 @@ static void overlaps_are_those_of_brute_force(void **state)
 /* Two unit spheres 1.7 apart, along no axis: 0.3 deep. */
 static ms_packing make_two(void)
 {
-    ms_packing packing = {calloc(2, sizeof *packing.placed), 2};
+    ms_packing packing = {.placed = calloc(2, sizeof *packing.placed), .count = 2};
     assert_non_null(packing.placed);
     for (size_t p = 0; p < 2; p++) {
         packing.placed[p] =

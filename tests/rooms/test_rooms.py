@@ -48,7 +48,7 @@ ROOMS = {
                     "common/volume", "generators", "eval/chart", "eval/cli", "eval/queue"],
     "eval/population": ["common/base", "common/clump", "common/clump/formats", "eval/chart", "eval/cli", "eval/grains"],
     "eval/queue": ["common/base", "eval/cli"],
-    "eval/scene": ["common/base", "common/clump", "common/expect", "common/measure", "generators", "eval/cli", "eval/queue"],
+    "eval/scene": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure", "generators", "eval/cli", "eval/queue"],
     "eval/stability": ["common/base", "common/clump", "common/measure", "common/mesh", "common/shape", "common/voxel",
                        "generators", "eval/chart", "eval/cli", "eval/queue", "eval/view"],
     "eval/view": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",

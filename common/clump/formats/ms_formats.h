@@ -49,4 +49,9 @@ ms_status ms_lammps_mixture(FILE *stream, const ms_packing *mixture, const char 
 ms_status ms_yade_kinds(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err);
 ms_status ms_yade_mixture(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err);
 
+/* Likewise of scenes. */
+ms_status ms_liggghts_scene(FILE *stream, const ms_packing *scene, const char *name, ms_error *err);
+ms_status ms_lammps_scene(FILE *stream, const ms_packing *scene, const char *name, ms_error *err);
+ms_status ms_yade_scene(FILE *stream, const ms_packing *scene, const char *name, ms_error *err);
+
 #endif

@@ -9,6 +9,7 @@
 #include "base/ms_version.h"
 #include "ms_fields.h"
 #include "ms_formats.h"
+#include "ms_lammps.h"
 #include "ms_script.h"
 
 /* Products of inertia below this part of the moments are rounding, of whoever wrote the file. */
@@ -451,10 +452,24 @@ ms_status ms_lammps_settle(FILE *stream, const ms_packing *packing, const char *
 }
 
 /* The scale of a molecule goes for mass and inertia, too. */
+void ms_lammps_molecules(FILE *stream, const ms_packing *mixture)
+{
+    fputs("# A template of each kind and size: mass and inertia are kept (reinit no) and gravity acts on the body.\n"
+          "molecule clump",
+          stream);
+    for (size_t k = 0; k < mixture->count; k++) {
+        ms_number scale;
+        char file[4096];
+        snprintf(file, sizeof file, "%s.lammps", mixture->placed[k].name);
+        fputs(" &\n    ", stream);
+        ms_escape_lammps(stream, file);
+        fprintf(stream, " scale %s", ms_script_number(mixture->placed[k].scale, &scale));
+    }
+}
+
 ms_status ms_lammps_mixture(FILE *stream, const ms_packing *mixture, const char *name, ms_error *err)
 {
     const ms_script_drop d = ms_script_drop_of_mixture(mixture);
-    ms_number a;
     int carriers = 0;
     (void)err;
     for (size_t k = 0; k < mixture->count; k++) {
@@ -463,16 +478,7 @@ ms_status ms_lammps_mixture(FILE *stream, const ms_packing *mixture, const char 
     ms_script_mixture_title(stream, name, "lmp -in", ".in", "-var n 500");
     fputs("variable n index 100\n\n", stream);
     start_lammps_drop(stream, &d, carriers);
-    fputs("# A template of each kind and size: mass and inertia are kept (reinit no) and gravity acts on the body.\n"
-          "molecule clump",
-          stream);
-    for (size_t k = 0; k < mixture->count; k++) {
-        char file[4096];
-        snprintf(file, sizeof file, "%s.lammps", mixture->placed[k].name);
-        fputs(" &\n    ", stream);
-        ms_escape_lammps(stream, file);
-        fprintf(stream, " scale %s", ms_script_number(mixture->placed[k].scale, &a));
-    }
+    ms_lammps_molecules(stream, mixture);
     end_lammps_drop(stream, &d, mixture);
     return MS_OK;
 }

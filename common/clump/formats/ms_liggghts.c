@@ -4,10 +4,11 @@
 #include "base/ms_escape.h"
 #include "ms_fields.h"
 #include "ms_formats.h"
+#include "ms_liggghts.h"
 #include "ms_script.h"
 
-static const char STYLE[] = "atom_style granular\natom_modify map array\ncommunicate single vel yes\n"
-                            "boundary f f f\nnewton off\nunits si\n";
+const char ms_liggghts_style[] = "atom_style granular\natom_modify map array\ncommunicate single vel yes\n"
+                                 "boundary f f f\nnewton off\nunits si\n";
 
 /* A comment or an empty line in it crashes LIGGGHTS. */
 ms_status ms_liggghts_write(FILE *stream, const ms_content *content, ms_error *err)
@@ -85,7 +86,7 @@ static void write_liggghts_particle(FILE *stream, const ms_content *content)
 static void start_liggghts_drop(FILE *stream, const ms_script_drop *d, double bin)
 {
     ms_number a;
-    fputs(STYLE, stream);
+    fputs(ms_liggghts_style, stream);
     write_liggghts_places(stream, d);
     fprintf(stream, "neighbor %s bin\nneigh_modify delay 0\n\n", ms_script_number(bin, &a));
     write_liggghts_law(stream, d->young);
@@ -116,8 +117,7 @@ ms_status ms_liggghts_script(FILE *stream, const ms_content *content, ms_error *
     return MS_OK;
 }
 
-/* Mass and inertia that are given do not go with the scale. */
-static void write_liggghts_template(FILE *stream, const ms_placed *placed, size_t k, unsigned seed)
+void ms_liggghts_template(FILE *stream, const ms_placed *placed, size_t k, unsigned seed)
 {
     ms_number a, b;
     char file[4096];
@@ -135,7 +135,7 @@ static void write_liggghts_template(FILE *stream, const ms_placed *placed, size_
 static void write_liggghts_placed(FILE *stream, const ms_placed *placed, size_t k, double speck)
 {
     ms_number a, b;
-    write_liggghts_template(stream, placed, k, 15485863);
+    ms_liggghts_template(stream, placed, k, 15485863);
     fprintf(stream, "fix d%zu all particledistribution/discrete 15485867 1 t%zu 1.0\nregion r%zu block", k, k, k);
     for (int axis = 0; axis < 3; axis++) {
         const double x = placed->centre[axis];
@@ -188,7 +188,7 @@ ms_status ms_liggghts_settle(FILE *stream, const ms_packing *packing, const char
     ms_number a;
     (void)err;
     ms_script_settle_title(stream, name, "liggghts -in", ".in");
-    fprintf(stream, "variable loosen index %.0f\nvariable steps index %.0f\n\n%s", s.loosen, s.end, STYLE);
+    fprintf(stream, "variable loosen index %.0f\nvariable steps index %.0f\n\n%s", s.loosen, s.end, ms_liggghts_style);
     write_liggghts_domain(stream, &s);
     fprintf(stream, "neighbor %s bin\nneigh_modify delay 0\n\n", ms_script_number(s.least, &a));
     fputs("soft_particles yes\n", stream); /* lets the modulus be below 5e6 */
@@ -205,7 +205,7 @@ ms_status ms_liggghts_settle(FILE *stream, const ms_packing *packing, const char
     return MS_OK;
 }
 
-static unsigned next_prime(unsigned after)
+unsigned ms_liggghts_seed(unsigned after)
 {
     for (unsigned n = after + 1;; n++) {
         unsigned divisor = 2;
@@ -230,8 +230,8 @@ ms_status ms_liggghts_mixture(FILE *stream, const ms_packing *mixture, const cha
     start_liggghts_drop(stream, &d, 0.2 * d.reach);
     fputs("# A template of each kind and size, and the share of each.\n", stream);
     for (size_t k = 0; k < mixture->count; k++) {
-        seed = next_prime(seed);
-        write_liggghts_template(stream, &mixture->placed[k], k + 1, seed);
+        seed = ms_liggghts_seed(seed);
+        ms_liggghts_template(stream, &mixture->placed[k], k + 1, seed);
     }
     fprintf(stream, "fix kinds all particledistribution/discrete/numberbased 15485867 %zu", mixture->count);
     for (size_t k = 0; k < mixture->count; k++) {

@@ -5,26 +5,23 @@
 #include "base/ms_escape.h"
 #include "ms_stable.h"
 
-static const double GRAVITY = 9.81, POISSON = 0.3;
+static const double POISSON = 0.3;
 static const double LOOSEN_STEPS = 10000, SLOWING_STEPS = 5;
 static const double LEAST_YOUNG = 5e6; /* for LIGGGHTS without soft_particles */
 
-/* Stiff enough for what weighs on a particle below that height. */
-static double young_below(double height, double density)
+double ms_script_young(double height, double density)
 {
-    return 1e5 * density * GRAVITY * height;
+    return 1e5 * density * MS_SCRIPT_GRAVITY * height;
 }
 
-/* A tenth of the Rayleigh time of a sphere of that radius. */
-static double step_of(double radius, double density, double young)
+double ms_script_step(double radius, double density, double young)
 {
     const double shear = young / (2 * (1 + POISSON));
     const double rayleigh = acos(-1.0) * radius * sqrt(density / shear) / (0.1631 * POISSON + 0.8766);
     return rayleigh / 10;
 }
 
-/* Of the ball of that mass. */
-static double radius_of(double mass, double density)
+double ms_script_radius(double mass, double density)
 {
     return cbrt(0.75 * mass / (acos(-1.0) * density));
 }
@@ -32,13 +29,13 @@ static double radius_of(double mass, double density)
 /* @param reach of the largest particle @param radius whose Rayleigh time bounds the step */
 static ms_script_drop make_drop(double reach, double radius, double density)
 {
-    const double young = fmax(young_below(reach, density), LEAST_YOUNG);
+    const double young = fmax(ms_script_young(reach, density), LEAST_YOUNG);
     return (ms_script_drop){.reach = reach,
                             .young = young,
-                            .step = step_of(radius, density, young),
+                            .step = ms_script_step(radius, density, young),
                             .one = HUGE_VAL,
                             .all = HUGE_VAL,
-                            .end = 4 * sqrt(4 * reach / GRAVITY),
+                            .end = 4 * sqrt(4 * reach / MS_SCRIPT_GRAVITY),
                             .side = 4 * reach};
 }
 
@@ -69,7 +66,7 @@ ms_script_drop ms_script_drop_of_mixture(const ms_packing *mixture)
         reach = fmax(reach, kind->scale * ms_template_reach(&kind->clump));
         lightest = fmin(lightest, kind->particle.mass);
     }
-    ms_script_drop drop = make_drop(reach, radius_of(lightest, density), density);
+    ms_script_drop drop = make_drop(reach, ms_script_radius(lightest, density), density);
     for (size_t k = 0; k < mixture->count; k++) {
         bound_steps(&drop, &mixture->placed[k].clump, mixture->placed[k].scale, &mixture->placed[k].particle);
     }
@@ -89,10 +86,10 @@ ms_script_settle ms_script_settle_of(const ms_packing *packing)
         s.drag = fmin(s.drag, placed->particle.mass / (double)placed->clump.n_spheres);
         lightest = fmin(lightest, placed->particle.mass);
     }
-    s.young = young_below(s.hi[2] - s.lo[2], density);
-    s.step = step_of(radius_of(lightest, density), density, s.young);
+    s.young = ms_script_young(s.hi[2] - s.lo[2], density);
+    s.step = ms_script_step(ms_script_radius(lightest, density), density, s.young);
     s.drag /= SLOWING_STEPS * s.step;
-    s.end = ceil(4 * sqrt(2 * (s.hi[2] - s.lo[2]) / GRAVITY) / s.step);
+    s.end = ceil(4 * sqrt(2 * (s.hi[2] - s.lo[2]) / MS_SCRIPT_GRAVITY) / s.step);
     return s;
 }
 

@@ -7,6 +7,17 @@
 #include "clump/ms_packing.h"
 #include "ms_write.h"
 
+#define MS_SCRIPT_GRAVITY 9.81
+
+/** A modulus stiff enough for what weighs on a particle below that height. */
+double ms_script_young(double height, double density);
+
+/** A tenth of the Rayleigh time of a sphere of that radius. */
+double ms_script_step(double radius, double density, double young);
+
+/** Of the ball of that mass. */
+double ms_script_radius(double mass, double density);
+
 /** A drop that suits the size of the particle, whatever that is; the scripts have a restitution of 0.5. */
 typedef struct ms_script_drop {
     double reach; /* of the particle around its centre of mass */

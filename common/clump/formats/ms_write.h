@@ -67,6 +67,7 @@ typedef struct ms_format {
 
     ms_packing_part packing[MS_FORMAT_MAX_PACKING]; /* ends with a NULL suffix; none: no packings are written */
     ms_packing_part mixture[MS_FORMAT_MAX_PACKING]; /* likewise, of mixtures */
+    ms_packing_part scene;                          /* a script of a whole scene; without suffix there is none */
 } ms_format;
 
 MS_API extern const ms_format ms_formats[];

@@ -49,3 +49,8 @@ ms_status ms_write_mixture(const ms_packing *mixture, const char *path, const ms
 {
     return write_packing_parts(mixture, path, format->mixture, err);
 }
+
+ms_status ms_write_scene(const ms_packing *scene, const char *path, const ms_format *format, ms_error *err)
+{
+    return write_packing_part(scene, path, &format->scene, err);
+}

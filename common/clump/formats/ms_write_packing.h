@@ -1,5 +1,5 @@
-/** Files of a whole packing: every clump in its place, by its own template, and a script that lets it come to rest; and
- * of a mixture. */
+/** Files of a whole packing: every clump in its place, by its own template, and a script that lets it come to rest; of
+ * a mixture; and of a scene. */
 #ifndef MS_WRITE_PACKING_H
 #define MS_WRITE_PACKING_H
 
@@ -26,5 +26,17 @@ ms_status ms_write_packing(const ms_packing *packing, const char *path, const ms
  * @param mixture not empty, of clumps with masses; places and turns are not heeded
  */
 ms_status ms_write_mixture(const ms_packing *mixture, const char *path, const ms_format *format, ms_error *err);
+
+/**
+ * Writes the script PATH with the format's suffix, which inserts all particles of a scene into its vessel and lets them
+ * come to rest. The templates stand beside it, by the names of the kinds.
+ *
+ * @param scene  not empty, of clumps with masses and counts; the vessel, where it is given, is wider than the largest
+ *               particle
+ * @param path   a name that fits scripts
+ * @param format one with a script of scenes (ms_format.scene)
+ * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM
+ */
+ms_status ms_write_scene(const ms_packing *scene, const char *path, const ms_format *format, ms_error *err);
 
 #endif

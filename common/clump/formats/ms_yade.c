@@ -5,6 +5,7 @@
 #include "ms_fields.h"
 #include "ms_formats.h"
 #include "ms_script.h"
+#include "ms_yade.h"
 
 ms_status ms_yade_write(FILE *stream, const ms_content *content, ms_error *err)
 {
@@ -152,8 +153,7 @@ ms_status ms_yade_packing(FILE *stream, const ms_packing *packing, const char *n
     return MS_OK;
 }
 
-/* As write_yade_particle, of any template. */
-static void write_yade_any(FILE *stream)
+void ms_yade_particle(FILE *stream)
 {
     fputs(
         "def particle(file, scale, mass, inertia, position, turn):\n"
@@ -174,7 +174,7 @@ static void write_yade_any(FILE *stream)
 
 static void write_yade_placed(FILE *stream, const char *name)
 {
-    write_yade_any(stream);
+    ms_yade_particle(stream);
     fputs("clumps = []\nfor line in open(", stream);
     ms_escape_python(stream, name);
     fputs("):\n"
@@ -243,7 +243,7 @@ ms_status ms_yade_mixture(FILE *stream, const ms_packing *mixture, const char *n
           "n = int(sys.argv[1]) if len(sys.argv) > 1 else 100\n",
           stream);
     write_yade_materials(stream, mixture->placed[0].particle.density, d.young);
-    write_yade_any(stream);
+    ms_yade_particle(stream);
     write_yade_places(stream, &d);
     fputs("kinds = [line.rstrip('\\n').split(' ', 6) for line in open(", stream);
     ms_escape_python(stream, name);

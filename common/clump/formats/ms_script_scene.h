@@ -1,0 +1,42 @@
+/** What the scripts share that insert all particles of a scene into a box or a cylinder and let them come to rest. The
+ * numbers are SI. Private to the writers of formats. */
+#ifndef MS_SCRIPT_SCENE_H
+#define MS_SCRIPT_SCENE_H
+
+#include "ms_script.h"
+
+/** All at once are inserted as a loose column above the floor, turned at random and at rest; they fall and settle. */
+typedef struct ms_script_scene {
+    double particles, spheres; /* in the scene; carriers are no spheres */
+    double carriers;           /* in the scene */
+    double mass;               /* of all */
+    double density;            /* of their matter: the volume of all is mass / density */
+    double reach;              /* of the largest particle around its centre of mass */
+    double most, least;        /* radius of a sphere */
+    double half[2];            /* width of the box along x and y, or diameter of the cylinder; halved */
+    int is_round;              /* a cylinder */
+    double low, top;           /* of the column: no particle reaches out of it */
+    double young;              /* so that overlaps are some 1 % where particles land from its top */
+    double step;               /* a tenth of the Rayleigh time of a ball of the least mass, at that modulus */
+    double convention;         /* the same of the smallest sphere */
+    double fall;               /* time of a fall from the top */
+    double drag;               /* of each sphere, kg/s: slows every particle within the time of the fall */
+    double rest;               /* J: 1e-6 m g d, summed over the particles; d of the ball of equal volume */
+} ms_script_scene;
+
+/** @param scene not empty, with counts and masses; width 0: a box as wide as the bed is high, or eight reaches */
+ms_script_scene ms_script_scene_of(const ms_packing *scene);
+
+/** The head of a script, all comments: what it is, how it is started ("COMMAND NAMESUFFIX"), its particles, and what
+ * stands behind its numbers. */
+void ms_script_scene_title(FILE *stream, const ms_packing *scene, const char *name, const char *command,
+                           const char *suffix);
+
+/** The floor's, m^2. */
+double ms_script_scene_area(const ms_script_scene *s);
+
+/** How LIGGGHTS and LAMMPS say at the end what came of it: lines "scene: ...". Their scripts have the variables state,
+ * mass, kinetic, total, height, highest and fraction. @param atoms in the scene, as the engine counts */
+void ms_script_scene_results(FILE *stream, const ms_script_scene *s, double atoms);
+
+#endif

@@ -1,0 +1,159 @@
+#!/usr/bin/env python3
+"""Scripts of a whole scene, in the engines: all particles of the manifest, with their masses, come to rest in the vessel.
+
+    MSKIT=build/eval/mskit tests/engines/test_scene.py [-v]
+"""
+import glob
+import os
+import re
+import unittest
+
+import test_engines as engines
+from test_engines import numbers
+
+COUNTS = {"grain": 4, "tablet": 3, "ring": 3}
+SHAPES = {"grain": ("grain",), "tablet": ("tablet", "band_radius=1.2", "band_height=0.8", "cap_height=0.3"),
+          "ring": ("torus", "R=1", "r=0.6")}
+VESSELS = {"box": ("--box", "8,7"), "cylinder": ("--cylinder", "8")}
+SIZE = {"box": (4e-3, 3.5e-3), "cylinder": (4e-3, 4e-3)}  # half its width
+FORMATS = ("--format", "liggghts", "--format", "lammps", "--format", "yade")
+
+
+class Scene(engines.Clump):
+    """Three shapes, with scripts for a box and for a cylinder."""
+
+    def __init__(self, folder):
+        self.top = self.folder = folder
+        for name, shape in SHAPES.items():
+            self.mskit("shape", *shape, "-o", name + ".stl")
+        self.write("scene.csv", "shape,count\n" + "".join(f"{name}.stl,{n}\n" for name, n in COUNTS.items()))
+        for vessel, flags in VESSELS.items():
+            self.mskit("scene", "scene.csv", "--tolerance", "dice=0.15", "-g", "variational", "--cells", "30", "--density",
+                       str(engines.DENSITY), "--unit", "mm", "--carriers", *flags, *FORMATS, "-o", vessel)
+        self.mass, self.spheres = 0, 0
+        for name, count in COUNTS.items():
+            script = self.script(f"box/{name}.liggghts.in")
+            self.mass += count * float(re.search(r" mass (\d\S+)", script).group(1))
+            self.spheres += count * int(re.search(r" nspheres (\d+)", script).group(1))
+
+
+class Engine(unittest.TestCase):
+    program = None
+    scene = None  # made once, for all engines
+
+    @classmethod
+    def setUpClass(cls):
+        engines.need_program(cls.program)
+        Engine.scene = Engine.scene or Scene(engines.make_folder())
+
+    def run_script(self, vessel, *command):
+        """What it says at the end, {word: numbers}, and the total energies from the first to the last."""
+        self.scene.folder = os.path.join(self.scene.top, vessel)
+        out = self.scene.run(*command)
+        self.assertIn("scene: at rest", out)
+        said = {line.split()[0]: [float(x) for x in re.findall(r"[-+]?\d[-+.e\d]*", line)]
+                for line in re.findall(r"(?m)^scene: (.*)", out)}
+        rows = [numbers(line) for line in re.findall(r"(?m)^ *\d+(?: +[-+.e\d]+){6,7} *$", out)]
+        return said, [row[-4] for row in rows]
+
+    def check(self, vessel, said, energies, spheres):
+        """spheres: x, y, z, r of the dump."""
+        total = sum(COUNTS.values())
+        self.assertEqual(said["particles"], [total, total])
+        self.assertAlmostEqual(said["mass"][0] / self.scene.mass, 1, delta=1e-9)
+        self.assertLess(said["at"][0], 1e-6)  # m g d
+        self.assertGreater(len(energies), 20)
+        for before, after in zip(energies, energies[1:]):
+            self.assertLess(after, before + 0.02 * energies[0], "the energy grows")
+        self.assertLess(energies[-1], 0.7 * energies[0])
+        self.assertAlmostEqual(said["energy"][0] / energies[-1], 1, delta=1e-3)
+        self.assertEqual(len(spheres), self.scene.spheres)
+        x, y = SIZE[vessel]
+        slack = 2e-5
+        for s in spheres:
+            self.assertGreater(s[2] - s[3], -slack, "below the floor")
+            if vessel == "box":
+                self.assertTrue(abs(s[0]) + s[3] < x + slack and abs(s[1]) + s[3] < y + slack, "through a wall")
+            else:
+                self.assertLess((s[0] ** 2 + s[1] ** 2) ** 0.5 + s[3], x + slack, "through the wall")
+        self.assertAlmostEqual(said["height"][1], max(s[2] + s[3] for s in spheres), delta=1e-5)
+        self.assertTrue(0 < said["height"][0] < said["height"][1] * 1.5)
+        self.assertTrue(0.1 < said["packing"][0] < 1)
+
+    def check_picture(self, pattern):
+        """A VTK file of as many points as spheres."""
+        found = [p for p in glob.glob(self.scene.path(pattern)) if "boundingBox" not in p]
+        self.assertEqual(len(found), 1)
+        with open(found[0], encoding="latin-1") as f:
+            text = f.read()
+        self.assertTrue(text.startswith("# vtk DataFile"))
+        return int(re.search(r"POINTS (\d+)", text).group(1))
+
+    def fail_script(self, *command):
+        with self.assertRaisesRegex(AssertionError, "(?s)exit code 1.*scene: not all particles have room"):
+            self.scene.run(*command)
+
+    def rows(self, name):
+        (rows,) = engines.read_dumps(self.scene.path(name)).values()
+        return list(rows.values())
+
+    def each_vessel(self, check):
+        for vessel in VESSELS:
+            with self.subTest(vessel=vessel):
+                check(vessel)
+
+
+class Liggghts(Engine):
+    program = "liggghts"
+
+    def test_rest(self):
+        def check(vessel):
+            said, energies = self.run_script(vessel, "liggghts", "-in", "scene.liggghts.in")
+            self.check(vessel, said, energies, [row[1:] for row in self.rows("scene.liggghts.dump")])
+            self.assertEqual(self.check_picture("scene.liggghts_*.vtk"), self.scene.spheres)
+
+        self.each_vessel(check)
+
+    def test_no_room(self):
+        """A script that cannot insert all particles says so and ends."""
+        self.scene.folder = os.path.join(self.scene.top, "box")
+        crowded = re.sub(r"particles_in_region 10 ", "particles_in_region 400 ", self.scene.script("scene.liggghts.in"))
+        self.scene.write("crowded.in", crowded)
+        self.fail_script("liggghts", "-in", "crowded.in")
+
+
+class Lammps(Engine):
+    program = "lmp"
+
+    def test_rest(self):
+        def check(vessel):
+            said, energies = self.run_script(vessel, "lmp", "-in", "scene.lammps.in")
+            spheres = [row[2:] for row in self.rows("scene.lammps.dump") if row[1] == 1]
+            self.check(vessel, said, energies, spheres)
+            self.assertGreaterEqual(self.check_picture("scene.lammps.vtk"), self.scene.spheres)  # and the carriers
+
+        self.each_vessel(check)
+
+    def test_no_room(self):
+        self.scene.folder = os.path.join(self.scene.top, "box")
+        self.scene.write("crowded.in", self.scene.script("scene.lammps.in").replace(" deposit 3 ", " deposit 400 "))
+        self.fail_script("lmp", "-in", "crowded.in")
+
+
+class Yade(Engine):
+    program = "yade"
+
+    def test_rest(self):
+        def check(vessel):
+            said, energies = self.run_script(vessel, "yade", "-x", "-n", "-j1", "scene.yade.py")
+            with open(self.scene.path("scene.yade.dump"), encoding="ascii") as f:
+                spheres = [numbers(line)[2:] for line in f if not line.startswith("#")]
+            self.check(vessel, said, energies, spheres)
+            self.assertEqual(self.check_picture("scene.yade-*.vtk"), self.scene.spheres)
+
+        self.each_vessel(check)
+
+
+if __name__ == "__main__":
+    engines.skip_without_engines()
+    unittest.main()
