@@ -12,8 +12,8 @@
 /* Half the diagonal of a voxel: a ball's surface farther from the centre misses the voxel. */
 static const double HALF_DIAGONAL = 0.86602540378443871;
 
-/* A voxel whose centre lies within the ball by this, in squared distance, is covered: of every two samples opposite each
- * other one is no farther from the ball's centre than sqrt(d^2 + 3 (3/8)^2), d that of the voxel's centre; rounded up. */
+/* A voxel whose centre lies within the ball by this, in squared distance, is covered: of every two samples opposite
+ * each other one is no farther from the ball's centre than sqrt(d^2 + 3 (3/8)^2), d that of the voxel's; rounded up. */
 static const double SURELY_COVERED = 0.422;
 
 /* Samples on a ball's surface but for rounding belong to it, so that mirror images agree. */
