@@ -12,6 +12,10 @@
 /* Half the diagonal of a voxel: a ball's surface farther from the centre misses the voxel. */
 static const double HALF_DIAGONAL = 0.86602540378443871;
 
+/* A voxel whose centre lies within the ball by this, in squared distance, is covered: of every two samples opposite
+ * each other one is no farther from the ball's centre than sqrt(d^2 + 3 (3/8)^2), d that of the voxel's; rounded up. */
+static const double SURELY_COVERED = 0.422;
+
 /* Samples on a ball's surface but for rounding belong to it, so that mirror images agree. */
 static const double ON_SURFACE = 1e-9;
 
@@ -259,7 +263,7 @@ static void cover_plane(worker *w, size_t b, int k)
     const ms_ball *ball = &w->raster->ball[b];
     const int half = w->raster->rule == MS_VOXEL_HALF;
     const double outer = ball->radius + (half ? HALF_DIAGONAL : 0);
-    const double inner = ball->radius - (half ? HALF_DIAGONAL : 0);
+    const double inner = half ? half_chord(ball->radius, SURELY_COVERED) : ball->radius;
     const double dz = k - ball->centre[2], reach = half_chord(outer, dz * dz);
     if (reach < 0) {
         return;

@@ -35,44 +35,64 @@ static touching_place look_along(const ms_closest *closest, const touching_place
     return at;
 }
 
-/* Where the radius ceases to rise, between a place where it does and one where it does not:
- * the lines through both meet there, if no third face is nearer. */
-static touching_place find_ridge(touching_place rising, touching_place falling, const ms_closest *closest,
-                                 const touching_place *start, const double u[3], double tolerance)
+/* Does the radius still rise at the end of a stride, and does the sphere there overlap the one at its start, so that
+ * both lie on one side of all faces? */
+static int goes_on(const touching_place *start, const touching_place *end)
 {
-    for (int step = 0; step < MAX_STEPS && falling.s - rising.s > tolerance; step++) {
-        const double s = (falling.radius - falling.slope * falling.s - rising.radius + rising.slope * rising.s) /
-                         (rising.slope - falling.slope);
-        if (!(s > rising.s && s < falling.s)) {
+    return end->slope > RISING && end->radius + start->radius > end->s;
+}
+
+/* Where on the way the sphere that touches start.nearest has grown to another place of the mesh; NaN if never. */
+static double find_touch(const touching_place *start, const double u[3], const double other[3])
+{
+    const double to[3] = {other[0] - start->centre[0], other[1] - start->centre[1], other[2] - start->centre[2]};
+    const double ahead = start->radius + ms_dot(u, to);
+    return ahead > 0 ? (ms_dot(to, to) - start->radius * start->radius) / (2 * ahead) : (double)NAN;
+}
+
+/* From `end`, where the sphere that touches start.nearest would hold a face, it shrinks to the face that is nearest
+ * there, until it holds none. @return nonzero if it did not come to that, since it goes on from where it is */
+static int shrink_sphere(touching_place *end, const ms_closest *closest, const touching_place *start, const double u[3],
+                         double tolerance)
+{
+    const double close = fmin(tolerance, start->radius); /* so that the sphere holds start.centre */
+    for (int step = 0; step < MAX_STEPS; step++) {
+        const double s = find_touch(start, u, end->nearest);
+        if (!(s > 0 && s < end->s)) {
             break;
         }
-        const touching_place at = look_along(closest, start, u, s);
-        if (rising.radius + rising.slope * (s - rising.s) - at.radius < tolerance) {
-            return at;
+        *end = look_along(closest, start, u, s);
+        if (start->radius + s - end->radius < close) {
+            return 0;
         }
-        *(at.slope > RISING ? &rising : &falling) = at;
+        if (goes_on(start, end)) {
+            return 1;
+        }
     }
-    return rising;
+    *end = *start;
+    return 0;
 }
 
 double ms_medial_sphere(double centre[3], double radius, const double nearest[3], const ms_closest *closest,
                         double stride, double tolerance)
 {
-    touching_place here = {.radius = radius, .slope = 1};
+    touching_place here = {.radius = radius};
+    int on = radius > 0;
     memcpy(here.centre, centre, sizeof here.centre);
     memcpy(here.nearest, nearest, sizeof here.nearest);
-    for (int step = 0; step < MAX_STRIDES && here.radius > 0; step++, stride *= 2) {
+    for (int step = 0; step < MAX_STRIDES && on; step++) {
         double u[3];
         for (int a = 0; a < 3; a++) {
             u[a] = (here.centre[a] - here.nearest[a]) / here.radius;
         }
         here.s = 0;
-        here.slope = 1;
-        /* No stride leaves the sphere, so that none leaves the mesh. */
-        const touching_place end = look_along(closest, &here, u, fmin(stride, here.radius));
-        if (!(end.slope > RISING)) {
-            here = find_ridge(here, end, closest, &here, u, tolerance);
-            break;
+        touching_place end = look_along(closest, &here, u, stride);
+        if (goes_on(&here, &end)) {
+            stride *= 2;
+        } else {
+            const double beyond = end.s;
+            on = shrink_sphere(&end, closest, &here, u, tolerance);
+            stride = beyond - end.s;
         }
         here = end;
     }

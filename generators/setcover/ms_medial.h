@@ -16,12 +16,12 @@ MS_C_BEGIN
  *
  * @param[in,out] centre    inside the mesh
  * @param         radius    the distance to the mesh there, and nearest its nearest point: of ms_closest_distance
- * @param         stride    how far the medial surface may be, as a first guess
+ * @param         stride    about as far as the medial surface may be, or farther
  * @param         tolerance how exactly it is found, in the mesh's unit like stride
  * @return the radius: the distance from the new centre to the nearest face
  *
  * Source: the balls that shrink to the medial surface of Ma, Bae & Choi, Vis. Comput. 28 (2012)
- * 7, here growing, so that no normals are needed. Cost: about four times ms_closest_distance, and once
+ * 7, here from nearest points, so that no normals are needed. Cost: about four times ms_closest_distance, and once
  * more each time that stride has to be doubled.
  */
 double ms_medial_sphere(double centre[3], double radius, const double nearest[3], const ms_closest *closest,

@@ -17,8 +17,15 @@ static const double ALWAYS_FINE = 1 << 24;
 /* ms_voxelize rounds coordinates to 2^-15 of a voxel; what is nearer to the surface may lie outside. */
 static const double SURELY_INSIDE = 1.0 / (1 << 14);
 
-/* Centres are moved to the medial surface within this part of a skeleton's voxel. */
-static const double MEDIAL_TOLERANCE = 0.01;
+/* Centres are put on the medial surface within this part of a skeleton's voxel, or of half the side of the cells that
+ * they stand for: the best is looked at again. */
+static const double FIT_TOLERANCE = 0.01;
+
+/* And moved along it within this part of a voxel. */
+static const double MOVE_TOLERANCE = 0.003;
+
+/* The medial surface is less than so many of the skeleton's voxels beyond where a rolled sphere ends, mostly. */
+static const double BEYOND = 1.5;
 
 /* More than rounding adds to a distance, as a factor. */
 static const double NEAR_ENOUGH = 1 + 1e-6;
@@ -189,27 +196,16 @@ static void fit_candidate(ms_ball *ball, const ms_target *target, double step)
     }
 }
 
-/*
- * The maximal sphere where a rolled one has come to, or if the field has misled it, where it came from. It has not if
- * no face is between the two: if the sphere at the end holds the place it was rolled from.
- */
+/* The maximal sphere of one that has rolled. The medial surface is looked for at first where the field saw it. */
 static ms_sphere fit_start(const ms_setcover_start *start, const ms_closest *closest, double step)
 {
-    ms_sphere sphere;
-    double nearest[3];
-    memcpy(sphere.centre, start->centre, sizeof sphere.centre);
-    const double rolled = sqrt(ms_squared_distance(start->from, start->centre));
-    /* The face that it was rolled away from is as far as its radius, which spares the search most places. */
-    sphere.radius = ms_closest_distance(nearest, closest, sphere.centre, start->radius * NEAR_ENOUGH);
-    if (rolled > 0 && !(sphere.radius > rolled + SURELY_INSIDE * step)) {
-        memcpy(sphere.centre, start->from, sizeof sphere.centre);
-        sphere.radius = ms_closest_distance(nearest, closest, sphere.centre, HUGE_VAL);
+    ms_sphere sphere = {.radius = start->distance > SURELY_INSIDE * step ? start->distance : 0};
+    memcpy(sphere.centre, start->from, sizeof sphere.centre);
+    if (sphere.radius > 0) {
+        const double rolled = start->radius - start->distance, tolerance = FIT_TOLERANCE * fmax(step, start->scale / 2);
+        sphere.radius =
+            ms_medial_sphere(sphere.centre, sphere.radius, start->nearest, closest, rolled + BEYOND * step, tolerance);
     }
-    if (!(sphere.radius > SURELY_INSIDE * step)) {
-        sphere.radius = 0;
-        return sphere;
-    }
-    sphere.radius = ms_medial_sphere(sphere.centre, sphere.radius, nearest, closest, step, MEDIAL_TOLERANCE * step);
     return sphere;
 }
 
@@ -296,7 +292,7 @@ ms_ball ms_setcover_pool_move(const ms_setcover_pool *pool, const ms_ball *ball,
                                         (sphere.radius + fabs(by) * grid->h) * NEAR_ENOUGH);
     if (sphere.radius > SURELY_INSIDE * pool->step) {
         sphere.radius = ms_medial_sphere(sphere.centre, sphere.radius, nearest, pool->target->closest, pool->step,
-                                         MEDIAL_TOLERANCE * pool->step);
+                                         MOVE_TOLERANCE * pool->step);
     }
     return ms_grid_ball(grid, &sphere);
 }

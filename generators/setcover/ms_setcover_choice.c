@@ -63,6 +63,18 @@ static size_t move_ball(ms_ball *ball, size_t gain, const ms_setcover_choice *ch
     return gain;
 }
 
+/* Puts a ball more exactly on the medial surface than it was fitted. @return what it adds then */
+static size_t place_exactly(ms_ball *ball, size_t gain, const ms_setcover_choice *choice)
+{
+    const ms_ball exact = ms_setcover_pool_move(choice->pool, ball, 0, 0);
+    const size_t adds = exact.radius >= choice->least ? ms_cover_count(choice->cover, &exact) : 0;
+    if (adds < gain) {
+        return gain;
+    }
+    *ball = exact;
+    return adds;
+}
+
 /* The best of those fitted, and whether it is as good as the finer ones may be. */
 static int find_best(size_t *which, size_t *gain, const ms_setcover_choice *choice)
 {
@@ -95,6 +107,9 @@ size_t ms_setcover_choose(ms_ball *ball, ms_setcover_choice *choice)
     }
     *ball = choice->pool->ball[which];
     double by = fmin(FIRST_MOVE * choice->scale / choice->pool->target->grid.h, LARGEST_MOVE * ball->radius);
+    if ((double)gain >= LEAST_GAIN) {
+        gain = place_exactly(ball, gain, choice);
+    }
     for (int half = 0; half < HALVINGS && (double)gain >= LEAST_GAIN; half++, by /= 2) {
         gain = move_ball(ball, gain, choice, by);
     }

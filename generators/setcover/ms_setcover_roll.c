@@ -56,19 +56,16 @@ static double find_end(const ms_setcover_field *f, const double q[3], const doub
     return sure;
 }
 
-/* The way in, away from the nearest face: a unit vector on the lattice. @return the distance to that face */
-static double choose_way(double u[3], const ms_setcover_field *f, const ms_setcover_start *start,
-                         const ms_closest *closest)
+/* The way in, away from the nearest face: a unit vector on the lattice. */
+static void choose_way(double u[3], const ms_setcover_field *f, const ms_setcover_start *start)
 {
-    double nearest[3], away[3];
-    const double distance = ms_closest_distance(nearest, closest, start->from, HUGE_VAL);
+    double away[3];
     for (int a = 0; a < 3; a++) {
-        away[a] = (start->from[a] - nearest[a]) / distance;
+        away[a] = (start->from[a] - start->nearest[a]) / start->distance;
     }
     for (int a = 0; a < 3; a++) {
         u[a] = ms_dot(away, f->axis[a]);
     }
-    return distance;
 }
 
 static void roll_in(ms_setcover_start *start, const ms_setcover_field *f, const ms_closest *closest)
@@ -80,11 +77,12 @@ static void roll_in(ms_setcover_start *start, const ms_setcover_field *f, const 
     for (int a = 0; a < 3; a++) {
         q[a] = ms_dot(from, f->axis[a]) / f->h;
     }
-    const double distance = choose_way(u, f, start, closest);
-    if (distance > 0) {
-        s = fmax(0, find_end(f, q, u, distance / f->h + BORDER) - SHORT);
+    start->distance = ms_closest_distance(start->nearest, closest, start->from, HUGE_VAL);
+    if (start->distance > 0) {
+        choose_way(u, f, start);
+        s = fmax(0, find_end(f, q, u, start->distance / f->h + BORDER) - SHORT);
     }
-    start->radius = distance + s * f->h;
+    start->radius = start->distance + s * f->h;
     for (int a = 0; a < 3; a++) {
         start->centre[a] = start->from[a];
         for (int b = 0; b < 3; b++) {

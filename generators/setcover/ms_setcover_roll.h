@@ -18,10 +18,11 @@ typedef struct ms_setcover_field {
 
 /** A sphere on its way to the medial surface, in the mesh's frame and unit. */
 typedef struct ms_setcover_start {
-    double from[3];   /* where it was rolled from, inside the mesh */
-    double centre[3]; /* about a voxel short of the medial surface, as far as the distance field tells */
-    double radius;    /* there, roughly; 0: nothing to be had */
-    double scale;     /* side of the largest cells of which it is the largest of those that end there */
+    double from[3];              /* where it was rolled from, inside the mesh */
+    double nearest[3], distance; /* from there: the nearest place of the mesh, and how far it is */
+    double centre[3];            /* about a voxel short of the medial surface, as far as the distance field tells */
+    double radius;               /* there, roughly; 0: nothing to be had */
+    double scale;                /* side of the largest cells of which it is the largest of those that end there */
 } ms_setcover_start;
 
 /**

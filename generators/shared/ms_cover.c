@@ -18,7 +18,7 @@
 /* Bounds that are counted at once: whatever the number of threads, since the choice among estimates hangs on it. */
 enum { AT_ONCE = 8 };
 
-#define NEVER UINT32_MAX
+#define NEVER (UINT32_MAX >> 1)
 
 /* Voxels of the grid for each run that may be kept: at most 6.4 bytes a voxel. */
 static const double VOXELS_A_RUN = 2.5;
@@ -36,10 +36,11 @@ static const double SAMPLED_RADIUS = 4, SAMPLED_VOXELS = 100, ESTIMATE = 1.05, E
 
 /* A candidate and what it would cover. */
 typedef struct heap_entry {
-    uint64_t gain;    /* exact when it was counted, an upper bound before and since */
-    uint32_t index;   /* of the candidate */
-    uint32_t counted; /* how many balls had been taken by then; NEVER */
-    int estimated;    /* from some of its rows */
+    uint64_t gain;          /* exact when it was counted, an upper bound before and since */
+    double radius;          /* of the candidate, here since the heap compares them all the time */
+    uint32_t index;         /* of the candidate */
+    uint32_t counted : 31;  /* how many balls had been taken by then; NEVER */
+    uint32_t estimated : 1; /* from some of its rows */
 } heap_entry;
 
 /* All that was left of a ball when it was last counted. */
@@ -98,7 +99,7 @@ static void shrink_remains(remains *part)
 /* How many rows there are to one that is counted of a candidate. */
 static int choose_step(const ms_cover *cover, const heap_entry *entry)
 {
-    const double radius = cover->candidate[entry->index].radius, gain = (double)entry->gain;
+    const double radius = entry->radius, gain = (double)entry->gain;
     int step = cover->rule < MS_COVER_ADMITTED || (entry->estimated && entry->counted == cover->n_taken) ? 1 : 8;
     while (step > 1 && (radius < SAMPLED_RADIUS * step || gain < SAMPLED_VOXELS * step * step)) {
         step /= 2;
@@ -126,7 +127,7 @@ static void count_left(const ms_cover *cover, heap_entry *entry)
     }
     shrink_remains(part);
     entry->estimated = step > 1;
-    entry->counted = cover->n_taken;
+    entry->counted = cover->n_taken & NEVER;
 }
 
 /* Covers what is left of a candidate. */
@@ -141,13 +142,12 @@ static void cover_ball(ms_cover *cover, uint32_t index)
 }
 
 /* Is a the better one? No two candidates are equal. */
-static int is_before(const ms_cover *cover, const heap_entry *a, const heap_entry *b)
+static int is_before(const heap_entry *a, const heap_entry *b)
 {
     if (a->gain != b->gain) {
         return a->gain > b->gain;
     }
-    const double r = cover->candidate[a->index].radius, s = cover->candidate[b->index].radius;
-    return r != s ? r > s : a->index < b->index;
+    return a->radius != b->radius ? a->radius > b->radius : a->index < b->index;
 }
 
 static void sift_down(ms_cover *cover, size_t at)
@@ -155,10 +155,10 @@ static void sift_down(ms_cover *cover, size_t at)
     const heap_entry moved = cover->entry[at];
     size_t child;
     while ((child = 2 * at + 1) < cover->n_heap) {
-        if (child + 1 < cover->n_heap && is_before(cover, &cover->entry[child + 1], &cover->entry[child])) {
+        if (child + 1 < cover->n_heap && is_before(&cover->entry[child + 1], &cover->entry[child])) {
             child++;
         }
-        if (!is_before(cover, &cover->entry[child], &moved)) {
+        if (!is_before(&cover->entry[child], &moved)) {
             break;
         }
         cover->entry[at] = cover->entry[child];
@@ -170,7 +170,7 @@ static void sift_down(ms_cover *cover, size_t at)
 static void sift_up(ms_cover *cover, size_t at)
 {
     const heap_entry moved = cover->entry[at];
-    while (at > 0 && is_before(cover, &moved, &cover->entry[(at - 1) / 2])) {
+    while (at > 0 && is_before(&moved, &cover->entry[(at - 1) / 2])) {
         cover->entry[at] = cover->entry[(at - 1) / 2];
         at = (at - 1) / 2;
     }
@@ -207,8 +207,8 @@ static void admit_overlapping(ms_cover *cover, const ms_ball *ball)
 /* As many voxels as a ball can hold: their cubes lie in a ball larger by half a cube's diagonal. */
 static heap_entry uncounted(const ms_cover *cover, uint32_t index)
 {
-    const double most = 4.2 * pow(cover->candidate[index].radius + 0.87, 3);
-    return (heap_entry){.gain = (uint64_t)fmin(most, 1e18) + 1, .index = index, .counted = NEVER};
+    const double radius = cover->candidate[index].radius, most = 4.2 * pow(radius + 0.87, 3);
+    return (heap_entry){.gain = (uint64_t)fmin(most, 1e18) + 1, .radius = radius, .index = index, .counted = NEVER};
 }
 
 /* The other candidates of a group enter the heap. */
