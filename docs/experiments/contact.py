@@ -209,9 +209,10 @@ def stable(rows, energy):
 
 
 def largest_step(folder, engine, body, law, start, expected):
-    """LIGGGHTS and LAMMPS tell the velocity of a whole step, which is 0 in a motion of two steps that neither grows nor
-    decays any more: each step is looked at. YADE tells that of half a step. By three grids of steps, from 1/4 to 2 of what is expected down to 0.1 %: the last before the first that is unstable.
-    Each run has 500 steps; at 0.1 % above the limit an amplitude grows by exp(0.09) in each."""
+    """By three grids of steps, from 1/4 to 2 of what is expected down to 0.1 %: the last before the first that is
+    unstable. Each run has 500 steps; at 0.1 % above the limit an undamped amplitude grows by exp(0.09) in each. LIGGGHTS
+    and LAMMPS tell the velocity of a whole step, which is 0 in a motion of two steps that neither grows nor decays any
+    more: there each step is looked at. YADE tells that of half a step."""
     low, factor = expected / 4, 8 ** (1 / 16)
     for _ in range(3):
         grid = [low * factor ** k for k in range(17)]

@@ -83,6 +83,15 @@ def run_liggghts(folder, body, law, start, steps, samples, every):
     inertia = tensor(body)
     six = numbers([inertia[0][0], inertia[0][1], inertia[0][2], inertia[1][1], inertia[1][2], inertia[2][2]])
     box = f"-{far!r} {far!r} " * 2
+
+    def tell(number):
+        """A fix prints at multiples of `every`, and the body is there from step 1 on. Each run begins anew, with the
+        velocity of a whole step in the damping: of no matter but where each step is looked at."""
+        energies = 'print "ENERGY ${motion} ${spin}"\n'
+        if every == 1:
+            return f"fix energies all {energies.replace('print', 'print 1').strip()} screen yes\nrun {samples}\n"
+        return f"variable k loop {samples}\nlabel again{number}\nrun {every}\n{energies}next k\njump in again{number}\n"
+
     write(folder, "in", "clear\n".join(f"""atom_style granular
 atom_modify map array
 communicate single vel yes
@@ -104,8 +113,8 @@ pair_coeff * *
 fix floor all wall/gran model {model} primitive type 1 zplane 0
 timestep {step!r}
 fix gravity all gravity {start.gravity!r} vector 0 0 -1
-fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 density constant {body.member * DENSITY!r} nspheres &
-  {len(body.spheres)} ntry 1000 spheres file spheres scale 1.0 type 1 mass {body.mass!r} inertia_tensor {six} use_density
+fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 density constant &
+  {body.member * DENSITY!r} nspheres {len(body.spheres)} ntry 1000 spheres file spheres scale 1.0 type 1 mass {body.mass!r} inertia_tensor {six} use_density
 fix kinds all particledistribution/discrete 15485867 1 clump 1.0
 region at block -1e-15 1e-15 -1e-15 1e-15 {start.height - 1e-15!r} {start.height + 1e-15!r} volume_limit 1e-300 units box
 fix insert all insert/pack seed 32452843 distributiontemplate kinds vel constant {numbers(start.velocity)} &
@@ -121,9 +130,7 @@ variable motion equal c_motion
 variable spin equal c_spin
 run 1
 print "ENERGY ${{motion}} ${{spin}}"
-fix energies all print {every} "ENERGY ${{motion}} ${{spin}}" screen yes
-run {samples * every}
-""" for number, step in enumerate(steps)))
+{tell(number)}""" for number, step in enumerate(steps)))
     return run_program(folder, len(steps), samples, "liggghts", "-in", "in", "-log", "none")
 
 

@@ -15,7 +15,8 @@ Impact = namedtuple("Impact", "e touching number overlap omega seconds")
 def wall_modulus(law, engine):
     """4/3 of it times root(R) is the force over overlap^(3/2), with a wall of the same stuff: E / 2 (1 - nu^2) in
     LIGGGHTS, 1 + nu times that in LAMMPS, while YADE takes half the radius (measured by `contact.py walls`)."""
-    return law.young / (1 - law.poisson ** 2) / 2 * {"LIGGGHTS": 1, "LAMMPS": 1 + law.poisson, "YADE": math.sqrt(0.5)}[engine]
+    factor = {"LIGGGHTS": 1, "LAMMPS": 1 + law.poisson, "YADE": math.sqrt(0.5)}[engine]
+    return factor * law.young / (1 - law.poisson ** 2) / 2
 
 
 def cross(a, b):
@@ -68,10 +69,9 @@ def impact(body, law, speed, engine):
     turn = inverse(tensor(body))
     guess = math.sqrt(2 * modulus * math.sqrt(size * deepest) * len(feet) / body.mass)
     step = 0.005 / guess
-    state = {"v": [-speed, 0.0, 0.0], "q": [0.0, 0.0, 0.0]}
+    v, q = [-speed, 0.0, 0.0], [0.0, 0.0, 0.0]
     best, time, apart = (0.0, 0, 0.0, 0.0), 0.0, 0
     limit = 30 / math.sqrt(2 * modulus * math.sqrt(size * deepest) / body.mass)
-    v, q = state["v"], state["q"]
     while time < limit and apart < 400:
         force, lift_x, lift_y, touching, stiffness, damping, deep = 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0
         for x, y, gap, r in feet:
@@ -92,13 +92,12 @@ def impact(body, law, speed, engine):
         q = [a + step * c for a, c in zip(q, v)]
         apart = apart + 1 if deep == 0 and time > 0 else 0
         time += step
-    # Spin about z goes with those about x and y so that the momentum about z stays 0.
     energy = body.mass * v[0] ** 2 + spin_energy(turn, v[1], v[2])
     return Impact(math.sqrt(energy / (body.mass * speed ** 2)), best[1], best[2], best[0], best[3], time)
 
 
 def spin_energy(turn, x, y):
-    """w L, where L has no part along z."""
+    """w L: L has no part along z, as no push turns about it."""
     det = turn[0][0] * turn[1][1] - turn[0][1] ** 2
     momentum = [(turn[1][1] * x - turn[0][1] * y) / det, (turn[0][0] * y - turn[0][1] * x) / det]
     return momentum[0] * x + momentum[1] * y
