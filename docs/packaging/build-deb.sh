@@ -5,7 +5,7 @@
 set -eu
 out="$(realpath -m "${1:-packages}")"
 cd "$(dirname "$0")/../.."
-sh docs/install-packages.sh debhelper dh-python dpkg-dev fakeroot lintian python3
+sh docs/install-packages.sh debhelper dh-python dpkg-dev fakeroot lintian python3-cffi python3-dev python3-numpy
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/mskit" "$work/mskit/debian"

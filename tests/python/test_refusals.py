@@ -1,6 +1,7 @@
 """Bad input is an exception with one sentence that says what is wrong, never a crash and never a result."""
 import os
 import unittest
+import warnings
 
 import mskit
 import numpy
@@ -63,6 +64,40 @@ class Refusals(PythonCase):
             self.refused(mskit.ArgumentError, "voxels of its own", mskit.generate, ball, "mss", **options)
             self.refused(mskit.ArgumentError, "voxels of its own", mskit.score, [(8, 8, 8, 6)], ball, **options)
 
+    def test_anything(self):
+        """Whatever is given where: a result, or an error with one sentence."""
+        grain = mskit.body("grain", fineness=6)
+        clump = mskit.generate(grain, "mss", spheres=3, cells=10)
+        things = [None, 0, -1, 2.5, 1e308, float("nan"), "", "x", "\0", b"a", [], [[1, 2, 3]], (1, 2), {"dice": None}, {1: 2},
+                  numpy.zeros(3), numpy.zeros((3, 3)), numpy.zeros((2, 2, 2)), numpy.full((3, 3), numpy.nan), object(),
+                  True, 2**64, 10**400, numpy.int8(3), numpy.float32(0.1), numpy.datetime64("2020-01-01"), grain, clump, 1j,
+                  numpy.array(None), numpy.arange(12.0).reshape(3, 4), "/", lambda *_: 1]
+        given = {"generate": "spheres until min_radius cells deq voxel_size max_voxels rule max_memory seed threads progress "
+                 "spacing plane refine variant", "score": "cells cut threads rule", "curve": "cells progress",
+                 "correct": "density unit scale axes least_mass carriers carrier_depth", "volume": "spacing origin label "
+                 "threshold connectivity", "grains": "spacing min_voxels border", "mesh": "weld fill_holes drop_bodies", "read": "label weld",
+                 "Clump": "masses", "body": "r", "equal_volume": "", "read_clump": "", "write": "format"}
+        usual = {"generate": [grain, "mss"], "volume": [labelled()], "grains": [labelled()], "mesh": [CORNERS, FACES],
+                 "read": [self.path(self.grain)], "Clump": [[(0, 0, 0)], [1]], "body": ["ball"], "read_clump": ["none.csv"],
+                 "write": [clump, self.path("c.csv")]}
+        refused = 0
+        for name, options in given.items():
+            first = usual.get(name, [clump])
+            least = {"generate": {"spheres": 1, "cells": 6}, "correct": {"density": 1}}.get(name, {})
+            for thing in things:
+                calls = [(first[:k] + [thing] + first[k + 1:], least) for k in range(len(first))]
+                calls += [(first, {**least, option: thing}) for option in options.split()]
+                for arguments, more in calls:
+                    try:
+                        with warnings.catch_warnings():
+                            warnings.simplefilter("ignore")
+                            getattr(mskit, name)(*arguments, **more)
+                    except mskit.Error as failure:
+                        refused += 1
+                        self.assertNotIn("\n", str(failure))
+                        self.assertGreater(len(str(failure)), 9)
+        self.assertGreater(refused, 1000)
+
     def test_huge(self):
         """Views of one number, larger than any memory."""
         self.refused(mskit.LimitError, "more than is allowed", mskit.volume, numpy.broadcast_to(1, (10**4, 10**4, 10**6)))
@@ -90,13 +125,13 @@ class Refusals(PythonCase):
 
     def test_runs(self):
         for options, words in [
-                ({"generator": "mms"}, "mms"), ({"generator": None}, "is not the name of a generator"),
+                ({"generator": "mms"}, "mms"), ({"generator": None}, "generator=None is no name"),
                 ({"generator": "é"}, "é"), ({"spheres": 0}, "spheres=0 is not a number from 1 to 65534"),
                 ({"spheres": 2.5}, "spheres=2.5 is not a whole number"), ({"spheres": 10**30}, "spheres=1"),
                 ({"spheres": "10"}, "spheres='10'"), ({"until": 3}, "until=3"), ({"until": {"dice": -1}}, "dice"),
                 ({"until": {"dice": 2}}, "dice"), ({"min_radius": 0}, "min_radius=0"), ({"cells": 0}, "cells=0"),
                 ({"cells": 40000}, "cells=40000"), ({"cells": 20, "deq": 20}, "exclude one another"),
-                ({"voxel_size": float("nan")}, "voxel_size=nan"), ({"rule": "third"}, "neither 'half' nor 'centre'"),
+                ({"voxel_size": float("nan")}, "voxel_size=nan"), ({"rule": "third"}, "rule='third' is none of 'half', 'centre'"),
                 ({"seed": -1}, "seed=-1"), ({"threads": 0}, "threads=0"), ({"threads": 5000}, "threads=5000"),
                 ({"progress": 3}, "neither a function nor True"), ({"sphres": 3}, "sphres"), ({"spacing": []}, "spacing=[]"),
                 ({"spacing": numpy.nan}, "spacing"), ({"plane": (1, 2, 3)}, "four numbers"), ({"confine": 7}, "confine"),
@@ -125,7 +160,7 @@ class Refusals(PythonCase):
     def test_masses(self):
         clump = mskit.generate(self.path(self.grain), "mss", spheres=3, cells=12)
         for options, words in [({"density": 0}, "density=0"), ({"density": float("inf")}, "density=inf"),
-                               ({"density": 1, "unit": "ft"}, "unit='ft' is none of m, mm, um"),
+                               ({"density": 1, "unit": "ft"}, "unit='ft' is none of 'm', 'mm', 'um'"),
                                ({"density": 1, "scale": -1}, "scale=-1"), ({"density": 1, "axes": "x"}, "axes='x'"),
                                ({"density": 1, "least_mass": 0.9}, ""), ({"density": 1, "carrier_depth": 1}, "carriers=True"),
                                ({"density": 1e300, "scale": 1e100}, "")]:
@@ -142,8 +177,8 @@ class Refusals(PythonCase):
         self.assertEqual(self.files(), [self.grain], "a refusal leaves no file")
 
     def test_bodies(self):
-        for kind, parameters, words in [("bal", {}, "ball"), ("ball", {"x": 1}, "no parameter 'x', but r, fineness"),
-                                        ("ball", {"r": -1}, "r"), ("ball", {"r": "a"}, "r='a'"), (3, {}, "3")]:
+        for kind, parameters, words in [("bal", {}, "ball"), ("ball\0", {}, "no name"), ("ball", {"x": 1}, "no parameter 'x', but r, fineness"),
+                                        ("ball", {"r": -1}, "r"), ("ball", {"r": "a"}, "r='a'"), (3, {}, "kind=3 is no name")]:
             self.refused(mskit.ArgumentError, words, mskit.body, kind, **parameters)
 
     def test_remarks_are_warnings(self):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy
 
-from ._errors import ArgumentError, Path, call, encode, find, remark, text
+from ._errors import ArgumentError, Path, call, encode, find, remark, show, text, word
 from ._library import ffi, lib
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Clump:
     def __init__(self, centres: Any, radii: Any, masses: Any = None) -> None:
         try:
             spheres = numpy.column_stack((numpy.asarray(centres, float).reshape(-1, 3), numpy.asarray(radii, float)))
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise ArgumentError("centres are not rows of three numbers, with as many radii") from None
         lost = numpy.flatnonzero(~(numpy.isfinite(spheres).all(axis=1) & (spheres[:, 3] > 0)))
         if lost.size:
@@ -99,7 +99,7 @@ class Clump:
     def __getitem__(self, some: slice) -> "Clump":
         """Some of the spheres, without masses: of an ordered clump [:k] is the clump of k."""
         if not isinstance(some, slice):
-            raise ArgumentError(f"a clump takes a slice, as [:5], and not [{some!r:.50}]")
+            raise ArgumentError(f"a clump takes a slice, as [:5], and not [{show(some)}]")
         part = Clump(self.centres[some], self.radii[some])
         part.shape, part.run = self.shape, self.run
         return part
@@ -137,7 +137,7 @@ def _freeze(array: numpy.ndarray) -> numpy.ndarray:
 def _check_masses(masses: Any, count: int) -> numpy.ndarray:
     try:
         array = numpy.array(masses, float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         array = numpy.empty(0)
     if array.shape != (count,) or not (numpy.isfinite(array) & (array > 0)).all():
         raise ArgumentError(f"masses are not {count} finite numbers above 0")
@@ -201,7 +201,7 @@ def as_clump(source: Any) -> Clump:
         return read_clump(source)
     try:
         rows = numpy.asarray(source, float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         rows = numpy.empty(0)
     if rows.ndim != 2 or rows.shape[1] != 4:
         raise ArgumentError(f"{type(source).__name__} is no clump: give a Clump, a path or rows x, y, z, r")
@@ -239,7 +239,7 @@ def write(clump: Any, path: Path, format: Optional[str] = None) -> None:
         write_page(clump, os.fsdecode(name))
         return
     row = (find(lib.ms_write_format_of_path, name) if format is None else
-           find(lib.ms_write_format_find, str(format).encode(errors="replace")))
+           find(lib.ms_write_format_find, word("format", format)))
     c, kept = lend(clump)
     particle = c_particle_of(clump.particle)
     record = ffi.NULL if clump.run is None else ffi.new("char[]", clump.run.record().encode())

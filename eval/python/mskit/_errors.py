@@ -5,7 +5,9 @@ import math
 import os
 import sys
 import warnings
-from typing import Any, NoReturn, Union
+from typing import Any, Iterable, NoReturn, Union
+
+import numpy
 
 from ._library import ffi, lib
 
@@ -84,15 +86,41 @@ def encode(path: Path) -> bytes:
     try:
         name = os.fsencode(path)
     except TypeError:
-        raise ArgumentError(f"{path!r:.100} is no path") from None
+        raise ArgumentError(f"{show(path)} is no path") from None
     if not name or b"\0" in name:
-        raise ArgumentError(f"{path!r:.100} names no file")
+        raise ArgumentError(f"{show(path)} names no file")
     return name
 
 
 def text(pointer: Any) -> str:
     """A text of a table; empty for none."""
     return "" if pointer == ffi.NULL else str(ffi.string(pointer).decode())
+
+
+def show(value: Any) -> str:
+    """A value within a sentence: its repr, on one line and not long."""
+    return f"{' '.join(repr(value).split()):.100}"
+
+
+def word(name: str, value: Any) -> bytes:
+    """A name as the library takes it."""
+    if not isinstance(value, str) or "\0" in value:
+        raise ArgumentError(f"{name}={show(value)} is no name")
+    return value.encode(errors="replace")
+
+
+def choice(name: str, value: Any, words: Iterable[str]) -> str:
+    """One of some words."""
+    if not isinstance(value, str) or value not in words:
+        raise ArgumentError(f"{name}={show(value)} is none of {', '.join(map(repr, words))}")
+    return value
+
+
+def flag(name: str, value: Any) -> bool:
+    """True or False."""
+    if not isinstance(value, (bool, numpy.bool_)):
+        raise ArgumentError(f"{name}={show(value)} is neither True nor False")
+    return bool(value)
 
 
 def number(name: str, value: Any, low: float, high: float) -> float:
@@ -102,7 +130,7 @@ def number(name: str, value: Any, low: float, high: float) -> float:
     except (TypeError, ValueError, OverflowError):
         wide = math.nan
     if not low <= wide <= high or isinstance(value, (str, bytes)):
-        raise ArgumentError(f"{name}={value!r:.100} is not a number from {low:g} to {high:g}")
+        raise ArgumentError(f"{name}={show(value)} is not a number from {low:g} to {high:g}")
     return wide
 
 
@@ -110,5 +138,5 @@ def whole(name: str, value: Any, low: int, high: int) -> int:
     """A whole number within bounds."""
     wide = number(name, value, low, high)
     if wide != int(wide):
-        raise ArgumentError(f"{name}={value!r:.100} is not a whole number from {low} to {high}")
+        raise ArgumentError(f"{name}={show(value)} is not a whole number from {low} to {high}")
     return int(value)

@@ -10,7 +10,7 @@ from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Tuple, T
 import numpy
 
 from ._clumps import Clump, as_clump, c_particle_of, from_c, lend, new_c_clump, own
-from ._errors import ArgumentError, call, number, remark, text, whole
+from ._errors import ArgumentError, call, choice, flag, number, remark, show, text, whole, word
 from ._library import ffi, lib
 from ._measures import curve_of, scores_of
 from ._methods import DEFAULT, find_generator, generators, make_settings
@@ -92,8 +92,8 @@ def _watched(name: str, progress: Listener) -> Iterator[_Watch]:
     """What was raised while the run was told of is raised when it is over, in place of what the run says."""
     bar = _Bar(name) if progress is True else None
     listener = bar or (progress if callable(progress) else None)
-    if listener is None and progress not in (None, False):
-        raise ArgumentError(f"progress={progress!r:.100} is neither a function nor True")
+    if listener is None and progress is not None and progress is not False:
+        raise ArgumentError(f"progress={show(progress)} is neither a function nor True")
     watch = _Watch(listener or (lambda now: None))
     try:
         yield watch
@@ -155,10 +155,10 @@ def _make_stop(spheres: Optional[int], until: Optional[Dict[str, float]], min_ra
     if min_radius is not None:
         stop.radius = number("min_radius", min_radius, 1e-300, 1e300)
     if until is not None and not hasattr(until, "items"):
-        raise ArgumentError(f"until={until!r:.100} is no dict of measures, as {{'dice': 0.05}}")
+        raise ArgumentError(f"until={show(until)} is no dict of measures, as {{'dice': 0.05}}")
     for measure, value in (until or {}).items():
         asked = number(f"until {measure}", value, 0, 1e300)
-        call(lib.ms_stop_set, stop, str(measure).encode(errors="replace"), asked)
+        call(lib.ms_stop_set, stop, word("until", measure), asked)
     if lib.ms_stop_is_none(stop):
         stop.spheres = _DEFAULT_SPHERES
     return stop
@@ -238,7 +238,7 @@ def score(clump: Any, shape: Any = None, *, cells: Optional[int] = None, deq: Op
         target, most = _target_for(clump, shape, grid)
         c, kept = lend(clump)
         judged = ffi.new("ms_target *", target[0])  # others may work on the same voxels now
-        judged.count_cut = bool(cut)
+        judged.count_cut = flag("cut", cut)
         call(lib.ms_metrics_compute, metrics, ffi.NULL, judged, c, most)
         del kept
     return scores_of(metrics)
@@ -293,13 +293,10 @@ def correct(clump: Any, shape: Any = None, *, density: float, unit: str = "m", s
     True
     """
     clump = as_clump(clump)
-    if unit not in _UNITS:
-        raise ArgumentError(f"unit={unit!r:.100} is none of {', '.join(_UNITS)}; scale takes any number of metres")
-    if axes not in ("principal", "input"):
-        raise ArgumentError(f"axes={axes!r:.100} is neither 'principal' nor 'input'")
-    if carrier_depth is not None and not carriers:
+    choice("axes", axes, ("principal", "input"))
+    if not flag("carriers", carriers) and carrier_depth is not None:
         raise ArgumentError("carrier_depth takes carriers=True beside it")
-    metres = _UNITS[unit] if scale is None else number("scale", scale, _TINY, 1e300)
+    metres = _UNITS[choice("unit", unit, _UNITS)] if scale is None else number("scale", scale, _TINY, 1e300)
 
     def bound(name: str, value: Optional[float], low: float, high: float) -> float:
         return 0 if value is None else max(_TINY, number(name, value, low, high))

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy
 
-from ._errors import ArgumentError, LimitError, ShapeError, call, find, number, remark, text, whole
+from ._errors import ArgumentError, LimitError, ShapeError, call, find, flag, number, remark, text, whole, word
 from ._library import ffi, lib
 from ._shapes import Bytes, Shape
 
@@ -40,7 +40,7 @@ def _finish_mesh(name: str, mesh: Any, weld: float, fill_holes: int, drop_bodies
     if report.closed:
         shape._solid = ffi.new("ms_solid *")
         call(lib.ms_solid_mesh, shape._solid, mesh, name=name)
-    elif not allow_open:
+    elif not flag("allow_open", allow_open):
         raise ShapeError(f"{name}: the mesh is open: {report.open_edges} edges belong to one triangle only, "
                          f"{report.odd_edges} to an odd number; close it, fill its holes ({report.holes}, the largest "
                          f"of {report.largest_hole} edges) with fill_holes={report.largest_hole}, or use "
@@ -55,7 +55,7 @@ def _new_mesh() -> Any:
 def _check_rows(name: str, rows: Any, kinds: str) -> numpy.ndarray:
     try:
         array = numpy.asarray(rows)
-    except ValueError:
+    except (ValueError, OverflowError):
         array = numpy.empty(0)
     if array.ndim != 2 or array.shape[1] != 3 or len(array) == 0 or array.dtype.kind not in kinds:
         what = "numbers" if "f" in kinds else "whole numbers"
@@ -107,7 +107,7 @@ def body(kind: str, **parameters: float) -> Shape:
     >>> abs(ball.volume / (4 / 3 * 3.14159265 * 8) - 1) < 0.002
     True
     """
-    row = find(lib.ms_shape_find, str(kind).encode(errors="replace"))
+    row = find(lib.ms_shape_find, word("kind", kind))
     known, at = {}, 0
     while row.parameters[at].name != ffi.NULL:
         known[text(row.parameters[at].name)] = row.parameters[at].fallback

@@ -5,8 +5,7 @@ from typing import Any, Dict, Iterator, NamedTuple, Sequence, Tuple
 
 import numpy
 
-from . import _errors
-from ._errors import ArgumentError, call, encode, text
+from ._errors import ArgumentError, call, encode, find, show, text, word
 from ._library import ffi, lib
 
 _TYPES = {lib.MS_OPTION_FLAG: "flag", lib.MS_OPTION_INTEGER: "integer", lib.MS_OPTION_REAL: "real",
@@ -83,9 +82,7 @@ DEFAULT = text(lib.MS_GENERATOR_DEFAULT)
 
 def find_generator(name: str) -> Any:
     """The library's row."""
-    if not isinstance(name, str):
-        raise ArgumentError(f"{name!r:.100} is not the name of a generator")
-    return _errors.find(lib.ms_generator_find, name.encode(errors="replace"))
+    return find(lib.ms_generator_find, word("generator", name))
 
 
 def _words(name: str, value: Any) -> str:
@@ -96,18 +93,18 @@ def _words(name: str, value: Any) -> str:
         return repr(value.item() if isinstance(value, numpy.generic) else value)
     if isinstance(value, str):
         return value
-    raise ArgumentError(f"{name}={value!r:.100} is no number, word, True or False")
+    raise ArgumentError(f"{name}={show(value)} is no number, word, True or False")
 
 
 def _planes(name: str, value: Any) -> Sequence[str]:
     """One plane or several."""
     try:
         rows = numpy.asarray(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         rows = numpy.empty(0)
     rows = rows.reshape(1, -1) if rows.ndim == 1 else rows
     if rows.ndim != 2 or rows.shape[1] != 4:
-        raise ArgumentError(f"{name}={value!r:.100} is not four numbers a, b, c, d, or rows of them")
+        raise ArgumentError(f"{name}={show(value)} is not four numbers a, b, c, d, or rows of them")
     return [",".join(map(repr, row.tolist())) for row in rows]
 
 
@@ -120,7 +117,7 @@ def _set(settings: Any, option: Option, value: Any) -> None:
         for row in value.spheres:
             call(lib.ms_clump_add, ffi.addressof(settings, "clump"), ffi.new("ms_sphere *", (row[:3].tolist(), row[3])))
     else:
-        given = encode(value) if option.type == "clump" else _words(option.name, value).encode(errors="replace")
+        given = encode(value) if option.type == "clump" else word(option.name, _words(option.name, value))
         call(lib.ms_option_settings_set, settings, name, given)
 
 

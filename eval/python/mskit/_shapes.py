@@ -6,7 +6,7 @@ from typing import Any, Dict, NamedTuple, Optional, Tuple
 
 import numpy
 
-from ._errors import ArgumentError, LimitError, call, number, remark, whole
+from ._errors import ArgumentError, LimitError, call, choice, number, remark, whole
 from ._library import ffi, lib
 
 _DEFAULT_CELLS = 100
@@ -27,13 +27,12 @@ def make_grid(cells: Any, deq: Any, voxel_size: Any, max_voxels: Any, rule: Any,
     """Checks them."""
     if sum(value is not None for value in (cells, deq, voxel_size)) > 1:
         raise ArgumentError("cells, deq and voxel_size exclude one another")
-    if rule not in ("half", "centre"):
-        raise ArgumentError(f"rule={rule!r:.100} is neither 'half' nor 'centre'")
     extent = lib.MS_GRID_MAX_EXTENT
     return Grid(None if cells is None else whole("cells", cells, 1, extent),
                 None if deq is None else number("deq", deq, 1, extent),
                 None if voxel_size is None else number("voxel_size", voxel_size, 1e-300, 1e300),
-                None if max_voxels is None else number("max_voxels", max_voxels, 1, 1e18), str(rule),
+                None if max_voxels is None else number("max_voxels", max_voxels, 1, 1e18),
+                choice("rule", rule, ("half", "centre")),
                 None if max_memory is None else number("max_memory", max_memory, 1, 1e18))
 
 

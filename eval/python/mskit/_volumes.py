@@ -11,7 +11,7 @@ from typing import Any, Iterator, List, Optional, Sequence, Union
 
 import numpy
 
-from ._errors import ArgumentError, FormatError, LimitError, call, encode, number, whole
+from ._errors import ArgumentError, FormatError, LimitError, call, encode, flag, number, show, whole
 from ._library import ffi, lib
 from ._shapes import Bytes, Shape
 
@@ -32,9 +32,9 @@ class Scan:
         self.origin = _three("origin", origin, -1e300)
         if spacing is not None:
             self.options.spacing = _three("spacing", spacing, 1e-300)[::-1]
-        if connectivity not in (6, 18, 26):
-            raise ArgumentError(f"connectivity={connectivity!r:.100} is none of 6, 18 and 26")
-        self.options.connectivity = connectivity
+        self.options.connectivity = whole("connectivity", connectivity, 6, 26)
+        if self.options.connectivity not in (6, 18, 26):
+            raise ArgumentError(f"connectivity={show(connectivity)} is none of 6, 18 and 26")
         if isinstance(threshold, str) and threshold == "otsu":
             self.options.values = lib.MS_SCAN_OTSU
         elif threshold is not None:
@@ -101,7 +101,7 @@ def _three(name: str, value: Any, low: float) -> Sequence[float]:
     """One number for all three axes, or three."""
     values = [value] * 3 if numpy.ndim(value) == 0 else list(value)
     if len(values) != 3:
-        raise ArgumentError(f"{name}={value!r:.100} is neither one number nor three")
+        raise ArgumentError(f"{name}={show(value)} is neither one number nor three")
     return [number(name, each, low, 1e300) for each in values]
 
 
@@ -144,12 +144,12 @@ def grains(source: Any, *, spacing: Optional[Spacing] = None, origin: Sequence[f
     [(7, 27), (9, 27)]
     """
     opened = open_volume(source, spacing, origin, threshold, connectivity)
-    least = whole("min_voxels", min_voxels, 1, 2**53)
+    least, whole_ones_alone = whole("min_voxels", min_voxels, 1, 2**53), not flag("border", border)
 
     def each() -> Iterator[Shape]:
         for at in range(opened.labels.count):
             entry = opened.labels.entry + at
-            if entry.voxels >= least and (border or not entry.cut):
+            if entry.voxels >= least and not (whole_ones_alone and entry.cut):
                 yield opened.shape(entry)
 
     return each()
