@@ -237,6 +237,9 @@ static double find_price(store *r, const level *l, int kind, double volume, doub
     static const double STRIDE = 5.4; /* STEP^5 */
     const double depth = column_depth(r, l, volume);
     double price = volume;
+    while (price / STRIDE * spheres >= volume) { /* all that is paid is no more than the volume */
+        price /= STRIDE;
+    }
     reset_choices(r, l);
     while (price > LEAST_PRICE * volume &&
            settle(r->choice, r->choice + l->balls, r->offer, l, kind, price / STRIDE / l->weight, depth).spheres <

@@ -27,7 +27,7 @@ WITHOUT = [("more spheres at the start, and pruning", SOLVER, [("SURPLUS = 1.25"
            ("fits while pruning", SOLVE, [("DROP_STEPS = 15", "DROP_STEPS = 0")]),
            ("spheres that go at once are apart", PRUNE, [("CLOSE = 0.3", "CLOSE = 0")]),
            ("losses by the surface", PRUNE, [("FEW = 100", "FEW = 0")]),
-           ("the long fit", SOLVE, [("LONG_STEPS = 80", "LONG_STEPS = 0")]),
+           ("the long fit", SOLVE, [("LONG_STEPS = 40", "LONG_STEPS = 0")]),
            ("the last fit", SOLVE, [("LAST_STEPS = 50", "LAST_STEPS = 0")]),
            ("momentum", FIT, [("MOMENTUM = 0.5", "MOMENTUM = 0")]),
            ("cubic look-up, mismatch by the surface", SOLVE, [("FINE = 0.1", "FINE = 0")]),

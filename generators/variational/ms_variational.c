@@ -240,7 +240,7 @@ const ms_generator ms_generator_variational = {
     .nested = 0,
     .bytes_per_voxel = 7,
     .bytes_per_square = 60, /* places to start from */
-    .kept_bytes = 4.6,      /* signed distances at steps 1, 2 and 4 */
+    .kept_bytes = 4.8,      /* signed distances at steps 1, 2, 3 and 4 */
     .options = OPTIONS,
     .generate = generate_by_variational,
 };

@@ -29,8 +29,11 @@ static const double HOPELESS = 0.2;
  * looked up by cubic polynomials, and the mismatch is the one by the exposed surface. */
 static const double FINE = 0.1;
 
+/* Of the field at most, in voxels, where it is looked up so. */
+enum { FINE_STEP = 2 };
+
 /* Of the fits, and of the search within bounds: so many that more change little. */
-enum { START_STEPS = 40, DROP_STEPS = 15, LONG_STEPS = 80, LAST_STEPS = 50, SEARCH_ROUNDS = 20 };
+enum { START_STEPS = 40, DROP_STEPS = 15, LONG_STEPS = 40, LAST_STEPS = 50, SEARCH_ROUNDS = 20 };
 
 /* Of idle spheres: those put elsewhere may come to be idle there, too. */
 enum { REPAIRS = 3 };
@@ -119,8 +122,10 @@ static ms_status sharpen_field(ms_variational_solver *s, mismatch *now, ms_error
     if (s->field.cubic || !now->is_fine) {
         return MS_OK;
     }
+    const ms_status status =
+        s->field.step > FINE_STEP ? ms_signed_distance_open(&s->field, s->run->target, FINE_STEP, err) : MS_OK;
     s->field.cubic = 1;
-    return find_mismatch(now, s, err);
+    return status == MS_OK ? find_mismatch(now, s, err) : status;
 }
 
 /* Makes the spheres keep to their bounds, and moves them within. */

@@ -15,9 +15,6 @@ enum { MORE = 12 };
 /* Radii that become smaller, in voxels, say nothing about the shape. */
 static const double LEAST_RADIUS = 0.5;
 
-/* Of the field at most, in voxels: its look-up is off by far less than a voxel, and finer ones take longer. */
-enum { FIELD_STEP = 2 };
-
 /* A sphere whose centre is nearer to a plane of symmetry, as part of its radius, moves onto it: it and its
  * image would be two spheres for one place. */
 static const double SNAP = 0.3;
@@ -105,10 +102,10 @@ ms_status ms_variational_solver_add_cover(ms_variational_solver *s, size_t most,
     return status;
 }
 
-/* The cover to start from; on a finer grid where it gives too few spheres. */
-static ms_status start_from_cover(ms_variational_solver *s, ms_error *err)
+/* The cover to start from, of this step; on a finer grid where it gives too few spheres. */
+static ms_status start_from_cover(ms_variational_solver *s, int step, ms_error *err)
 {
-    for (int step = ms_variational_start_step(s->run->target, s->wanted);; step--) {
+    for (;; step--) {
         ms_coarse_view half = {0};
         ms_status status = ms_variational_solver_view(&s->coarse, s, step, err);
         s->count = 0;
@@ -127,12 +124,11 @@ static ms_status start_from_cover(ms_variational_solver *s, ms_error *err)
 }
 
 /* Spheres that are given, one of each set of mirror images, and others where they are too few. */
-static ms_status start_from_given(ms_variational_solver *s, const ms_clump *given, ms_error *err)
+static ms_status start_from_given(ms_variational_solver *s, const ms_clump *given, int step, ms_error *err)
 {
     const ms_target *target = s->run->target;
     const ms_mirror *m = &s->settings->mirror;
-    const ms_status status =
-        ms_variational_solver_view(&s->coarse, s, ms_variational_start_step(target, s->wanted), err);
+    const ms_status status = ms_variational_solver_view(&s->coarse, s, step, err);
     for (size_t g = 0; g < given->n_spheres; g++) {
         ms_ball *ball = &s->ball[s->count];
         *ball = ms_grid_ball(&target->grid, &given->sphere[g]);
@@ -178,10 +174,11 @@ ms_status ms_variational_solver_begin(ms_variational_solver *s, const ms_run *ru
         }
         ms_planes_cut(s->walled, run->target, run->settings);
     }
-    ms_status status = given->n_spheres > 0 ? start_from_given(s, given, err) : start_from_cover(s, err);
+    int cover, field;
+    ms_variational_start_steps(&cover, &field, run->target, n);
+    ms_status status = given->n_spheres > 0 ? start_from_given(s, given, cover, err) : start_from_cover(s, cover, err);
     if (status == MS_OK) {
-        status = ms_signed_distance_open(&s->field, run->target,
-                                         s->coarse.step < FIELD_STEP ? s->coarse.step : FIELD_STEP, err);
+        status = ms_signed_distance_open(&s->field, run->target, s->coarse.step < cover ? s->coarse.step : field, err);
     }
     if (status == MS_OK) {
         status = ms_lattice_alloc(&s->lattice, settings->points, err);

@@ -12,10 +12,14 @@ static const double RISING = 0.85;
 /* Coarse voxels per edge of the cube that is a sphere's share of the volume, about. */
 static const double RESOLUTION = 10;
 
-/* Of the coarse grid at most, in voxels. A finer one may cover better, and takes longer. */
-enum { MAX_STEP = 4 };
+/* Steps of the field to one voxel of the cover: its look-up is off by as much of a radius, however large. */
+static const double FINER = 1.25;
 
-int ms_variational_start_step(const ms_target *target, size_t n)
+/* Of the coarse grid and of the field at most, in voxels. Finer ones may be better, and take longer; but not a field
+ * that is read off voxels. */
+enum { MOST_COVER = 4, MOST_FIELD = 3, MOST_FROM_VOXELS = 2 };
+
+void ms_variational_start_steps(int *cover, int *field, const ms_target *target, size_t n)
 {
     const size_t voxels = ms_grid_voxels(&target->grid);
     double deepest = 0;
@@ -24,7 +28,9 @@ int ms_variational_start_step(const ms_target *target, size_t n)
     }
     const double step = fmin(cbrt((double)target->voxels / (double)n) / RESOLUTION, deepest / 4);
     /* A cover by all voxels takes many times as long as by every second one, and gains little. */
-    return step < 1.5 ? 1 : (int)fmin(fmax(step, 2), MAX_STEP);
+    *cover = step < 1.5 ? 1 : (int)fmin(fmax(step, 2), MOST_COVER);
+    const int most = target->mesh && target->closed ? MOST_FIELD : MOST_FROM_VOXELS;
+    *field = step < 1.5 ? 1 : (int)fmin(fmax(step * FINER, 2), most);
 }
 
 /* Does no neighbour's inscribed sphere contain that of this voxel, but for some slack? */

@@ -4,8 +4,16 @@
 
 #include "ms_coarse_view.h"
 
-/** How much coarser the start may be for n spheres: its voxels follow the size of spheres and of the shape. */
-int ms_variational_start_step(const ms_target *target, size_t n);
+/**
+ * How much coarser than the target's grid the start and the fit may be for n spheres: they follow the size of spheres
+ * and of the shape.
+ *
+ * @param[out] cover voxels of the grid to one of the cover, along an axis: 1 to 4
+ * @param[out] field to one step of the signed distances: 1 to 3, without a closed mesh 2
+ *
+ * Cost: one pass over the voxels.
+ */
+void ms_variational_start_steps(int *cover, int *field, const ms_target *target, size_t n);
 
 /**
  * Covers voxels of a coarse view greedily (ms_cover) by the inscribed spheres about the shape's ridge: the
