@@ -122,7 +122,7 @@ static double find_share(const ms_generator *g, const char *option, const char *
     const double few = shape->cells / 3;
     const double announced =
         find_announced(g, option, value, shape, shape->cells) - find_announced(g, option, value, shape, few);
-    double peak = INFINITY;
+    double peak = HUGE_VAL;
     for (int k = 0; k < ATTEMPTS && peak > announced; k++) {
         peak = fmin(peak, find_peak(g, options, shape, shape->cells) - find_peak(g, options, shape, few));
     }
