@@ -82,7 +82,8 @@ MS_C_BEGIN
       "the angle there, which 95 % keep to", NULL, NULL) \
     X(SPHERES, SMALLEST_RADIUS, smallest_radius_ratio, MORE, 4, 0, NULL, NULL, \
       "smallest / equivalent radius", "mskit", \
-      "least radius / radius of the ball of equal volume. Small spheres force small time steps", NULL, NULL) \
+      "least radius / radius of the ball of equal volume. Small spheres force small time steps by the " \
+      "convention of the Rayleigh time", NULL, NULL) \
     X(SPHERES, WORK, work, LESS, 2, 0, NULL, NULL, \
       "work, n r_eq / r_min", "LIGGGHTS, fix check/timestep/gran", \
       "number of spheres x equivalent / least radius: pairs to try x time steps, if the least sphere sets the step", \

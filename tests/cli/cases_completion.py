@@ -60,7 +60,7 @@ class Words(Case):
             (("generate", "--least-work", ""), ["dice="]),
             (("convert", "--format", "l"), ["liggghts", "lammps"]),
             (("stability", "--perturb", "r"), ["rotation", "resolution", "refine"]),
-            (("stability", "c"), ["cube", "cone", "/"]),
+            (("stability", "c"), ["cube", "cone", "cavity", "corners", "/"]),
             (("shape", "to"), ["torus"]),
             (("shape", "ball", ""), ["r=", "fineness="]),
             (("completion", ""), ["bash", "zsh"]),
