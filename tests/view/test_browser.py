@@ -168,6 +168,23 @@ class Browser(unittest.TestCase):
         self.assertGreater(min(charts), 100, "each chart is drawn")
         self.expect_no_error()
 
+    def test_report_of_grains(self):
+        """Rows in another order than clumps: the second grain has none."""
+        for name, words in (("a.stl", "ball"), ("c.stl", "cube")):
+            self.mskit("shape", words, "-o", name)
+        with open(os.path.join(self.dir, "b.stl"), "w", encoding="utf-8") as stream:
+            stream.write("nothing")
+        self.mskit("grains", "a.stl", "b.stl", "c.stl", "-g", "mss", "-n", 2, "--cells", 10, "-o", "out", "--report", "r.html")
+        self.open("r.html")
+        rows = self.browser.find_elements("css selector", "#rows tbody tr")
+        self.assertEqual([row.get_attribute("data-scene") for row in rows], ["0", None, "1"])
+        self.assertEqual(len(self.browser.find_elements("css selector", "#tiles button")), 2)
+        self.look()
+        rows[2].click()
+        self.assertGreater(self.look()["changed"], 0.05)
+        self.assertTrue(self.text("name").startswith("grain 3, c, mss"), self.text("name"))
+        self.expect_no_error()
+
     def test_report_without_clumps(self):
         """Rows of a run that kept none: the table sorts even so."""
         self.mskit("shape", "ball", "-o", "ball.stl")
