@@ -411,6 +411,18 @@ ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error
     return input->is_volume ? target_from_volume(input, flags, err) : target_from_mesh(input, flags, err);
 }
 
+ms_status ms_input_show(ms_target *shown, ms_input *input, uint32_t label, ms_error *err)
+{
+    ms_error cause;
+    ms_status status = MS_OK;
+    *shown = (ms_target){.mesh = &input->mesh, .closed = input->report.closed};
+    if (input->is_volume) {
+        status = ms_target_voxels_from_volume(&input->target, &input->volume, label, &cause);
+        *shown = input->target;
+    }
+    return name_file(err, status, input, &cause);
+}
+
 size_t ms_input_max_voxels(const ms_input_flags *flags)
 {
     const double one[3] = {1, 1, 1};

@@ -107,6 +107,15 @@ double ms_input_bytes(const ms_input *input, const ms_input_flags *flags);
  */
 ms_status ms_input_target(ms_input *input, const ms_input_flags *flags, ms_error *err);
 
+/**
+ * The shape as pages show it: a mesh as it was read, a volume as the voxels of a label (0: the only one) alone. Nothing
+ * is said on stderr.
+ *
+ * @param[out] shown borrowed from the input, whose target becomes that of a volume
+ * @return MS_OK; as ms_target_voxels_from_volume
+ */
+ms_status ms_input_show(ms_target *shown, ms_input *input, uint32_t label, ms_error *err);
+
 /** The descriptors of the target, once for all clumps that are measured against it. After ms_input_target. */
 ms_status ms_input_describe(ms_input *input, ms_error *err);
 

@@ -11,6 +11,7 @@
 #include "cli/ms_until.h"
 #include "grains/ms_grain_assembly.h"
 #include "grains/ms_grain_merge.h"
+#include "grains/ms_grain_report.h"
 #include "grains/ms_grains.h"
 #include "ms_commands.h"
 #include "population/ms_library_report.h"
@@ -27,6 +28,7 @@ static const ms_flag FLAGS[] = {
     {"largest-piece", 0, NULL, "of a label in several pieces (--connectivity) take the largest alone"},
     {"assembly", 0, NULL, "the clumps back in their places: overlaps of neighbours, and files of the whole packing"},
     {"most-overlap", 0, "SHARE", "shrink clumps of the assembly until none is deeper in another / equivalent radius"},
+    {"report", 0, "FILE", "a page with the rows, and the clumps in their grains in 3-D (.html)"},
     {"resume", 0, NULL, "go on with the table that is in DIR"},
     {"part", 0, "K/N", "make the K-th of N parts alone, of about the same work, with a table of its own"},
     {"merge", 0, NULL, "join the tables of all parts in the folders DIR..., which stand in the place of sources"},
@@ -45,8 +47,9 @@ typedef struct grains_arguments {
     ms_grain_how how;
     ms_mass_flags mass;
     ms_grains grains;
-    const char *folder;
-    int resume, merge, dry_run, json, assembly;
+    const char *folder, *report;
+    int resume, merge, dry_run, json, assembly, argc;
+    char *const *argv;
     double most_overlap;    /* 0: not given */
     double choose, classes; /* 0: not given */
     const char *by;
@@ -114,6 +117,10 @@ static ms_status take_grains_value(int *taken, grains_arguments *a, const char *
     if (strcmp(name, "output") == 0 || strcmp(name, "by") == 0) {
         *(name[0] == 'b' ? &a->by : &a->folder) = value;
         return MS_OK;
+    }
+    if (strcmp(name, "report") == 0) {
+        a->report = value;
+        return ms_files_is_stream(value) ? ms_fail(err, MS_ERR_ARG, "--report is a page; name a file") : MS_OK;
     }
     if (strcmp(name, "choose") == 0) {
         return ms_flags_whole(&a->choose, name, value, 1, MS_POPULATION_MAX_CHOSEN, err);
@@ -240,8 +247,8 @@ static ms_status refuse_useless(const grains_arguments *a, ms_error *err)
         return ms_fail(err, MS_ERR_ARG, "--merge joins tables as they are: --%s has no effect, leave it out",
                        a->not_of_merge);
     }
-    if (a->dry_run && a->json) {
-        return ms_fail(err, MS_ERR_ARG, "--dry-run makes no sums for --json; leave it out");
+    if (a->dry_run && (a->json || a->report)) {
+        return ms_fail(err, MS_ERR_ARG, "--dry-run makes nothing for --%s; leave it out", a->json ? "json" : "report");
     }
     return MS_OK;
 }
@@ -319,6 +326,9 @@ static ms_status report_sum(const ms_grains_sum *sum, const ms_grain_assembly *a
     if (assembly) {
         print_assembly(assembly, a->folder);
     }
+    if (a->report) {
+        printf("wrote %s\n", a->report);
+    }
     return MS_OK;
 }
 
@@ -342,6 +352,9 @@ static ms_status make_all(const grains_arguments *a, ms_error *err)
     const int assemble = a->assembly && status == MS_OK && sum.ok > 0;
     if (assemble) {
         status = ms_grain_assembly_write(&assembly, &csv, &a->grains, a->most_overlap, err);
+    }
+    if (status == MS_OK && a->report) {
+        status = ms_grain_report_write(a->report, &csv, &a->grains, a->argc, a->argv, err);
     }
     ms_csv_close(&csv);
     if (status == MS_OK) {
@@ -422,6 +435,9 @@ static ms_status execute_grains(grains_arguments *a, char *const *words, size_t 
     /* Rows of a run with the flag and of one without are no one run. */
     a->grains.run = ms_grain_list_checksum(&list) ^ (uint64_t)a->grains.equal_volume;
     status = a->assembly ? ms_grain_assembly_check(&a->grains, words, count, err) : MS_OK;
+    if (status == MS_OK && a->report) {
+        status = ms_grain_report_check(a->report, &a->grains, words, count, err);
+    }
     if (status == MS_OK) {
         status = a->dry_run ? try_three(a, err) : make_all(a, err);
     }
@@ -431,7 +447,7 @@ static ms_status execute_grains(grains_arguments *a, char *const *words, size_t 
 
 static int run_grains(const ms_command *command, int argc, char **argv)
 {
-    grains_arguments a = {.how = ms_grain_how_default(), .grains = {.part = 1, .parts = 1}};
+    grains_arguments a = {.how = ms_grain_how_default(), .grains = {.part = 1, .parts = 1}, .argc = argc, .argv = argv};
     int first;
     ms_error err;
     int code = ms_flags_parse(&first, command, 1, argc, argv, take_grains_flag, &a);

@@ -13,6 +13,7 @@
 #include "clump/formats/ms_json.h"
 #include "ms_commands.h"
 #include "scene/ms_scene_engines.h"
+#include "scene/ms_scene_page.h"
 
 enum { DEFAULT_MAX_SPHERES = 100 };
 
@@ -34,6 +35,7 @@ static const ms_flag FLAGS[] = {
     {"equal-volume", 0, NULL,
      "scale each template about the centroid of its shape until its union has the shape's volume"},
     MS_SCENE_ENGINE_FLAGS,
+    {"report", 0, "FILE", "a page with a row for each shape and the templates in 3-D (.html)"},
     {"json", 0, NULL, "as JSON"},
     MS_INPUT_FLAGS,
     {0},
@@ -49,7 +51,9 @@ typedef struct scene_arguments {
     const char *folder;
     const ms_format *format[MS_OUTPUTS_FORMATS];
     size_t n_formats;
-    int equal_volume, json;
+    const char *report; /* path of the page; NULL: none */
+    int equal_volume, json, argc;
+    char *const *argv;
 } scene_arguments;
 
 static ms_status set_goal(ms_goal *goal, ms_goal_kind kind, double value, ms_error *err)
@@ -146,6 +150,10 @@ static ms_status take_scene_flag(void *context, const char *name, const char *va
     if (strcmp(name, "output") == 0) {
         a->folder = value;
         return value[0] ? MS_OK : ms_fail(err, MS_ERR_ARG, "--output '' names no folder");
+    }
+    if (strcmp(name, "report") == 0) {
+        a->report = value;
+        return ms_files_is_stream(value) ? ms_fail(err, MS_ERR_ARG, "--report is a page; name a file") : MS_OK;
     }
     if (strcmp(name, "format") == 0) {
         return take_template_format(a, value, err);
@@ -270,6 +278,9 @@ static ms_status check_scene_files(const ms_outputs *outputs, const scene_argume
     if (status == MS_OK) {
         status = list_scripts(&files, a, err);
     }
+    if (status == MS_OK && a->report) {
+        status = ms_files_add(&files, a->report, MS_FILE_WRITTEN, err);
+    }
     if (status == MS_OK) {
         status = ms_files_check(&files, err);
     }
@@ -312,6 +323,16 @@ static ms_status write_templates(const ms_outputs *outputs, const scene_argument
                : status;
 }
 
+static ms_status write_report(const scene_arguments *a, const ms_scene *scene, const ms_scene_run *run, ms_error *err)
+{
+    const ms_scene_page page = {.scene = scene, .goal = &a->goal, .run = run, .argc = a->argc, .argv = a->argv};
+    const ms_status status = ms_scene_page_write(a->report, &page, err);
+    if (status == MS_OK) {
+        fprintf(a->json ? stderr : stdout, "wrote %s\n", a->report);
+    }
+    return status;
+}
+
 static ms_status report_scene(const scene_arguments *a, const ms_scene *scene, ms_error *err)
 {
     if (!a->json) {
@@ -340,7 +361,7 @@ static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, 
     ms_scene scene;
     const ms_scene_run run = {&a->recipe, &a->input, (size_t)a->max_spheres, a->min_radius, a->equal_volume};
     ms_status status = plan_outputs(outputs, a, manifest, err);
-    if (status == MS_OK && a->folder) {
+    if (status == MS_OK && (a->folder || a->report)) {
         status = check_scene_files(outputs, a, manifest, err);
     }
     if (status == MS_OK) {
@@ -356,6 +377,9 @@ static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, 
     }
     if (status == MS_OK) {
         status = write_templates(outputs, a, &scene, err);
+    }
+    if (status == MS_OK && a->report) {
+        status = write_report(a, &scene, &run, err);
     }
     ms_scene_free(&scene);
     return status;
@@ -411,7 +435,10 @@ static int read_and_work(const ms_command *command, scene_arguments *a)
 
 static int run_scene(const ms_command *command, int argc, char **argv)
 {
-    scene_arguments a = {.max_spheres = DEFAULT_MAX_SPHERES, .recipe = {.name = MS_GENERATOR_DEFAULT, .seed = 1}};
+    scene_arguments a = {.max_spheres = DEFAULT_MAX_SPHERES,
+                         .recipe = {.name = MS_GENERATOR_DEFAULT, .seed = 1},
+                         .argc = argc,
+                         .argv = argv};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);

@@ -15,9 +15,6 @@
 #include "view/ms_view_report.h"
 #include "view/ms_view_scene.h"
 
-/* Triangles of a shape in one scene: 100 of them take about 10 MB. */
-enum { TRIANGLES = 8000 };
-
 static const size_t SHOWN[] = {MS_COLUMN_SHAPE,
                                MS_COLUMN_GENERATOR,
                                MS_COLUMN_OPTIONS,
@@ -48,6 +45,7 @@ typedef struct report_work {
     const ms_csv *csv;
     row_subject *subject; /* of each row */
     long *scene;          /* likewise; -1: none */
+    size_t triangles;     /* of a shape in one scene */
 } report_work;
 
 /* Is a field of a row this text, as it was escaped? */
@@ -135,6 +133,7 @@ static ms_status find_scenes(report_work *w, ms_error *err)
         }
         free(line);
     }
+    w->triangles = ms_view_report_triangles((size_t)scenes);
     return status;
 }
 
@@ -155,30 +154,27 @@ static ms_status put_scene(FILE *stream, const report_work *w, const row_subject
                                      .target = target,
                                      .ordered = method->generator &&
                                                 ms_generator_is_nested(method->generator, &method->settings),
-                                     .most_triangles = TRIANGLES};
+                                     .most_triangles = w->triangles};
         status = ms_view_scene_write(stream, &scene, err);
     }
     ms_clump_free(&kept);
     return status;
 }
 
-/* All of a shape. A mesh is shown without its voxels. @param written of all shapes so far */
+/* All of a shape. @param written of all shapes so far */
 static ms_status put_shape(FILE *stream, const report_work *w, size_t shape, size_t *written, ms_error *err)
 {
     ms_input input;
-    ms_target of_mesh;
+    ms_target shown;
     ms_status status = ms_input_read(&input, w->a->shape[shape], &w->a->input, err);
     if (status != MS_OK) {
         return status;
     }
-    of_mesh = (ms_target){.mesh = &input.mesh, .closed = input.report.closed};
-    if (input.is_volume) {
-        status = ms_input_target(&input, &w->a->input, err);
-    }
+    status = ms_input_show(&shown, &input, w->a->input.label, err);
     for (size_t r = 0; r < w->csv->n_rows && status == MS_OK; r++) {
         if (w->scene[r] >= 0 && w->subject[r].shape == shape) {
             fputs(*written > 0 ? "," : "", stream);
-            status = put_scene(stream, w, &w->subject[r], input.is_volume ? &input.target : &of_mesh, err);
+            status = put_scene(stream, w, &w->subject[r], &shown, err);
             (*written)++;
         }
     }

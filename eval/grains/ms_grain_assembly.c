@@ -79,17 +79,6 @@ ms_status ms_grain_assembly_check(const ms_grains *g, char *const *words, size_t
     return readable_format(g, err) ? check_files(g, words, count, err) : MS_ERR_ARG;
 }
 
-/* Without the ending of the run's first format: the name of the grain's files. */
-static char *make_stem(const char *file, const ms_grains *g)
-{
-    const size_t ending = strlen(g->format[0]->ending) + 1, length = strlen(file);
-    char *stem = strdup(file);
-    if (stem && length > ending) {
-        stem[length - ending] = '\0';
-    }
-    return stem;
-}
-
 /* Spheres of a file in the frame of the source become those of the template. */
 static void carry_spheres(ms_placed *placed, const ms_grain_place *place, double scale)
 {
@@ -156,7 +145,8 @@ static ms_status add_placed(ms_packing *packing, const ms_grain_found *found, co
                        "grain %.0f: its file '%.60s' has a name that no script can hold; mend the table", found->number,
                        found->file);
     }
-    *placed = (ms_placed){.number = (size_t)found->number, .scale = 1, .name = make_stem(found->file, g)};
+    *placed = (ms_placed){.number = (size_t)found->number, .scale = 1};
+    placed->name = ms_grain_row_stem(found, g->format[0]->ending);
     if (!placed->name) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the name of a template");
     }

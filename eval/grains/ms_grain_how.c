@@ -31,9 +31,9 @@ uint64_t ms_grain_how_add_text(uint64_t sum, const char *text)
 
 void ms_grain_how_note(ms_grain_how *how, const char *name, const char *value)
 {
-    /* On the rows: the assembly is made of the clumps afterwards. */
-    static const char *const WITHOUT_EFFECT[] = {"output", "resume",  "part",       "merge",    "dry-run",
-                                                 "json",   "threads", "max-memory", "assembly", "most-overlap"};
+    /* On the rows: assembly and report are made of the clumps afterwards. */
+    static const char *const WITHOUT_EFFECT[] = {"output",  "resume",     "part",     "merge",        "dry-run", "json",
+                                                 "threads", "max-memory", "assembly", "most-overlap", "report"};
     for (size_t w = 0; w < sizeof WITHOUT_EFFECT / sizeof *WITHOUT_EFFECT; w++) {
         if (strcmp(name, WITHOUT_EFFECT[w]) == 0) {
             return;

@@ -253,6 +253,16 @@ ms_status ms_grain_row_find(ms_grain_found *found, const char *line, ms_error *e
     return is_row ? MS_OK : ms_fail(err, MS_ERR_FORMAT, "'%.60s' is no row of a grain", line);
 }
 
+char *ms_grain_row_stem(const ms_grain_found *found, const char *ending)
+{
+    const size_t length = strlen(found->file), behind = strlen(ending) + 1;
+    char *stem = strdup(found->file);
+    if (stem && length > behind) {
+        stem[length - behind] = '\0';
+    }
+    return stem;
+}
+
 ms_status ms_grain_row_number(double *value, const char *column, const char *line, ms_error *err)
 {
     row_fields fields;

@@ -66,6 +66,10 @@ typedef struct ms_grain_found {
 /** @return MS_OK; MS_ERR_FORMAT for a line that is no row */
 ms_status ms_grain_row_find(ms_grain_found *found, const char *line, ms_error *err);
 
+/** The path of a clump without the ending of the run's first format, which its row has, so that another one can be put
+ * there. The caller frees it; NULL without memory. */
+char *ms_grain_row_stem(const ms_grain_found *found, const char *ending);
+
 /** What a line that was there has in a column; NAN if that is empty. @return MS_OK; MS_ERR_FORMAT for a line that is no
  * row */
 ms_status ms_grain_row_number(double *value, const char *column, const char *line, ms_error *err);

@@ -41,6 +41,7 @@ void ms_grain_source_list(ms_grain_source *source, const ms_input_flags *flags, 
  *
  * @param[out] input freed by ms_input_free; empty on failure
  * @param      label 0: a mesh
+ * @param      place NULL where no other grain is at work
  * @return MS_OK; as ms_input_read; MS_ERR_SHAPE for a label that is not there; MS_ERR_NOMEM
  */
 ms_status ms_grain_source_read(ms_grain_source *source, ms_input *input, uint32_t label, const ms_input_flags *flags,

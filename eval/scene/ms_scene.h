@@ -97,6 +97,9 @@ void ms_scene_say_remarks(const ms_scene *scene);
 /** The goal, a line for each shape, and what they come to. */
 void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal);
 
+/** What they come to alone. */
+void ms_scene_print_sums(FILE *stream, const ms_scene *scene, const ms_goal *goal);
+
 /** How the templates are made; the caller owns it. */
 json_t *ms_scene_record_json(const ms_recipe *recipe, size_t max_spheres, double min_radius);
 

@@ -57,12 +57,10 @@ static void print_slack(FILE *stream, const ms_allocation *sum, ms_goal_kind kin
     }
 }
 
-void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal)
+void ms_scene_print_sums(FILE *stream, const ms_scene *scene, const ms_goal *goal)
 {
     const ms_allocation *sum = &scene->sum;
     const ms_scene_shape *smallest = ms_scene_smallest(scene);
-    print_goal(stream, goal);
-    print_shapes(stream, scene);
     fprintf(stream, "  %-26s %llu for %llu particles\n", "spheres in the scene", (unsigned long long)sum->spheres,
             (unsigned long long)sum->particles);
     fprintf(stream, "  %-26s %.5f\n", "mean D", sum->error);
@@ -75,6 +73,13 @@ void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal)
     print_slack(stream, sum, goal->kind);
     fprintf(stream, "  %-26s %.4g in %s; it limits the time step\n", "smallest radius",
             ms_clump_smallest_radius(ms_scene_clump(smallest)), smallest->row->path);
+}
+
+void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal)
+{
+    print_goal(stream, goal);
+    print_shapes(stream, scene);
+    ms_scene_print_sums(stream, scene, goal);
 }
 
 json_t *ms_scene_record_json(const ms_recipe *recipe, size_t max_spheres, double min_radius)

@@ -9,8 +9,7 @@
 #include "view/ms_view_report.h"
 #include "view/ms_view_scene.h"
 
-/* Triangles of a shape in one scene: 100 of them take about 10 MB. */
-enum { TRIANGLES = 8000, MOST_COLUMNS = 32 + MS_MEASURES };
+enum { MOST_COLUMNS = 32 + MS_MEASURES };
 
 /* What of a row is shown. */
 static const char *const SHOWN[] = {"shape", "generator", "options", "perturbation", "level",         "status", "n",
@@ -40,7 +39,8 @@ static int is_shown(const ms_stability_report *report, size_t at)
     return 1;
 }
 
-static ms_status put_scene(FILE *stream, const ms_stability_run *run, const ms_target *target, ms_error *err)
+static ms_status put_scene(FILE *stream, const ms_stability_run *run, const ms_target *target, size_t triangles,
+                           ms_error *err)
 {
     char name[512];
     snprintf(name, sizeof name, "%.200s, %.128s, %s %g, %zu spheres", run->shape, ms_stability_label(run->method).text,
@@ -49,13 +49,19 @@ static ms_status put_scene(FILE *stream, const ms_stability_run *run, const ms_t
                                  .clump = &run->clump,
                                  .target = target,
                                  .ordered = ms_generator_is_nested(run->method->generator, &run->method->settings),
-                                 .most_triangles = TRIANGLES};
+                                 .most_triangles = triangles};
     return ms_view_scene_write(stream, &scene, err);
 }
 
-/* All of a shape, which is read once more; its rows stand together. @param written of all shapes so far */
-static ms_status put_shape(FILE *stream, const ms_stability_report *report, size_t from, const long *scene,
-                           size_t *written, ms_error *err)
+/* Of all rows. */
+typedef struct report_scenes {
+    long *number; /* -1: none */
+    size_t count, written;
+} report_scenes;
+
+/* All of a shape, which is read once more; its rows stand together. */
+static ms_status put_shape(FILE *stream, const ms_stability_report *report, size_t from, report_scenes *scenes,
+                           ms_error *err)
 {
     ms_input input;
     ms_input_flags flags = *report->plan->flags;
@@ -63,12 +69,13 @@ static ms_status put_shape(FILE *stream, const ms_stability_report *report, size
     if (status != MS_OK) {
         return status;
     }
+    const size_t triangles = ms_view_report_triangles(scenes->count);
     const ms_target target = {.mesh = &input.mesh, .closed = input.report.closed};
     for (size_t r = from; r < report->n_runs && report->run[r].shape == report->run[from].shape && status == MS_OK;
          r++) {
-        if (scene[r] >= 0) {
-            fputs((*written)++ > 0 ? "," : "", stream);
-            status = put_scene(stream, &report->run[r], &target, err);
+        if (scenes->number[r] >= 0) {
+            fputs(scenes->written++ > 0 ? "," : "", stream);
+            status = put_scene(stream, &report->run[r], &target, triangles, err);
         }
     }
     ms_input_free(&input);
@@ -100,21 +107,16 @@ static ms_status begin_page(FILE *stream, const ms_stability_report *report, con
     ms_files files = {0};
     char *column[MOST_COLUMNS];
     const char **chart = NULL;
-    size_t shown[N_SHOWN], n_shown = 0, n_charts = 0;
+    size_t shown[N_SHOWN], n_charts = 0;
+    const char *const *name = (const char *const *)column;
     const size_t n_columns = ms_csv_split(column, MOST_COLUMNS, header);
-    for (size_t k = 0; k < N_SHOWN; k++) {
-        for (size_t c = 0; c < n_columns; c++) {
-            if (strcmp(SHOWN[k], column[c]) == 0) {
-                shown[n_shown++] = c;
-            }
-        }
-    }
+    const size_t n_shown = ms_view_report_columns(shown, SHOWN, N_SHOWN, name, n_columns);
     ms_status status = list_pictures(&chart, &n_charts, &files, report, err);
     if (status == MS_OK) {
         const ms_view_report page = {.title = "stability of clumps",
                                      .argc = report->argc,
                                      .argv = report->argv,
-                                     .column = (const char *const *)column,
+                                     .column = name,
                                      .shown = shown,
                                      .n_columns = n_columns,
                                      .n_shown = n_shown,
@@ -131,15 +133,14 @@ static ms_status begin_page(FILE *stream, const ms_stability_report *report, con
 
 static ms_status write_page(FILE *stream, const ms_stability_report *report, long *scene, char *header, ms_error *err)
 {
-    long scenes = 0;
-    size_t written = 0;
+    report_scenes scenes = {.number = scene};
     for (size_t r = 0; r < report->n_runs; r++) {
-        scene[r] = is_shown(report, r) ? scenes++ : -1;
+        scene[r] = is_shown(report, r) ? (long)scenes.count++ : -1;
     }
     ms_status status = begin_page(stream, report, scene, header, err);
     for (size_t r = 0; r < report->n_runs && status == MS_OK; r++) {
         if (r == 0 || report->run[r].shape != report->run[r - 1].shape) {
-            status = put_shape(stream, report, r, scene, &written, err);
+            status = put_shape(stream, report, r, &scenes, err);
         }
     }
     ms_view_page_end(stream);

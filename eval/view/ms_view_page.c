@@ -95,6 +95,13 @@ static void put_lines(FILE *stream, char *text)
     }
 }
 
+void ms_view_page_text(FILE *stream, char *text)
+{
+    fputs("<pre>", stream);
+    put_lines(stream, text);
+    fputs("</pre>\n", stream);
+}
+
 ms_status ms_view_page_record(FILE *stream, const char *json, ms_error *err)
 {
     json_t *record = json_loads(json, 0, NULL);
@@ -103,9 +110,9 @@ ms_status ms_view_page_record(FILE *stream, const char *json, ms_error *err)
     if (!text) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the record of the run");
     }
-    fputs("<details id=\"record\"><summary>all settings and scores</summary><pre>", stream);
-    put_lines(stream, text);
-    fputs("</pre></details>\n", stream);
+    fputs("<details id=\"record\"><summary>all settings and scores</summary>", stream);
+    ms_view_page_text(stream, text);
+    fputs("</details>\n", stream);
     free(text);
     return MS_OK;
 }

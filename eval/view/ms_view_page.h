@@ -19,6 +19,9 @@ void ms_view_page_measures(FILE *stream, const ms_metrics *metrics);
 /** The words of a command as a line for a shell. @param argv without the program's name @return MS_OK; MS_ERR_NOMEM */
 ms_status ms_view_page_command(FILE *stream, int argc, char *const *argv, ms_error *err);
 
+/** Lines as they are. @param text from outside; cut apart */
+void ms_view_page_text(FILE *stream, char *text);
+
 /** A JSON object as text, laid out for reading. @return MS_OK; MS_ERR_NOMEM */
 ms_status ms_view_page_record(FILE *stream, const char *json, ms_error *err);
 

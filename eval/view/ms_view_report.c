@@ -10,6 +10,29 @@
 #include "ms_view_base64.h"
 #include "ms_view_page.h"
 
+/* 100 shapes of the most take about 10 MB; with the least one is still known for what it is. */
+enum { ALL_TRIANGLES = 800000, MOST_TRIANGLES = 8000, LEAST_TRIANGLES = 400 };
+
+size_t ms_view_report_triangles(size_t scenes)
+{
+    const size_t share = ALL_TRIANGLES / (scenes > 0 ? scenes : 1);
+    return share < LEAST_TRIANGLES ? LEAST_TRIANGLES : share < MOST_TRIANGLES ? share : MOST_TRIANGLES;
+}
+
+size_t ms_view_report_columns(size_t *shown, const char *const *wanted, size_t n_wanted, const char *const *column,
+                              size_t n_columns)
+{
+    size_t count = 0;
+    for (size_t w = 0; w < n_wanted; w++) {
+        for (size_t c = 0; c < n_columns; c++) {
+            if (strcmp(wanted[w], column[c]) == 0) {
+                shown[count++] = c;
+            }
+        }
+    }
+    return count;
+}
+
 /* Short where it is a number; the whole of it is in the file. */
 static void put_field(FILE *stream, const char *field)
 {
@@ -87,10 +110,13 @@ ms_status ms_view_report_begin(FILE *stream, const ms_view_report *report, ms_er
     ms_status status = ms_view_page_command(stream, report->argc, report->argv, err);
     ms_view_page_viewer(stream);
     fputs("<div id=\"tiles\"></div>\n", stream);
+    if (report->sums) {
+        ms_view_page_text(stream, report->sums);
+    }
     if (status == MS_OK) {
         status = put_table(stream, report, err);
     }
-    fputs("<h2>charts</h2>\n", stream);
+    fputs(report->n_charts > 0 ? "<h2>charts</h2>\n" : "", stream);
     for (size_t c = 0; c < report->n_charts && status == MS_OK; c++) {
         status = put_chart(stream, report->chart[c], err);
     }

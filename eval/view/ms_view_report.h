@@ -6,10 +6,24 @@
 
 #include "chart/ms_csv.h"
 
+/** Triangles of the shape in each of so many scenes: all shapes together take about 10 MB or less. */
+size_t ms_view_report_triangles(size_t scenes);
+
+/**
+ * Finds the columns to show by their names; those that the table lacks are passed over.
+ *
+ * @param[out] shown  room for n_wanted
+ * @param      column names of all n_columns
+ * @return how many there are
+ */
+size_t ms_view_report_columns(size_t *shown, const char *const *wanted, size_t n_wanted, const char *const *column,
+                              size_t n_columns);
+
 /** What stands on it; all borrowed. */
 typedef struct ms_view_report {
     const char *title;
-    int argc; /* the command, without the program's name */
+    char *sums; /* lines above the table, which are cut apart; NULL: none */
+    int argc;   /* the command, without the program's name */
     char *const *argv;
     const char *const *column; /* names of columns */
     const size_t *shown;       /* which of them */

@@ -1,50 +1,13 @@
 'use strict';
 /* The viewer of mskit's pages. It draws clumps and shapes that stand in the page as JSON (ms_view_scene.h says how) with
    WebGL 2: each sphere is a square in which the ray through a pixel is cut with the sphere, so that it is round at any
-   size and costs its pixels alone; a shape is triangles. The projection is parallel. Nothing is drawn but on change. */
+   size and costs its pixels alone; a shape is triangles. The projection is parallel. Nothing is drawn but on change. The
+   programs of both are in shaders.js, which goes before. */
 (function () {
 const byId = id => document.getElementById(id);
 const scenes = JSON.parse(byId('scenes').textContent);
 const canvas = byId('canvas');
 const gl = canvas.getContext('webgl2', {antialias: false, alpha: false});
-
-const HEAD = `#version 300 es
-precision highp float; precision highp sampler3D;
-uniform mat3 turn; uniform vec4 view; uniform vec3 stops[9];
-vec3 ramp(float t) {
-  float x = clamp(t, 0., 1.) * 8.; int i = min(int(x), 7);
-  return mix(stops[i], stops[i + 1], x - float(i));
-}
-vec3 light(vec3 colour, vec3 normal) { return colour * (.62 + .42 * dot(normal, vec3(-.42, .54, .73))); }
-`;
-const SPHERE = [HEAD + `layout(location = 0) in vec4 sphere; layout(location = 1) in float value;
-out vec2 at; flat out vec4 ball; flat out float shade;
-void main() {
-  at = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2. - 1.;
-  ball = vec4(turn * sphere.xyz, sphere.w); shade = value;
-  gl_Position = vec4((ball.xy + at * ball.w) * view.xy + view.zw, 0, 1);
-}`, HEAD + `in vec2 at; flat in vec4 ball; flat in float shade; out vec4 colour;
-uniform bool surface; uniform sampler3D field; uniform vec3 low, size; uniform vec2 range;
-void main() {
-  float square = 1. - dot(at, at), t = shade;
-  if (square < 0.) discard;
-  vec3 normal = vec3(at, sqrt(square)), place = ball.xyz + ball.w * normal;
-  gl_FragDepth = .5 - .25 * place.z;
-  if (surface) t = mix(range.x, range.y, texture(field, (place * turn - low) / size).r);
-  colour = vec4(light(ramp(t), normal) * smoothstep(-.35, .35, normal.z), 1);
-}`];
-const MESH = [HEAD + `layout(location = 0) in vec3 corner; layout(location = 1) in float value;
-out vec3 place; out float shade;
-void main() {
-  place = turn * corner; shade = value;
-  gl_Position = vec4(place.xy * view.xy + view.zw, -.5 * place.z, 1);
-}`, HEAD + `in vec3 place; in float shade; out vec4 colour; uniform bool surface; uniform float alpha;
-void main() {
-  vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
-  vec3 base = surface ? ramp(shade) : vec3(.72, .76, .8);
-  float seen = surface ? max(alpha, min(shade * 3., .9)) : alpha;
-  colour = vec4(light(base, normal.z < 0. ? -normal : normal), seen);
-}`];
 
 /* Viridis for what has a value, white to red for what stands out. */
 const VIRIDIS = [[68,1,84],[71,44,122],[59,81,139],[44,113,142],[33,144,141],[39,173,129],[92,200,99],[170,220,50],
@@ -97,6 +60,24 @@ function findGaps() {
     gap[v] = Math.max(0, least);
   }
   return gap;
+}
+
+/* Of each sphere the smallest cap that one of the largest spheres leaves outside itself: all that can be seen of it, and a
+   little more than that. Halves the pixels to be drawn of a clump of many. */
+function findCaps() {
+  const s = scene.spheres, caps = new Float32Array(4 * first), at = Array.from({length: first}, (_, k) => 4 * k);
+  const largest = [...at].sort((p, q) => s[q + 3] - s[p + 3]).slice(0, 250);
+  for (const k of at) {
+    caps[k + 3] = -1;
+    for (const i of largest) {
+      const x = s[k] - s[i], y = s[k + 1] - s[i + 1], z = s[k + 2] - s[i + 2], d = Math.sqrt(x * x + y * y + z * z);
+      const least = (s[i + 3] ** 2 - d * d - s[k + 3] ** 2) / (2 * d * s[k + 3]) - .001;
+      if (d > 0 && least > caps[k + 3]) {
+        caps.set([x / d, y / d, z / d, Math.min(1, least)], k);
+      }
+    }
+  }
+  return caps;
 }
 
 /* The largest one; lengths of the scene. */
@@ -291,6 +272,7 @@ function show(which) {
   offer('protrusion', scene.protrusion);
   offer('surface', scene.mesh);
   fill(buffers.sphere, scene.spheres);
+  fill(buffers.cap, findCaps());
   if (scene.mesh) {
     fill(buffers.corner, scene.mesh.corners);
     gl.bindVertexArray(buffers.ofMesh);
@@ -368,13 +350,14 @@ function listenToTable() {
 function start() {
   programs = {sphere: compile(SPHERE), mesh: compile(MESH)};
   buffers = {ofSpheres: gl.createVertexArray(), ofMesh: gl.createVertexArray()};
-  for (const name of ['sphere', 'value', 'corner', 'gap', 'face']) {
+  for (const name of ['sphere', 'value', 'cap', 'corner', 'gap', 'face']) {
     buffers[name] = gl.createBuffer();
   }
   texture = gl.createTexture();
   gl.bindVertexArray(buffers.ofSpheres);
   point(buffers.sphere, 0, 4, 1);
   point(buffers.value, 1, 1, 1);
+  point(buffers.cap, 2, 4, 1);
   gl.bindVertexArray(buffers.ofMesh);
   point(buffers.corner, 0, 3, 0);
   point(buffers.gap, 1, 1, 0);
@@ -460,6 +443,7 @@ function listen() {
   byId('colour').addEventListener('change', e => { colour = e.target.value; paint(); redraw(); });
   byId('first').addEventListener('input', e => {
     first = Number(e.target.value);
+    fill(buffers.cap, findCaps());
     if (colour === 'surface') {
       paint();
     }

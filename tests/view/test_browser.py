@@ -4,6 +4,7 @@
     MSKIT=build/eval/mskit /usr/bin/python3 tests/view/test_browser.py [-v] [-k PATTERN]
 """
 import csv
+import math
 import os
 import shutil
 import struct
@@ -40,6 +41,46 @@ requestAnimationFrame(() => {
   done({left: 2 * seen[0] / (w * h), right: 2 * seen[1] / (w * h), changed: changed / (w * h), milliseconds});
 });
 """
+
+
+# The same frame: pixels of each of three spheres in the colours of the index, of which the first has the least green, the
+# second the least red, the third the least blue; and the size of the picture.
+COUNT = """
+const done = arguments[0], canvas = document.getElementById('canvas'), gl = canvas.getContext('webgl2');
+const w = canvas.width, h = canvas.height, pixels = new Uint8Array(4 * w * h), seen = [0, 0, 0];
+document.getElementById('first').dispatchEvent(new Event('input'));
+requestAnimationFrame(() => {
+  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  for (let at = 0; at < 4 * w * h; at += 4) {
+    const [r, g, b] = pixels.subarray(at, at + 3), least = Math.min(r, g, b);
+    if (r + g + b < 765) {
+      seen[least === g ? 0 : least === r ? 1 : 2]++;
+    }
+  }
+  done([w, h, seen]);
+});
+"""
+
+
+def count_pixels(spheres, w, h):
+    """How many pixels of the first view show each sphere, by looking at each pixel."""
+    turn, pixel = [[1, 0, 0], [0, 0, 1], [0, -1, 0]], 0.475 * min(w, h)
+    for a, b, angle in ((2, 0, -0.5), (1, 2, 0.35)):
+        c, s, u, v = math.cos(angle), math.sin(angle), turn[a], turn[b]
+        turn[a], turn[b] = [c * x - s * y for x, y in zip(u, v)], [s * x + c * y for x, y in zip(u, v)]
+    lo, hi = ([pick(p[k] + sign * p[3] for p in spheres) for k in range(3)] for pick, sign in ((min, -1), (max, 1)))
+    centre = [(a + b) / 2 for a, b in zip(lo, hi)]
+    scale = max(math.dist(p[:3], centre) + p[3] for p in spheres)
+    placed = [[sum(row[k] * (p[k] - centre[k]) for k in range(3)) / scale for row in turn] + [p[3] / scale] for p in spheres]
+    seen = [0] * len(spheres)
+    for j in range(h):
+        for i in range(w):
+            x, y = (i + 0.5 - w / 2) / pixel, (j + 0.5 - h / 2) / pixel
+            squares = [r * r - (x - a) ** 2 - (y - b) ** 2 for a, b, _, r in placed]
+            fronts = [(p[2] + math.sqrt(q), k) for k, (p, q) in enumerate(zip(placed, squares)) if q > 0]
+            if fronts:
+                seen[max(fronts)[1]] += 1
+    return seen
 
 
 @unittest.skipIf(LACKING, "not installed: " + ", ".join(LACKING))
@@ -126,6 +167,19 @@ class Browser(unittest.TestCase):
         self.assertEqual(self.text("count"), "150 spheres", "more than a slider has by itself")
         self.expect_no_error()
 
+    def test_each_sphere_is_seen_as_far_as_it_is(self):
+        """What others hide of a sphere is not drawn, and nothing else is missing."""
+        spheres = [(0, 0, 0, 1), (0.8, 0.3, 0.2, 0.8), (0.3, -0.9, 0.6, 0.7)]
+        with open(os.path.join(self.dir, "c.csv"), "w", encoding="utf-8") as stream:
+            stream.writelines("%g,%g,%g,%g\n" % sphere for sphere in spheres)
+        self.mskit("convert", "c.csv", "-o", "c.html")
+        self.open("c.html")
+        w, h, seen = self.browser.execute_async_script(COUNT)
+        for one, truth in zip(seen, count_pixels(spheres, w, h)):
+            self.assertGreater(truth, 5000)
+            self.assertLess(abs(one - truth), 0.01 * truth, (seen, truth))
+        self.expect_no_error()
+
     def test_volume(self):
         """A ball of voxels: seen as large as its spheres."""
         n, r = 24, 9.3
@@ -166,6 +220,23 @@ class Browser(unittest.TestCase):
         charts = self.browser.execute_script("return [...document.images].map(i => i.naturalWidth)")
         self.assertGreaterEqual(len(charts), 8)
         self.assertGreater(min(charts), 100, "each chart is drawn")
+        self.expect_no_error()
+
+    def test_report_of_grains(self):
+        """Rows in another order than clumps: the second grain has none."""
+        for name, words in (("a.stl", "ball"), ("c.stl", "cube")):
+            self.mskit("shape", words, "-o", name)
+        with open(os.path.join(self.dir, "b.stl"), "w", encoding="utf-8") as stream:
+            stream.write("nothing")
+        self.mskit("grains", "a.stl", "b.stl", "c.stl", "-g", "mss", "-n", 2, "--cells", 10, "-o", "out", "--report", "r.html")
+        self.open("r.html")
+        rows = self.browser.find_elements("css selector", "#rows tbody tr")
+        self.assertEqual([row.get_attribute("data-scene") for row in rows], ["0", None, "1"])
+        self.assertEqual(len(self.browser.find_elements("css selector", "#tiles button")), 2)
+        self.look()
+        rows[2].click()
+        self.assertGreater(self.look()["changed"], 0.05)
+        self.assertTrue(self.text("name").startswith("grain 3, c, mss"), self.text("name"))
         self.expect_no_error()
 
     def test_report_without_clumps(self):

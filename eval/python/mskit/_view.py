@@ -97,7 +97,7 @@ def _table(scores: Dict[str, float]) -> str:
 
 def page(clump: "Clump", title: str, with_scores: bool) -> str:
     """A page that needs no other file and no network, and allows none."""
-    script, style = _read("viewer.js"), _read("viewer.css")
+    script, style = _read("shaders.js") + _read("viewer.js"), _read("viewer.css")
     hashes = [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in (script, style)]
     about = _table(clump.scores) if with_scores and clump.shape is not None else ""
     scenes = json.dumps([scene(clump)]).replace("<", "\\u003c")

@@ -1,0 +1,134 @@
+#include "ms_scene_page.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/ms_escape.h"
+#include "base/ms_file.h"
+#include "view/ms_view_page.h"
+#include "view/ms_view_report.h"
+#include "view/ms_view_scene.h"
+
+static const char *const COLUMNS[] = {"shape",       "particles",    "n",    "dice", "coverage", "inertia",
+                                      "last_sphere", "least_radius", "cause"};
+
+enum { N_COLUMNS = sizeof COLUMNS / sizeof *COLUMNS };
+
+static void print_row(FILE *stream, const ms_scene_shape *shape)
+{
+    const ms_score *score = ms_scene_score(shape);
+    ms_escape_csv_path(stream, shape->row->path);
+    ms_csv_put_number(stream, (double)shape->row->particles);
+    ms_csv_put_number(stream, (double)ms_scene_clump(shape)->n_spheres);
+    ms_csv_put_number(stream, score->dice);
+    ms_csv_put_number(stream, score->coverage);
+    ms_csv_put_number(stream, score->inertia);
+    ms_csv_put_number(stream, -ms_scene_gain(shape));
+    ms_csv_put_number(stream, ms_clump_smallest_radius(ms_scene_clump(shape)));
+    fputc(',', stream);
+    ms_escape_csv(stream, shape->remarks[shape->chosen - 1].text);
+}
+
+/* The caller frees it; NULL without memory. @param shape NULL: the sums */
+static char *make_text(const ms_scene_page *page, const ms_scene_shape *shape)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    if (!stream) {
+        return NULL;
+    }
+    if (shape) {
+        print_row(stream, shape);
+    } else {
+        ms_scene_print_sums(stream, page->scene, page->goal);
+    }
+    return fclose(stream) == 0 ? text : NULL;
+}
+
+/* A scene of the page for each shape, in their order. */
+static ms_status begin_page(FILE *stream, const ms_scene_page *page, char **row, long *number, ms_error *err)
+{
+    size_t shown[N_COLUMNS];
+    const size_t count = page->scene->count;
+    const ms_csv csv = {.n_rows = count, .row = row};
+    ms_view_report report = {.title = "templates of a scene",
+                             .argc = page->argc,
+                             .argv = page->argv,
+                             .column = COLUMNS,
+                             .shown = shown,
+                             .n_columns = N_COLUMNS,
+                             .n_shown = N_COLUMNS,
+                             .csv = &csv,
+                             .scene = number};
+    for (size_t c = 0; c < N_COLUMNS; c++) {
+        shown[c] = c;
+    }
+    report.sums = make_text(page, NULL);
+    int has_memory = report.sums != NULL;
+    for (size_t s = 0; s < count && has_memory; s++) {
+        number[s] = (long)s;
+        row[s] = make_text(page, &page->scene->shape[s]);
+        has_memory = row[s] != NULL;
+    }
+    const ms_status status = has_memory ? ms_view_report_begin(stream, &report, err)
+                                        : ms_fail(err, MS_ERR_NOMEM, "no memory for the report");
+    free(report.sums);
+    return status;
+}
+
+static ms_status put_shape(FILE *stream, const ms_scene_page *page, const ms_scene_shape *shape, ms_error *err)
+{
+    char name[512];
+    ms_input input;
+    ms_target target;
+    const ms_recipe *recipe = page->run->recipe;
+    ms_status status = ms_input_read(&input, shape->row->path, page->run->input, err);
+    if (status != MS_OK) {
+        return status;
+    }
+    status = ms_input_show(&target, &input, page->run->input->label, err);
+    if (status == MS_OK) {
+        snprintf(name, sizeof name, "%.400s, %.40s, %zu spheres", shape->row->path, recipe->generator->name,
+                 ms_scene_clump(shape)->n_spheres);
+        const ms_view_scene scene = {.name = name,
+                                     .clump = ms_scene_clump(shape),
+                                     .target = &target,
+                                     .ordered = ms_generator_is_nested(recipe->generator, &recipe->settings),
+                                     .most_triangles = ms_view_report_triangles(page->scene->count)};
+        status = ms_view_scene_write(stream, &scene, err);
+    }
+    ms_input_free(&input);
+    return status;
+}
+
+static ms_status write_page(FILE *stream, const ms_scene_page *page, char **row, long *number, ms_error *err)
+{
+    ms_status status = begin_page(stream, page, row, number, err);
+    for (size_t s = 0; s < page->scene->count && status == MS_OK; s++) {
+        fputs(s > 0 ? "," : "", stream);
+        status = put_shape(stream, page, &page->scene->shape[s], err);
+    }
+    ms_view_page_end(stream);
+    return status;
+}
+
+ms_status ms_scene_page_write(const char *path, const ms_scene_page *page, ms_error *err)
+{
+    ms_output output;
+    const size_t count = page->scene->count;
+    char **row = calloc(count, sizeof *row);
+    long *number = calloc(count, sizeof *number);
+    ms_status status =
+        row && number ? ms_output_open(&output, path, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the report");
+    if (status == MS_OK) {
+        status = ms_output_close(&output, write_page(output.stream, page, row, number, err), err);
+    }
+    for (size_t s = 0; row && s < count; s++) {
+        free(row[s]);
+    }
+    free(row);
+    free(number);
+    return status;
+}
