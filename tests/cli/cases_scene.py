@@ -220,7 +220,7 @@ class Templates(Scene):
 
     def test_table(self):
         out = self.mskit("scene", "scene.csv", *QUICK, "--budget", "250", "--max-spheres", "8", "-o", "out").out
-        for word in ("a budget of 250 spheres", "grain.stl", "spread evenly", "limits the time step",
+        for word in ("a budget of 250 spheres", "grain.stl", "spread evenly", "by convention it limits the time step",
                      "wrote out/box.csv"):
             self.assertIn(word, out)
 
