@@ -11,6 +11,9 @@
 /* Half a vessel's width over the reach of a particle, at least. */
 static const double ROOM = 1.2;
 
+/* Of a vessel, so that the area of its floor is a number. */
+static const double WIDEST = 1e100;
+
 /* X,Y */
 static ms_status take_box(double width[2], const char *value, ms_error *err)
 {
@@ -21,8 +24,8 @@ static ms_status take_box(double width[2], const char *value, ms_error *err)
         return ms_fail(err, MS_ERR_ARG, "--box '%.60s' is not two widths X,Y", value);
     }
     snprintf(first, sizeof first, "%.*s", (int)length, value);
-    ms_status status = ms_flags_number(&width[0], "box", first, DBL_MIN, DBL_MAX, err);
-    return status == MS_OK ? ms_flags_number(&width[1], "box", comma + 1, DBL_MIN, DBL_MAX, err) : status;
+    ms_status status = ms_flags_number(&width[0], "box", first, DBL_MIN, WIDEST, err);
+    return status == MS_OK ? ms_flags_number(&width[1], "box", comma + 1, DBL_MIN, WIDEST, err) : status;
 }
 
 ms_status ms_scene_engines_flag(int *taken, ms_scene_engines *e, const char *name, const char *value, ms_error *err)
@@ -37,7 +40,7 @@ ms_status ms_scene_engines_flag(int *taken, ms_scene_engines *e, const char *nam
         return ms_fail(err, MS_ERR_ARG, "there is one vessel: give --box or --cylinder, once");
     }
     e->is_round = round;
-    status = round ? ms_flags_number(&e->width[0], name, value, DBL_MIN, DBL_MAX, err) : take_box(e->width, value, err);
+    status = round ? ms_flags_number(&e->width[0], name, value, DBL_MIN, WIDEST, err) : take_box(e->width, value, err);
     e->width[1] = round ? e->width[0] : e->width[1];
     return status;
 }

@@ -71,7 +71,7 @@ void ms_scene_print_sums(FILE *stream, const ms_scene *scene, const ms_goal *goa
     fprintf(stream, "  %-26s takes %.2g off the sum of D over the particles\n", "least useful sphere",
             scene->least_gain);
     print_slack(stream, sum, goal->kind);
-    fprintf(stream, "  %-26s %.4g in %s; it limits the time step\n", "smallest radius",
+    fprintf(stream, "  %-26s %.4g in %s; by convention it limits the time step\n", "smallest radius",
             ms_clump_smallest_radius(ms_scene_clump(smallest)), smallest->row->path);
 }
 

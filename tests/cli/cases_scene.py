@@ -220,7 +220,7 @@ class Templates(Scene):
 
     def test_table(self):
         out = self.mskit("scene", "scene.csv", *QUICK, "--budget", "250", "--max-spheres", "8", "-o", "out").out
-        for word in ("a budget of 250 spheres", "grain.stl", "spread evenly", "limits the time step",
+        for word in ("a budget of 250 spheres", "grain.stl", "spread evenly", "by convention it limits the time step",
                      "wrote out/box.csv"):
             self.assertIn(word, out)
 
@@ -270,6 +270,10 @@ class Engines(Scene):
         ):
             with self.subTest(args=args):
                 self.assert_refused("scene", "scene.csv", *args, code=1, says=says)
+        for flag, width, wrong in (("--box", "9,1e101", "'1e101'"), ("--box", "0,9", "'0'"), ("--box", "9", "X,Y"),
+                                   ("--cylinder", "nan", "'nan'")):
+            with self.subTest(width=width):
+                self.assert_refused("scene", "scene.csv", *self.SCENE, flag, width, *script, code=2, says=(flag, wrong))
         os.rename(self.path("grain.stl"), self.path("scene.stl"))
         self.assert_refused("scene", "scene.stl", *self.SCENE, *script, code=1, says=("out/scene.liggghts.in",))
 

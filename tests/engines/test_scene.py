@@ -139,6 +139,19 @@ class Lammps(Engine):
         self.scene.write("crowded.in", self.scene.script("scene.lammps.in").replace(" deposit 3 ", " deposit 400 "))
         self.fail_script("lmp", "-in", "crowded.in")
 
+    def test_sizes(self):
+        """Many small particles and a few large ones, of equal volume in all, have room beside each other."""
+        self.scene.folder = self.scene.top
+        for name, size in (("small", 1), ("large", 3)):
+            self.scene.mskit("shape", "cube", f"a={size}", "-o", name + ".stl")
+        self.scene.write("sizes.csv", "shape,count\nsmall.stl,540\nlarge.stl,20\n")
+        self.scene.mskit("scene", "sizes.csv", "--tolerance", "dice=0.2", "-g", "mss", "--cells", "20", "--density",
+                         str(engines.DENSITY), "--unit", "mm", "--format", "lammps", "-o", "sizes")
+        self.scene.folder = os.path.join(self.scene.top, "sizes")
+        insertion = self.scene.script("scene.lammps.in").partition("# They fall")[0]
+        self.scene.write("insertion.in", insertion)
+        self.assertNotIn("unsuccessful", self.scene.run("lmp", "-in", "insertion.in"))
+
 
 class Yade(Engine):
     program = "yade"

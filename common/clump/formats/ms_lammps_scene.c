@@ -63,7 +63,6 @@ static void write_lammps_particles(FILE *stream, const ms_packing *scene, const 
     fputs("\nfix gravity all gravity 0 vector 0 0 -1 disable\n"
           "fix move all rigid/small molecule mol clump reinit no gravity gravity\n",
           stream);
-    ms_script_number(2.02 * s->most, &near);
     for (size_t k = 0; k < scene->count; k++) {
         most = scene->placed[k].count > most ? scene->placed[k].count : most;
         fprintf(stream, "fix insert%zu all deposit %zu 0 1 %zu region column mol clump molfrac", k,
@@ -71,7 +70,8 @@ static void write_lammps_particles(FILE *stream, const ms_packing *scene, const 
         for (size_t other = 0; other < scene->count; other++) {
             fputs(other == k ? " 1" : " 0", stream);
         }
-        fprintf(stream, " rigid move near %s attempt 1000\n", near.text);
+        fprintf(stream, " rigid move near %s attempt 1000\n",
+                ms_script_number(ms_script_scene_near(s, &scene->placed[k]), &near));
     }
     fprintf(stream, "thermo_style custom step atoms\nthermo_modify lost error\nrun %zu\n", 2 * most + 100);
     for (size_t k = 0; k < scene->count; k++) {
@@ -166,9 +166,9 @@ static void write_lammps_picture(FILE *stream)
 
 ms_status ms_lammps_scene(FILE *stream, const ms_packing *scene, const char *name, ms_error *err)
 {
-    const ms_script_scene s = ms_script_scene_of(scene);
+    const ms_script_scene s = ms_script_scene_of(scene, 1);
     (void)err;
-    ms_script_scene_title(stream, scene, name, "lmp -in", ".in");
+    ms_script_scene_title(stream, &s, scene, name, "lmp -in", ".in");
     write_lammps_settings(stream, &s);
     write_lammps_box(stream, &s);
     write_lammps_matter(stream);

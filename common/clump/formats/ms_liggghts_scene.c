@@ -161,9 +161,9 @@ static void write_liggghts_rest(FILE *stream, const ms_script_scene *s)
 
 ms_status ms_liggghts_scene(FILE *stream, const ms_packing *scene, const char *name, ms_error *err)
 {
-    const ms_script_scene s = ms_script_scene_of(scene);
+    const ms_script_scene s = ms_script_scene_of(scene, 0);
     (void)err;
-    ms_script_scene_title(stream, scene, name, "liggghts -in", ".in");
+    ms_script_scene_title(stream, &s, scene, name, "liggghts -in", ".in");
     write_liggghts_settings(stream, &s);
     write_liggghts_box(stream, &s);
     write_liggghts_matter(stream, &s);

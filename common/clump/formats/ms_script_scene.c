@@ -8,6 +8,15 @@ static const double PI = 3.14159265358979323846, BED = 0.6; /* its packing fract
 /* Of the balls around the particles in the column: well below 0.3, where random insertion begins to fail. */
 static const double COLUMN = 0.15;
 
+static double largest_sphere(const ms_placed *kind)
+{
+    double most = 0;
+    for (size_t b = 0; b < kind->clump.n_spheres; b++) {
+        most = fmax(most, kind->scale * kind->clump.sphere[b].radius);
+    }
+    return most;
+}
+
 /* Sums over the particles, and what is the largest or least of them. */
 static double take_kinds(ms_script_scene *s, const ms_packing *scene)
 {
@@ -25,11 +34,8 @@ static double take_kinds(ms_script_scene *s, const ms_packing *scene)
         s->reach = fmax(s->reach, kind->scale * ms_template_reach(&kind->clump));
         lightest = fmin(lightest, mass);
         s->drag = fmax(s->drag, mass / (double)kind->clump.n_spheres);
-        for (size_t b = 0; b < kind->clump.n_spheres; b++) {
-            const double radius = kind->scale * kind->clump.sphere[b].radius;
-            s->least = fmin(s->least, radius);
-            s->most = fmax(s->most, radius);
-        }
+        s->least = fmin(s->least, kind->scale * ms_clump_smallest_radius(&kind->clump));
+        s->most = fmax(s->most, largest_sphere(kind));
     }
     return lightest;
 }
@@ -52,23 +58,30 @@ static double area_of_centres(const ms_script_scene *s)
     return s->is_round ? PI * a * a : 4 * a * b;
 }
 
-static double volume_of_balls(const ms_packing *scene)
+/* Of the balls in which particles keep others away. */
+static double volume_of_balls(const ms_script_scene *s, const ms_packing *scene, int is_alike)
 {
     double sum = 0;
     for (size_t k = 0; k < scene->count; k++) {
         const ms_placed *kind = &scene->placed[k];
-        sum += (double)kind->count * 4 / 3 * PI * pow(kind->scale * ms_template_reach(&kind->clump), 3);
+        const double more = is_alike ? (s->most - largest_sphere(kind)) / 2 : 0;
+        sum += (double)kind->count * 4 / 3 * PI * pow(kind->scale * ms_template_reach(&kind->clump) + more, 3);
     }
     return sum;
 }
 
-ms_script_scene ms_script_scene_of(const ms_packing *scene)
+double ms_script_scene_near(const ms_script_scene *s, const ms_placed *kind)
+{
+    return 1.01 * (largest_sphere(kind) + s->most);
+}
+
+ms_script_scene ms_script_scene_of(const ms_packing *scene, int is_alike)
 {
     ms_script_scene s = {0};
     const double lightest = take_kinds(&s, scene);
     take_vessel(&s, scene);
     s.low = 0.5 * s.reach;
-    s.top = s.low + 2 * s.reach + volume_of_balls(scene) / (COLUMN * area_of_centres(&s));
+    s.top = s.low + 2 * s.reach + volume_of_balls(&s, scene, is_alike) / (COLUMN * area_of_centres(&s));
     s.young = ms_script_young(s.top, s.density);
     s.step = ms_script_step(ms_script_radius(lightest, s.density), s.density, s.young);
     s.convention = ms_script_step(s.least, s.density, s.young);
@@ -97,11 +110,10 @@ static const char NOTES[] =
     "quarters\n"
     "# of it, where spheres count whose centres are there, each with its part of the particle.\n";
 
-void ms_script_scene_title(FILE *stream, const ms_packing *scene, const char *name, const char *command,
-                           const char *suffix)
+void ms_script_scene_title(FILE *stream, const ms_script_scene *s, const ms_packing *scene, const char *name,
+                           const char *command, const char *suffix)
 {
-    const ms_script_scene s = ms_script_scene_of(scene);
-    fprintf(stream, "# Lets %.0f particles come to rest in a %s: %s ", s.particles, s.is_round ? "cylinder" : "box",
+    fprintf(stream, "# Lets %.0f particles come to rest in a %s: %s ", s->particles, s->is_round ? "cylinder" : "box",
             command);
     ms_escape_comment(stream, name);
     fprintf(stream, "%s\n", suffix);
@@ -120,7 +132,7 @@ void ms_script_scene_title(FILE *stream, const ms_packing *scene, const char *na
         stream,
         "# Step: a tenth of the Rayleigh time of a ball of the lightest particle's mass, since what swings in a\n"
         "# contact is the mass of whole particles; that of the smallest sphere, as by convention, would be %.3g s.\n\n",
-        s.convention);
+        s->convention);
 }
 
 double ms_script_scene_area(const ms_script_scene *s)

@@ -16,7 +16,7 @@ typedef struct ms_script_scene {
     double half[2];            /* width of the box along x and y, or diameter of the cylinder; halved */
     int is_round;              /* a cylinder */
     double low, top;           /* of the column: no particle reaches out of it */
-    double young;              /* so that overlaps are some 1 % where particles land from its top */
+    double young;              /* so that overlaps are some 2 % where particles land from its top */
     double step;               /* a tenth of the Rayleigh time of a ball of the least mass, at that modulus */
     double convention;         /* the same of the smallest sphere */
     double fall;               /* time of a fall from the top */
@@ -24,13 +24,20 @@ typedef struct ms_script_scene {
     double rest;               /* J: 1e-6 m g d, summed over the particles; d of the ball of equal volume */
 } ms_script_scene;
 
-/** @param scene not empty, with counts and masses; width 0: a box as wide as the bed is high, or eight reaches */
-ms_script_scene ms_script_scene_of(const ms_packing *scene);
+/**
+ * @param scene    not empty, with counts and masses; width 0: a box as wide as the bed is high, or eight reaches
+ * @param is_alike nonzero: the engine inserts by ms_script_scene_near, so that a small particle takes more room in the
+ *                 column where there are larger spheres
+ */
+ms_script_scene ms_script_scene_of(const ms_packing *scene, int is_alike);
+
+/** The least distance of its spheres' centres from those of all others at which nothing in the scene overlaps it. */
+double ms_script_scene_near(const ms_script_scene *s, const ms_placed *kind);
 
 /** The head of a script, all comments: what it is, how it is started ("COMMAND NAMESUFFIX"), its particles, and what
  * stands behind its numbers. */
-void ms_script_scene_title(FILE *stream, const ms_packing *scene, const char *name, const char *command,
-                           const char *suffix);
+void ms_script_scene_title(FILE *stream, const ms_script_scene *s, const ms_packing *scene, const char *name,
+                           const char *command, const char *suffix);
 
 /** The floor's, m^2. */
 double ms_script_scene_area(const ms_script_scene *s);

@@ -21,7 +21,8 @@ static double yield_at(const double p[3], const ms_particle *particle)
     return 1 / particle->mass + (t + sqrt(fmax(t * t - 4 * d, 0))) / 2;
 }
 
-/* The same at the point of a sphere that is farthest from the centre of mass. */
+/* The same at the worst of seven points of a sphere: that farthest from the centre of mass, and its ends along the axes,
+ * where a slim body is twisted. */
 static double yield_of(const ms_sphere *sphere, double scale, const ms_particle *particle)
 {
     const double *c = sphere->centre;
@@ -30,7 +31,14 @@ static double yield_of(const ms_sphere *sphere, double scale, const ms_particle 
     for (int k = 0; off > 0 && k < 3; k++) {
         p[k] = scale * c[k] * (1 + sphere->radius / off);
     }
-    return yield_at(p, particle);
+    double most = yield_at(p, particle);
+    for (int end = 0; end < 6; end++) {
+        for (int k = 0; k < 3; k++) {
+            p[k] = scale * (c[k] + (k == end / 2 ? (end % 2 ? sphere->radius : -sphere->radius) : 0));
+        }
+        most = fmax(most, yield_at(p, particle));
+    }
+    return most;
 }
 
 /* @param square omega^2 on a plane @param drag sum of root(S) w */

@@ -148,10 +148,10 @@ static void write_yade_results(FILE *stream, const ms_script_scene *s)
 
 ms_status ms_yade_scene(FILE *stream, const ms_packing *scene, const char *name, ms_error *err)
 {
-    const ms_script_scene s = ms_script_scene_of(scene);
+    const ms_script_scene s = ms_script_scene_of(scene, 0);
     ms_number area;
     (void)err;
-    ms_script_scene_title(stream, scene, name, "yade -x -n", ".py");
+    ms_script_scene_title(stream, &s, scene, name, "yade -x -n", ".py");
     write_yade_settings(stream, &s);
     ms_yade_particle(stream);
     write_yade_kinds(stream, scene);
