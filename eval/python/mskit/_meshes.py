@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy
 
-from ._errors import ArgumentError, LimitError, ShapeError, as_array, call, find, flag, number, remark, text, whole, word
+from ._errors import (ArgumentError, LimitError, ShapeError, as_array, call, find, flag, number, remark, text, whole,
+                      word)
 from ._library import ffi, lib
 from ._shapes import Bytes, Shape
 
