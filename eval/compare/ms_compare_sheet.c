@@ -151,11 +151,11 @@ static ms_status draw_tiles(ms_picture *picture, sheet_caption *caption, const m
     return status;
 }
 
-static void put_sheet_label(FILE *stream, const char *text, double x, double y, const char *align)
+static void put_sheet_label(FILE *stream, const char *text, double x, double y)
 {
     fputs("set label ", stream);
     ms_escape_gnuplot(stream, text);
-    fprintf(stream, " at %g,%g %s front noenhanced\n", x, y, align);
+    fprintf(stream, " at %g,%g center front noenhanced\n", x, y);
 }
 
 /* Puts words to the tiles; y of gnuplot's picture goes upward. */
@@ -174,21 +174,21 @@ static void put_sheet_script(FILE *stream, const ms_compare_sheet *sheet, const 
     fprintf(stream,
             "\nunset border\nunset tics\nunset key\nset margins 0,0,0,0\nset xrange [0:%d]\nset yrange [0:%d]\n", width,
             height);
-    put_sheet_label(stream, sheet->shape, 0.5 * TILE, picture->height + 0.5 * HEAD, "center");
+    put_sheet_label(stream, sheet->shape, 0.5 * TILE, picture->height + 0.5 * HEAD);
     for (size_t m = 0; m < sheet->methods->count; m++) {
         char name[256];
         const ms_method *method = &sheet->methods->method[m];
         snprintf(name, sizeof name, "%.80s%s%.120s", method->name, method->generator && method->options[0] ? ":" : "",
                  method->generator ? method->options : "");
-        put_sheet_label(stream, name, ((double)m + 1.5) * TILE, picture->height + 0.5 * HEAD, "center");
+        put_sheet_label(stream, name, ((double)m + 1.5) * TILE, picture->height + 0.5 * HEAD);
     }
     for (size_t row = 0; row < count_rows(sheet); row++) {
         char number[64];
         snprintf(number, sizeof number, "asked for: %g", row_number(sheet, row));
-        put_sheet_label(stream, number, TILE - 8, picture->height - (double)row * ROW - 16, "right");
+        const double below = picture->height - (double)(row + 1) * ROW + 0.5 * CAPTION;
+        put_sheet_label(stream, number, 0.5 * TILE, below);
         for (size_t m = 0; m < sheet->methods->count; m++) {
-            put_sheet_label(stream, caption[row * sheet->methods->count + m].text, ((double)m + 1.5) * TILE,
-                            picture->height - (double)(row + 1) * ROW + 0.5 * CAPTION, "center");
+            put_sheet_label(stream, caption[row * sheet->methods->count + m].text, ((double)m + 1.5) * TILE, below);
         }
     }
     fputs("plot ", stream);

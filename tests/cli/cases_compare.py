@@ -435,6 +435,10 @@ class Charts(Compare):
         script = self.read("charts/box-sheet.gp").decode()
         for word in ("mss:boost=2,confine", "setcover", "asked for: 3", "asked for: 6", "asked for: 9"):
             self.assertIn(f"set label '{word}'", script)
+        places = re.findall(r"set label '(?:asked for|n =).* at [\d.]+,([\d.]+) ", script)
+        self.assertGreaterEqual(len(places), 2 * rows)
+        for y in places:
+            self.assertGreater((246 * rows - float(y)) % 246, 220, "on a tile and not below it")
         self.assertIn(r'set label "o\047dd"', script)
 
     def test_without_gnuplot(self):

@@ -47,7 +47,8 @@ class Refusals(PythonCase):
                 (numpy.zeros((0, 3, 3), int), "shape (0, 3, 3)"), (numpy.zeros((3, 3)), "shape (3, 3)"),
                 (labels.astype(complex), "complex"), (labels.astype(object), "object"), (labels.astype(float) / 2, "array.npy"),
                 (labels * numpy.nan, "array.npy"), (-labels.astype(int), "array.npy"), (labels * 0, "array.npy"),
-                (labels.astype(numpy.float16), "array.npy"), (labels, "several labels (8 among them)"), (5, "shape ()")]:
+                (labels.astype(numpy.float16), "array.npy"), (labels, "several labels (8 among them)"), (5, "shape ()"),
+                ([[[1, 2], [1]]], "shape (0,)")]:
             self.refused(mskit.Error, words, mskit.volume, array)
         for options, words in [
                 ({"label": 4}, "no voxel of label 4"), ({"label": -1}, "label=-1"), ({"label": 1.5}, "whole number"),
@@ -70,7 +71,7 @@ class Refusals(PythonCase):
         clump = mskit.generate(grain, "mss", spheres=3, cells=10)
         things = [None, 0, -1, 2.5, 1e308, float("nan"), "", "x", "\0", b"a", [], [[1, 2, 3]], (1, 2), {"dice": None}, {1: 2},
                   numpy.zeros(3), numpy.zeros((3, 3)), numpy.zeros((2, 2, 2)), numpy.full((3, 3), numpy.nan), object(),
-                  True, 2**64, 10**400, numpy.int8(3), numpy.float32(0.1), numpy.datetime64("2020-01-01"), grain, clump, 1j,
+                  True, 2**64, 10**400, 1e-300, [[1], [2, 3], [4]], numpy.int8(3), numpy.float32(0.1), numpy.datetime64("2020-01-01"), grain, clump, 1j,
                   numpy.array(None), numpy.arange(12.0).reshape(3, 4), "/", lambda *_: 1]
         given = {"generate": "spheres until min_radius cells deq voxel_size max_voxels rule max_memory seed threads progress "
                  "spacing plane refine variant", "score": "cells cut threads rule", "curve": "cells progress",
@@ -101,6 +102,8 @@ class Refusals(PythonCase):
     def test_huge(self):
         """Views of one number, larger than any memory."""
         self.refused(mskit.LimitError, "more than is allowed", mskit.volume, numpy.broadcast_to(1, (10**4, 10**4, 10**6)))
+        self.refused(mskit.LimitError, "GB on their way", mskit.mesh, numpy.broadcast_to(0.5, (2 * 10**9, 3)), FACES)
+        self.refused(mskit.LimitError, "GB on their way", mskit.mesh, CORNERS, numpy.broadcast_to(0, (2 * 10**9, 3)))
         self.refused(mskit.LimitError, "more than 2147483647", mskit.mesh, numpy.broadcast_to(0.5, (10**12, 3)), FACES)
         self.refused(mskit.LimitError, "more than 2147483647", mskit.mesh, CORNERS, numpy.broadcast_to(0, (10**12, 3)))
 
@@ -144,7 +147,8 @@ class Refusals(PythonCase):
     def test_clumps(self):
         for centres, radii in [([], []), ([(0, 0, 0)], [0]), ([(0, 0, 0)], [-1]), ([(0, 0, 0)], [float("nan")]),
                                ([(0, 0, float("inf"))], [1]), ([(0, 0)], [1]), ([(0, 0, 0)], [1, 2]), ("ab", [1]), (None, None),
-                               (numpy.zeros((70000, 3)), numpy.ones(70000))]:
+                               (numpy.zeros((3, 2)), [1, 2]), (numpy.zeros((2, 3)), numpy.ones((2, 2))), ([0, 0, 0], 1),
+                               ([("0", "0", "0")], [1]), ([(0, 0, 1j)], [1]), (numpy.zeros((70000, 3)), numpy.ones(70000))]:
             self.refused(mskit.ArgumentError, "", mskit.Clump, centres, radii)
         for masses in ([1, 2], [0], [float("nan")], "x"):
             self.refused(mskit.ArgumentError, "masses are not 1 finite", mskit.Clump, [(0, 0, 0)], [1], masses)

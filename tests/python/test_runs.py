@@ -142,6 +142,13 @@ class Runs(PythonCase):
             self.assertEqual(found[cells], kept)
         self.assertEqual(len(found), 4)
 
+    def test_voxels_that_another_thread_lets_go_of_at_once(self):
+        """Each run works on its own all the same."""
+        shape = mskit.read(self.path(self.grain))
+        alone = mskit.generate(shape, "mss", spheres=5, cells=20)
+        shape.__class__ = type("Raced", (mskit.Shape,), {"_made": property(lambda self: None, lambda self, made: None)})
+        self.assertTrue((mskit.generate(shape, "mss", spheres=5, cells=20).spheres == alone.spheres).all())
+
     def test_to_another_process(self):
         clump = mskit.correct(mskit.generate(self.path(self.grain), "mss", spheres=5, cells=20), density=7, carriers=True)
         again = pickle.loads(pickle.dumps(clump))

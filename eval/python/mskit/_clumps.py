@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Tuple
 
 import numpy
 
-from ._errors import ArgumentError, Path, call, encode, find, remark, show, text, word
+from ._errors import ArgumentError, Path, as_floats, call, encode, find, remark, show, text, word
 from ._library import ffi, lib
 
 if TYPE_CHECKING:
@@ -48,10 +48,11 @@ class Clump:
     """
 
     def __init__(self, centres: Any, radii: Any, masses: Any = None) -> None:
-        try:
-            spheres = numpy.column_stack((numpy.asarray(centres, float).reshape(-1, 3), numpy.asarray(radii, float)))
-        except (TypeError, ValueError, OverflowError):
-            raise ArgumentError("centres are not rows of three numbers, with as many radii") from None
+        places, sizes = as_floats(centres), as_floats(radii)
+        if places.ndim != 2 or places.shape[1] != 3 or sizes.shape != places.shape[:1]:
+            raise ArgumentError(f"centres are not rows x, y, z with as many radii, but of shapes {places.shape} and "
+                                f"{sizes.shape}")
+        spheres = numpy.column_stack((places, sizes))
         lost = numpy.flatnonzero(~(numpy.isfinite(spheres).all(axis=1) & (spheres[:, 3] > 0)))
         if lost.size:
             raise ArgumentError(f"sphere {lost[0]} is x, y, z, r = {spheres[lost[0]].tolist()}: no finite numbers with "
@@ -135,10 +136,7 @@ def _freeze(array: numpy.ndarray) -> numpy.ndarray:
 
 
 def _check_masses(masses: Any, count: int) -> numpy.ndarray:
-    try:
-        array = numpy.array(masses, float)
-    except (TypeError, ValueError, OverflowError):
-        array = numpy.empty(0)
+    array = as_floats(masses)
     if array.shape != (count,) or not (numpy.isfinite(array) & (array > 0)).all():
         raise ArgumentError(f"masses are not {count} finite numbers above 0")
     return array
@@ -199,10 +197,7 @@ def as_clump(source: Any) -> Clump:
         return source
     if isinstance(source, (str, bytes, os.PathLike)):
         return read_clump(source)
-    try:
-        rows = numpy.asarray(source, float)
-    except (TypeError, ValueError, OverflowError):
-        rows = numpy.empty(0)
+    rows = as_floats(source)
     if rows.ndim != 2 or rows.shape[1] != 4:
         raise ArgumentError(f"{type(source).__name__} is no clump: give a Clump, a path or rows x, y, z, r")
     return Clump(rows[:, :3], rows[:, 3])

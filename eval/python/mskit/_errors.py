@@ -123,6 +123,20 @@ def flag(name: str, value: Any) -> bool:
     return bool(value)
 
 
+def as_array(values: Any) -> numpy.ndarray:
+    """Itself or as an array; empty, (0,), for what makes none, as rows of unequal lengths."""
+    try:
+        return numpy.asarray(values)
+    except (TypeError, ValueError, OverflowError):
+        return numpy.empty(0)
+
+
+def as_floats(values: Any) -> numpy.ndarray:
+    """A copy as float64; empty, (0,), for what are no real numbers."""
+    array = as_array(values)
+    return array.astype(numpy.float64) if array.dtype.kind in "biuf" else numpy.empty(0)
+
+
 def number(name: str, value: Any, low: float, high: float) -> float:
     """A finite number within bounds."""
     try:

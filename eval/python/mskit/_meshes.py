@@ -10,11 +10,13 @@ from typing import Any
 
 import numpy
 
-from ._errors import ArgumentError, LimitError, ShapeError, call, find, flag, number, remark, text, whole, word
+from ._errors import (ArgumentError, LimitError, ShapeError, as_array, call, find, flag, number, remark, text, whole,
+                      word)
 from ._library import ffi, lib
 from ._shapes import Bytes, Shape
 
 _MOST_ROWS = 2**31 - 1
+_BYTES_OF_ROW = 100  # of three doubles: a copy, its bytes, the PLY, and what is read from that
 _SIDES = (1e-50, 1e50)  # inertia goes with the fifth power of a length, which must neither overflow nor vanish
 
 
@@ -53,15 +55,15 @@ def _new_mesh() -> Any:
 
 
 def _check_rows(name: str, rows: Any, kinds: str) -> numpy.ndarray:
-    try:
-        array = numpy.asarray(rows)
-    except (ValueError, OverflowError):
-        array = numpy.empty(0)
+    array = as_array(rows)
     if array.ndim != 2 or array.shape[1] != 3 or len(array) == 0 or array.dtype.kind not in kinds:
         what = "numbers" if "f" in kinds else "whole numbers"
         raise ArgumentError(f"{name} are not rows of three {what}, but of shape {array.shape} and type {array.dtype}")
     if len(array) > _MOST_ROWS:
         raise LimitError(f"{len(array)} {name} are more than {_MOST_ROWS}; simplify the mesh")
+    if len(array) * _BYTES_OF_ROW > lib.ms_target_default_bytes():
+        raise LimitError(f"{len(array)} {name} take {len(array) * _BYTES_OF_ROW / 1e9:.3g} GB on their way, more than "
+                         "is allowed; simplify the mesh")
     return array
 
 

@@ -5,7 +5,7 @@ from typing import Any, Dict, Iterator, NamedTuple, Sequence, Tuple
 
 import numpy
 
-from ._errors import ArgumentError, call, encode, find, show, text, word
+from ._errors import ArgumentError, as_floats, call, encode, find, show, text, word
 from ._library import ffi, lib
 
 _TYPES = {lib.MS_OPTION_FLAG: "flag", lib.MS_OPTION_INTEGER: "integer", lib.MS_OPTION_REAL: "real",
@@ -98,10 +98,7 @@ def _words(name: str, value: Any) -> str:
 
 def _planes(name: str, value: Any) -> Sequence[str]:
     """One plane or several."""
-    try:
-        rows = numpy.asarray(value, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        rows = numpy.empty(0)
+    rows = as_floats(value)
     rows = rows.reshape(1, -1) if rows.ndim == 1 else rows
     if rows.ndim != 2 or rows.shape[1] != 4:
         raise ArgumentError(f"{name}={show(value)} is not four numbers a, b, c, d, or rows of them")

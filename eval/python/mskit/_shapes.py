@@ -144,10 +144,11 @@ class Shape:
 
     def c_target(self, grid: Grid, need: Any) -> Any:
         """The voxels with their distances, as generators take them; the last ones are kept."""
-        if self._made is None or self._made[0] != grid:
-            self._made = None  # frees them before others are made
-            self._made = (grid, self._make_target(grid, need))
-        return self._made[1]
+        made = self._made  # another thread may put others in its place meanwhile
+        if made is None or made[0] != grid:
+            made = self._made = None  # frees them before others are made
+            made = self._made = (grid, self._make_target(grid, need))
+        return made[1]
 
     def _make_target(self, grid: Grid, need: Any) -> Any:
         # They borrow the mesh, which must outlive them.
@@ -157,7 +158,7 @@ class Shape:
             h = self._choose_size(grid)
             extents = ffi.new("double[3]")
             lib.ms_voxelize_extents(extents, self._mesh, h)
-            self._check_bytes(extents, lib.ms_mesh_area(self._mesh) / (h * h), grid, need)
+            self._check_bytes(extents, lib.ms_mesh_area(self._mesh) / h / h, grid, need)
             solid = ffi.NULL if self._solid is None else self._solid
             call(lib.ms_target_voxels_from_solid, target, self._mesh, solid, h, rule, name=self.name)
         else:

@@ -4,9 +4,7 @@ from __future__ import annotations
 import os
 from typing import Any, Dict
 
-import numpy
-
-from ._errors import ArgumentError, FormatError, Path, encode, text
+from ._errors import ArgumentError, FormatError, Path, as_array, encode, text
 from ._library import lib
 from ._meshes import mesh, read_mesh
 from ._shapes import Shape
@@ -48,6 +46,6 @@ def as_shape(source: Any) -> Shape:
         return mesh(source.vertices, source.faces)
     if isinstance(source, (tuple, list)) and len(source) == 2:
         return mesh(*source)
-    if numpy.ndim(source) == 3:
+    if as_array(source).ndim == 3:
         return volume(source)
     raise ArgumentError(f"{type(source).__name__} is no shape: give a path, (vertices, faces) or an array [z, y, x]")

@@ -11,7 +11,7 @@ from typing import Any, Iterator, List, Optional, Sequence, Union
 
 import numpy
 
-from ._errors import ArgumentError, FormatError, LimitError, call, encode, flag, number, show, whole
+from ._errors import ArgumentError, FormatError, LimitError, as_array, call, encode, flag, number, show, whole
 from ._library import ffi, lib
 from ._shapes import Bytes, Shape
 
@@ -56,7 +56,7 @@ class Scan:
 
     def open_array(self, array: Any) -> "Scan":
         """As a file in memory; its index is [z, y, x], whatever the order of its bytes."""
-        array = numpy.asarray(array)
+        array = as_array(array)
         if array.ndim != 3 or array.size == 0 or array.dtype.kind not in "biuf":
             raise ArgumentError(f"a volume is an array of numbers [z, y, x], not of shape {array.shape} and type "
                                 f"{array.dtype}")
@@ -99,7 +99,7 @@ def _max_scan() -> int:
 
 def _three(name: str, value: Any, low: float) -> Sequence[float]:
     """One number for all three axes, or three."""
-    values = [value] * 3 if numpy.ndim(value) == 0 else list(value)
+    values = [value] * 3 if as_array(value).ndim == 0 else list(value)
     if len(values) != 3:
         raise ArgumentError(f"{name}={show(value)} is neither one number nor three")
     return [number(name, each, low, 1e300) for each in values]
