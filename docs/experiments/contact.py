@@ -16,9 +16,9 @@ import subprocess
 import sys
 import tempfile
 
+import contact_tables
 import dem
 import oracle
-import tables
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 MSKIT = os.path.abspath(os.environ.get("MSKIT", "build/eval/mskit"))
@@ -262,7 +262,7 @@ def run_steps(folder):
 
 
 def run_tables(_):
-    tables.fill()
+    contact_tables.fill()
 
 
 def main():

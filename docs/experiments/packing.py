@@ -4,7 +4,8 @@ volume of the candy.
 
     docs/experiments/packing.py [--spheres N] [--seeds K] [--step SECONDS] [--work FOLDER] [--most MINUTES]
 
-Adds a row a packing to packing.csv beside it; rows that are there are not run again. MSKIT names the program
+Adds a row a packing to packing.csv beside it; rows that are there are not run again. Then puts the table of all of them
+into docs/behaviour.md, which --seeds 0 does alone. MSKIT names the program
 (build/eval/mskit), LIGGGHTS the engine (liggghts). Numbers of the table are Yuan's (table 3); his time step is 5e-7 s.
 
 What is measured, as fixed before the first run, of the particles at rest (kinetic energy below 1e-6 m g d each):
@@ -19,6 +20,7 @@ import math
 import os
 import re
 import resource
+import statistics
 import subprocess
 import sys
 import time
@@ -26,6 +28,8 @@ import time
 import numpy
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, ".."))
+import tables  # noqa: E402
 MSKIT = os.environ.get("MSKIT", os.path.join(HERE, "..", "..", "build", "eval", "mskit"))
 LIGGGHTS = os.environ.get("LIGGGHTS", "liggghts")
 TABLE = os.path.join(HERE, "packing.csv")
@@ -161,6 +165,22 @@ def pack(folder, n, seed, step):
             "version": version}
 
 
+def make_table():
+    """Mean and standard deviation over the packings by one clump and step."""
+    rows, out = tables.read(TABLE), []
+    for n, step in dict.fromkeys((row["n"], row["step"]) for row in rows):
+        these = [row for row in rows if (row["n"], row["step"]) == (n, step)]
+
+        def spread(name, digits, these=these):
+            values = [float(row[name]) for row in these]
+            deviation = f" +- {statistics.stdev(values):.{digits}f}" if len(values) > 1 else ""
+            return f"{statistics.mean(values):.{digits}f}{deviation}"
+        out.append([n, f"{float(these[0]['dice']):.4f}", step, str(len(these)), spread("height_envelope", 1),
+                    spread("height_top", 1), spread("fraction", 4), spread("cpu_seconds", 0)])
+    return tables.markdown(["spheres", "D", "step, s", "packings", "mean of the upper envelope, mm", "highest point, mm",
+                            "packing fraction", "CPU s"], out)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--spheres", type=int, default=10, help="of a candy (10)")
@@ -170,10 +190,7 @@ def main():
     parser.add_argument("--most", type=float, default=1e9, help="no packing is begun after so many minutes")
     asked = parser.parse_args()
     os.makedirs(asked.work, exist_ok=True)
-    start, rows = time.time(), []
-    if os.path.exists(TABLE):
-        with open(TABLE, newline="", encoding="utf-8") as stream:
-            rows = list(csv.DictReader(stream))
+    start, rows = time.time(), tables.read(TABLE) if os.path.exists(TABLE) else []
     there = {(int(row["n"]), int(row["seed"]), float(row["step"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
         if (asked.spheres, seed, asked.step) in there or time.time() - start > 60 * asked.most:
@@ -187,6 +204,7 @@ def main():
             writer.writerow(row)
         print(", ".join(f"{name} {row[name]}" for name in ("n", "seed", "height_envelope", "height_top", "fraction",
                                                            "cpu_seconds")), flush=True)
+    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"packing": make_table()})
 
 
 if __name__ == "__main__":

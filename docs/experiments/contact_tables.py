@@ -1,22 +1,18 @@
 """The tables of docs/behaviour.md from the CSV files beside this one."""
-import csv
 import os
-import re
+import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, ".."))
+import tables  # noqa: E402
+from tables import markdown  # noqa: E402
+
 DOCUMENT = os.path.join(HERE, "..", "behaviour.md")
 ENGINES = ("LIGGGHTS", "LAMMPS", "YADE")
 
 
 def read(name):
-    path = os.path.join(HERE, f"contact-{name}.csv")
-    with open(path, encoding="ascii") as f:
-        return list(csv.DictReader(f))
-
-
-def markdown(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+    return tables.read(os.path.join(HERE, f"contact-{name}.csv"))
 
 
 def pick(rows, **wanted):
@@ -130,12 +126,4 @@ TABLES = {"locked": lambda: table_impacts("locked"), "free": lambda: table_impac
 
 
 def fill():
-    with open(DOCUMENT, encoding="utf-8") as f:
-        text = f.read()
-    for name, make in TABLES.items():
-        text, count = re.subn(rf"(?s)(<!-- {name} -->\n).*?(<!-- end -->)",
-                              lambda m, make=make: f"{m[1]}{make()}\n{m[2]}", text)
-        if count != 1:
-            raise SystemExit(f"{DOCUMENT} has {count} places for the table {name}")
-    with open(DOCUMENT, "w", encoding="utf-8") as f:
-        f.write(text)
+    tables.fill(DOCUMENT, {name: make() for name, make in TABLES.items()})
