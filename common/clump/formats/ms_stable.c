@@ -21,8 +21,8 @@ static double yield_at(const double p[3], const ms_particle *particle)
     return 1 / particle->mass + (t + sqrt(fmax(t * t - 4 * d, 0))) / 2;
 }
 
-/* The same at the worst of seven points of a sphere: that farthest from the centre of mass, and its ends along the axes,
- * where a slim body is twisted. */
+/* The same at the worst of seven points of a sphere: that farthest from the centre of mass, and its ends along the
+ * axes, where a slim body is twisted. */
 static double yield_of(const ms_sphere *sphere, double scale, const ms_particle *particle)
 {
     const double *c = sphere->centre;
