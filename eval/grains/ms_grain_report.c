@@ -1,6 +1,5 @@
 #include "ms_grain_report.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,9 +22,8 @@ static const char *const SHOWN[] = {"grain",          "source",  "label",       
 
 enum { N_SHOWN = sizeof SHOWN / sizeof *SHOWN };
 
-/* What a row has to show. */
+/* A row with a clump. */
 typedef struct shown_grain {
-    ms_grain_found found;
     size_t row;
     double dice;
 } shown_grain;
@@ -34,7 +32,7 @@ typedef struct shown_grain {
 typedef struct grains_page {
     const ms_grains *g;
     const ms_csv *csv;
-    shown_grain *grain; /* those with a clump, in the order of the rows */
+    shown_grain *grain; /* in the order of the rows */
     size_t count;
     long *scene; /* of each row; -1: none */
 } grains_page;
@@ -88,12 +86,12 @@ static ms_status find_clumps(grains_page *w, ms_error *err)
     const char *dice = ms_measure_column(&ms_measures[MS_MEASURE_DICE], ms_measures[MS_MEASURE_DICE].in_compare);
     ms_status status = MS_OK;
     for (size_t r = 0; r < w->csv->n_rows && status == MS_OK; r++) {
-        shown_grain *grain = &w->grain[w->count];
-        grain->row = r;
-        status = ms_grain_row_find(&grain->found, w->csv->row[r], err);
-        if (status == MS_OK && grain->found.status == MS_GRAIN_OK) {
+        ms_grain_found found;
+        status = ms_grain_row_find(&found, w->csv->row[r], err);
+        if (status == MS_OK && found.status == MS_GRAIN_OK) {
+            shown_grain *grain = &w->grain[w->count++];
+            grain->row = r;
             status = ms_grain_row_number(&grain->dice, dice, w->csv->row[r], err);
-            w->count++;
         }
     }
     return status;
@@ -179,20 +177,20 @@ static ms_status read_grain(ms_input *input, ms_target *target, const ms_grain *
     return status == MS_OK ? ms_input_show(target, input, grain->label, err) : status;
 }
 
-static ms_status put_clump(FILE *stream, const grains_page *w, const shown_grain *shown, ms_error *err)
+static ms_status put_clump(FILE *stream, const grains_page *w, const ms_grain_found *found, ms_error *err)
 {
-    const ms_grain *grain = &w->g->list->grain[(size_t)shown->found.number - 1];
+    const ms_grain *grain = &w->g->list->grain[(size_t)found->number - 1];
     const ms_recipe *recipe = &grain->how->recipe;
     char name[512];
     ms_input input = {0};
     ms_target target;
     ms_clump clump = {0};
-    ms_status status = read_clump(&clump, &shown->found, w->g, err);
+    ms_status status = read_clump(&clump, found, w->g, err);
     if (status == MS_OK) {
         status = read_grain(&input, &target, grain, w->g, err);
     }
     if (status == MS_OK) {
-        snprintf(name, sizeof name, "grain %.0f, %.300s, %.40s, %zu spheres", shown->found.number, grain->name,
+        snprintf(name, sizeof name, "grain %.0f, %.300s, %.40s, %zu spheres", found->number, grain->name,
                  recipe->generator->name, clump.n_spheres);
         const ms_view_scene scene = {.name = name,
                                      .clump = &clump,
@@ -214,8 +212,10 @@ static ms_status write_page(FILE *stream, grains_page *w, int argc, char *const 
         status = begin_page(stream, w, argc, argv, err);
     }
     for (size_t k = 0; k < w->count && status == MS_OK; k++) {
+        ms_grain_found found;
         fputs(k > 0 ? "," : "", stream);
-        status = put_clump(stream, w, &w->grain[k], err);
+        status = ms_grain_row_find(&found, w->csv->row[w->grain[k].row], err);
+        status = status == MS_OK ? put_clump(stream, w, &found, err) : status;
     }
     ms_view_page_end(stream);
     return status;

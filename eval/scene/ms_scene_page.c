@@ -1,8 +1,6 @@
 #include "ms_scene_page.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
