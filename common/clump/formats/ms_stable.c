@@ -21,8 +21,7 @@ static double yield_at(const double p[3], const ms_particle *particle)
     return 1 / particle->mass + (t + sqrt(fmax(t * t - 4 * d, 0))) / 2;
 }
 
-/* The same at the worst of seven points of a sphere: that farthest from the centre of mass, and its ends along the
- * axes, where a slim body is twisted. */
+/* The same at the point of a sphere that is farthest from the centre of mass. */
 static double yield_of(const ms_sphere *sphere, double scale, const ms_particle *particle)
 {
     const double *c = sphere->centre;
@@ -31,10 +30,17 @@ static double yield_of(const ms_sphere *sphere, double scale, const ms_particle 
     for (int k = 0; off > 0 && k < 3; k++) {
         p[k] = scale * c[k] * (1 + sphere->radius / off);
     }
-    double most = yield_at(p, particle);
+    return yield_at(p, particle);
+}
+
+/* The greatest at its ends along the axes: there a slim body is twisted. */
+static double yield_of_ends(const ms_sphere *sphere, double scale, const ms_particle *particle)
+{
+    double most = 0;
     for (int end = 0; end < 6; end++) {
+        double p[3];
         for (int k = 0; k < 3; k++) {
-            p[k] = scale * (c[k] + (k == end / 2 ? (end % 2 ? sphere->radius : -sphere->radius) : 0));
+            p[k] = scale * (sphere->centre[k] + (k == end / 2 ? (end % 2 ? sphere->radius : -sphere->radius) : 0));
         }
         most = fmax(most, yield_at(p, particle));
     }
@@ -58,9 +64,10 @@ void ms_stable_step(double *one, double *all, const ms_clump *clump, double scal
         const ms_sphere *sphere = &clump->sphere[i];
         const double stiffness = modulus * sqrt(scale * sphere->radius * law->overlap);
         const double yield = yield_of(sphere, scale, particle);
-        *one = fmin(*one, largest_step(stiffness * yield, sqrt(stiffness) * yield, particle->mass));
+        const double most = fmax(yield, yield_of_ends(sphere, scale, particle));
+        *one = fmin(*one, largest_step(stiffness * most, sqrt(stiffness) * most, particle->mass));
         square += stiffness * yield;
         drag += sqrt(stiffness) * yield;
     }
-    *all = largest_step(square, drag, particle->mass);
+    *all = fmin(*one, largest_step(square, drag, particle->mass));
 }

@@ -15,9 +15,9 @@ typedef struct ms_stable_law {
 /**
  * Largest stable steps against a body of its kind, by Hertz: 2/omega (root(1 + z^2) - z) of integrators that take the
  * velocity of half a step before for the damping. omega^2 and the ratio of damping z are those of contacts that are as
- * stiff along the plane as across it, at the worst of seven points of each sphere: that farthest from the centre of
- * mass, and its ends along the axes; those of many at once are added as if they all moved the body the same way. A
- * plane of the same stuff allows steps that are longer by 2^(1/4).
+ * stiff along the plane as across it. One is at the worst of seven points of a sphere, that farthest from the centre of
+ * mass and its ends along the axes; many are at the farthest point of each sphere, and added as if they all moved the
+ * body the same way. A plane of the same stuff allows steps that are longer by 2^(1/4).
  *
  * @param[out] one  s, on one contact, of the sphere that makes it shortest
  * @param[out] all  s, on one contact of each sphere at once
