@@ -46,6 +46,9 @@ typedef struct ms_chart {
 /** What ms_chart_write and ms_chart_draw put behind the stem; ends with NULL. */
 extern const char *const MS_CHART_ENDINGS[];
 
+/** Series of one chart whose looks are the same by chance get others of the same colour, but those of one name. */
+void ms_chart_part_looks(ms_chart_series *series, size_t count);
+
 /**
  * Whether there is anything that a chart shows and a sentence does not: two points, and where curves go by x, a curve
  * of two.
