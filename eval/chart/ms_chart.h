@@ -21,7 +21,7 @@ typedef enum ms_chart_style {
     MS_CHART_CURVE,  /* points joined by a line; line and point types differ from series to series */
     MS_CHART_POINTS, /* points alone */
     MS_CHART_LINE,   /* a grey line without points */
-    MS_CHART_LEVEL,  /* a dashed line across the chart at y; x does not count */
+    MS_CHART_LEVEL,  /* a line across the chart at y; x does not count */
     MS_CHART_BAND,   /* pale, in the colour of the next curve and not in the legend */
     MS_CHART_FRONT   /* a broad grey staircase behind the rest: y falls at each x, and holds from there on */
 } ms_chart_style;

@@ -249,7 +249,7 @@ static void bars_and_levels(void **state)
     const ms_chart_point level[] = {{.x = (double)NAN, .y = 2, .label = "7"}};
     const ms_chart_series series[] = {
         {.name = "s", .style = MS_CHART_CURVE, .count = 2, .point = timed, .look = {3, 0}},
-        {.name = "l", .style = MS_CHART_LEVEL, .count = 1, .point = level, .look = {MS_CHART_LOOK_OTHER, 0}}};
+        {.name = "l", .style = MS_CHART_LEVEL, .count = 1, .point = level, .look = {MS_CHART_LOOK_OTHER, 2}}};
     const ms_chart chart = {
         .title = "t", .note = "how", .x_label = "x", .y_label = "y", .n_series = 2, .series = series};
     assert_int_equal(ms_chart_write(&chart, "test-bars", &err), MS_OK);
@@ -259,7 +259,7 @@ static void bars_and_levels(void **state)
     read_text(text, sizeof text, "test-bars.gp");
     assert_non_null(strstr(text, "set xrange [1.55:11.45]"));
     assert_non_null(strstr(text, "using 1:2:4:5 with xerrorbars pt 0 lw 1.5 lc rgb '#0072b2'"));
-    assert_non_null(strstr(text, "index 1 using 1:2 with lines dt 2 lw 2 lc rgb '#777777'"));
+    assert_non_null(strstr(text, "index 1 using 1:2 with lines dt 3 lw 2 lc rgb '#777777'"));
     assert_null(strstr(text, "'7'"));
     assert_non_null(strstr(text, "'how' at graph 0.5,1 center"));
 }
