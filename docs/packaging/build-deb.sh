@@ -10,7 +10,8 @@ work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/mskit" "$work/mskit/debian"
 # The tree as it is, without what was built in it. Debian's folder stands at the top of a source package.
-tar -cf - --exclude-vcs --exclude='./build*' --exclude='./packages' --exclude='./demo' . | tar -xf - -C "$work/mskit"
+tar -cf - --exclude-vcs --exclude='./build*' --exclude='./packages' --exclude='./demo' --exclude='./venv' . |
+    tar -xf - -C "$work/mskit"
 cp -r docs/packaging/debian/. "$work/mskit/debian"
 (cd "$work/mskit" && dpkg-buildpackage --no-sign --build=binary)
 mkdir -p "$out"

@@ -20,6 +20,30 @@ static double find_top(const ms_chart *chart, const ms_chart_series *series, con
     return ms_chart_parts_lift(chart, series->style == MS_CHART_BAND ? point->top : point->y);
 }
 
+static int is_look_taken(const ms_chart_series *series, size_t s)
+{
+    const ms_chart_look look = series[s].look;
+    int taken = 0;
+    for (size_t before = 0; before < s && look.family != 0; before++) {
+        taken |= series[before].look.family == look.family && series[before].look.variant == look.variant &&
+                 strcmp(series[before].name, series[s].name) != 0;
+    }
+    return taken;
+}
+
+void ms_chart_part_looks(ms_chart_series *series, size_t count)
+{
+    for (size_t s = 0; s < count; s++) {
+        const ms_chart_look own = series[s].look;
+        while (is_look_taken(series, s)) {
+            series[s].look = ms_chart_look_next(series[s].look);
+            if (series[s].look.variant == own.variant) {
+                break; /* all are taken */
+            }
+        }
+    }
+}
+
 static int has_marks(const ms_chart_series *series)
 {
     return series->style == MS_CHART_CURVE || series->style == MS_CHART_POINTS;

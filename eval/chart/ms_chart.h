@@ -21,7 +21,7 @@ typedef enum ms_chart_style {
     MS_CHART_CURVE,  /* points joined by a line; line and point types differ from series to series */
     MS_CHART_POINTS, /* points alone */
     MS_CHART_LINE,   /* a grey line without points */
-    MS_CHART_LEVEL,  /* a dashed line across the chart at y; x does not count */
+    MS_CHART_LEVEL,  /* a line across the chart at y; x does not count */
     MS_CHART_BAND,   /* pale, in the colour of the next curve and not in the legend */
     MS_CHART_FRONT   /* a broad grey staircase behind the rest: y falls at each x, and holds from there on */
 } ms_chart_style;
@@ -45,6 +45,9 @@ typedef struct ms_chart {
 
 /** What ms_chart_write and ms_chart_draw put behind the stem; ends with NULL. */
 extern const char *const MS_CHART_ENDINGS[];
+
+/** Series of one chart whose looks are the same by chance get others of the same colour, but those of one name. */
+void ms_chart_part_looks(ms_chart_series *series, size_t count);
 
 /**
  * Whether there is anything that a chart shows and a sentence does not: two points, and where curves go by x, a curve

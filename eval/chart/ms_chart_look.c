@@ -19,6 +19,11 @@ int ms_chart_look_variant(const char *text)
     return 1 + (int)(sum % (POINTS - 1));
 }
 
+ms_chart_look ms_chart_look_next(ms_chart_look look)
+{
+    return (ms_chart_look){look.family, look.variant % (POINTS - 1) + 1};
+}
+
 /* Which of the points and dashes, from 0. */
 static int find_mark(ms_chart_look look, int place)
 {

@@ -13,6 +13,9 @@ enum { MS_CHART_LOOK_OTHER = -1 };
 /** From 1 to the number of points less 1: which variant a text goes with, as the options of a method. */
 int ms_chart_look_variant(const char *text);
 
+/** The next variant; from the last one the first. */
+ms_chart_look ms_chart_look_next(ms_chart_look look);
+
 /** The colour: a hash and six hexadecimal digits. @param place of the series in its chart, from 0 */
 const char *ms_chart_look_colour(ms_chart_look look, int place);
 

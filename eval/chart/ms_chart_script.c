@@ -63,7 +63,7 @@ static void put_series(FILE *stream, const ms_chart_series *series, int index, i
     } else if (series->style == MS_CHART_LINE) {
         fputs("with lines lw 4 lc rgb '#999999'", stream);
     } else if (series->style == MS_CHART_LEVEL) {
-        fprintf(stream, "with lines dt 2 lw 2 lc rgb '%s'", colour);
+        fprintf(stream, "with lines dt %d lw 2 lc rgb '%s'", dash, colour);
     } else if (series->style == MS_CHART_POINTS) {
         fprintf(stream, "with points pt %d ps 1.3 lw 2 lc rgb '%s'", type, colour);
     } else {

@@ -201,6 +201,7 @@ static ms_status fill_draft(draft *d, const records *all, const ms_compare_recor
             d->n_points += count;
         }
     }
+    ms_chart_part_looks(d->series, d->n_series);
     if (k->front) {
         ms_chart_point *front = d->point + d->n_points;
         const size_t count = ms_chart_pareto(front, d->point, d->n_points);

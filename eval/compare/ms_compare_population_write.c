@@ -257,6 +257,7 @@ static void fill_curves(curves *d, const ms_compare_population *p, ms_column col
         d->series[2 * m] = (ms_chart_series){d->name[m], MS_CHART_BAND, p->n_numbers, band, look};
         d->series[2 * m + 1] = (ms_chart_series){d->name[m], MS_CHART_CURVE, p->n_numbers, curve, look};
     }
+    ms_chart_part_looks(d->series, 2 * p->n_methods);
 }
 
 static ms_status draw_population(const ms_compare_population *p, curves *d, const char *stem, const char *label,

@@ -249,7 +249,7 @@ static void bars_and_levels(void **state)
     const ms_chart_point level[] = {{.x = (double)NAN, .y = 2, .label = "7"}};
     const ms_chart_series series[] = {
         {.name = "s", .style = MS_CHART_CURVE, .count = 2, .point = timed, .look = {3, 0}},
-        {.name = "l", .style = MS_CHART_LEVEL, .count = 1, .point = level, .look = {MS_CHART_LOOK_OTHER, 0}}};
+        {.name = "l", .style = MS_CHART_LEVEL, .count = 1, .point = level, .look = {MS_CHART_LOOK_OTHER, 2}}};
     const ms_chart chart = {
         .title = "t", .note = "how", .x_label = "x", .y_label = "y", .n_series = 2, .series = series};
     assert_int_equal(ms_chart_write(&chart, "test-bars", &err), MS_OK);
@@ -259,7 +259,7 @@ static void bars_and_levels(void **state)
     read_text(text, sizeof text, "test-bars.gp");
     assert_non_null(strstr(text, "set xrange [1.55:11.45]"));
     assert_non_null(strstr(text, "using 1:2:4:5 with xerrorbars pt 0 lw 1.5 lc rgb '#0072b2'"));
-    assert_non_null(strstr(text, "index 1 using 1:2 with lines dt 2 lw 2 lc rgb '#777777'"));
+    assert_non_null(strstr(text, "index 1 using 1:2 with lines dt 3 lw 2 lc rgb '#777777'"));
     assert_null(strstr(text, "'7'"));
     assert_non_null(strstr(text, "'how' at graph 0.5,1 center"));
 }
@@ -281,6 +281,29 @@ static void looks_belong_to_what_they_are_of(void **state)
         }
     }
     assert_string_equal(ms_chart_look_colour((ms_chart_look){0}, 1), ms_chart_look_colour((ms_chart_look){2, 0}, 0));
+}
+
+/* These two options have one variant by chance; a band and its curve are of one name and stay alike. */
+static void looks_of_one_chart_differ(void **state)
+{
+    (void)state;
+    const ms_chart_look look = {3, ms_chart_look_variant("spacing=1.5")};
+    assert_int_equal(ms_chart_look_variant("spacing=2"), look.variant);
+    char name[24][8];
+    ms_chart_series series[24];
+    for (int s = 0; s < 24; s++) {
+        snprintf(name[s], sizeof name[s], "%d", s / 2);
+        series[s] = (ms_chart_series){.name = name[s], .style = s % 2 ? MS_CHART_CURVE : MS_CHART_BAND, .look = look};
+    }
+    ms_chart_part_looks(series, 24);
+    for (int s = 0; s < 20; s++) {
+        assert_int_equal(series[s].look.family, 3);
+        for (int before = 0; before < s; before++) {
+            assert_int_equal(ms_chart_look_point(series[s].look, 0) == ms_chart_look_point(series[before].look, 0),
+                             s / 2 == before / 2);
+        }
+    }
+    assert_int_equal(series[0].look.variant, look.variant);
 }
 
 static void what_is_refused(void **state)
@@ -310,6 +333,7 @@ int main(void)
         cmocka_unit_test(a_point_is_no_chart),
         cmocka_unit_test(bars_and_levels),
         cmocka_unit_test(looks_belong_to_what_they_are_of),
+        cmocka_unit_test(looks_of_one_chart_differ),
         cmocka_unit_test(what_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
