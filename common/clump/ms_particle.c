@@ -23,12 +23,18 @@ static ms_status check_particle(ms_particle *particle, ms_error *err)
     return MS_OK;
 }
 
+/* No body is as dense, and what follows from it, as the modulus that bears a drop, stays finite. */
+static const double MOST_DENSITY = 1e30;
+
 ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, double density, double scale, ms_error *err)
 {
     *particle = (ms_particle){0};
     if (!is_positive(density) || !is_positive(scale) || !is_positive(body->volume)) {
         return ms_fail(err, MS_ERR_ARG, "density %g, scale %g and volume %g must be above 0 and finite", density, scale,
                        body->volume);
+    }
+    if (density > MOST_DENSITY) {
+        return ms_fail(err, MS_ERR_ARG, "a density of %g kg/m^3 is that of no body; at most %g", density, MOST_DENSITY);
     }
     particle->scale = scale;
     particle->density = density;

@@ -66,6 +66,7 @@ static void a_ball_in_millimetres(void **state)
     expect_close(p.centre[2], 3, 0);
     expect_close(ms_particle_gyration(&p), 2 * sqrt(0.6), 1e-14);
     assert_int_equal(ms_particle_from_body(&p, &ball, 0, 1, NULL), MS_ERR_ARG);
+    assert_int_equal(ms_particle_from_body(&p, &ball, 1e31, 1, NULL), MS_ERR_ARG);
     assert_int_equal(ms_particle_from_body(&p, &ball, 1, (double)NAN, NULL), MS_ERR_ARG);
     assert_int_equal(ms_particle_from_body(&p, &ball, 1, 1e-200, NULL), MS_ERR_ARG);
     ball.volume = 0;
