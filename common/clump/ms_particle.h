@@ -22,7 +22,8 @@ typedef struct ms_particle {
  * @param      body     its shape, of unit density, in the clump's unit
  * @param      density  kg/m^3, at most 1e30
  * @param      scale    metres in a unit of length of the clump
- * @return MS_OK; MS_ERR_ARG where a value is not above 0 and within bounds, or mass or inertia leave the range of doubles
+ * @return MS_OK; MS_ERR_ARG where a value is not above 0 and within bounds, or mass or inertia leave the range of
+ *         doubles
  */
 MS_API ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, double density, double scale,
                                        ms_error *err);
