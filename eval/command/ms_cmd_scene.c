@@ -12,6 +12,7 @@
 #include "cli/ms_until.h"
 #include "clump/formats/ms_json.h"
 #include "ms_commands.h"
+#include "scene/ms_scene_choose.h"
 #include "scene/ms_scene_engines.h"
 #include "scene/ms_scene_page.h"
 

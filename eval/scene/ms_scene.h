@@ -79,14 +79,14 @@ ms_status ms_scene_make(ms_scene *scene, const ms_manifest *manifest, const ms_s
  * whose numbers are runs of their own. Then one sphere less was run, too, and did not reach it. */
 int ms_scene_is_searched(const ms_goal *goal, const ms_recipe *recipe);
 
-/** Chooses a template of each shape. @return MS_OK; MS_ERR_LIMIT; MS_ERR_NOMEM; as ms_allocate_budget and _error */
-ms_status ms_scene_choose(ms_scene *scene, const ms_goal *goal, ms_error *err);
-
 const ms_clump *ms_scene_clump(const ms_scene_shape *shape);
 const ms_score *ms_scene_score(const ms_scene_shape *shape);
 
 /** By how much the last sphere of the template lessened D; NAN for one of a single sphere. */
 double ms_scene_gain(const ms_scene_shape *shape);
+
+/** D of its templates for the choice among shapes; borrowed from it. */
+ms_share ms_scene_share(const ms_scene_shape *shape);
 
 /** The shape with the smallest sphere. */
 const ms_scene_shape *ms_scene_smallest(const ms_scene *scene);
