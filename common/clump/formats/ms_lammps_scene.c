@@ -1,22 +1,7 @@
 /* LAMMPS: a script that lets the particles of a scene come to rest. */
-#include <math.h>
-
 #include "ms_formats.h"
 #include "ms_lammps.h"
 #include "ms_script_scene.h"
-
-/* What the user may set on the command line. The restitution goes through a polynomial (docs/templates.md). */
-static void write_lammps_settings(FILE *stream, const ms_script_scene *s)
-{
-    ms_number young, step;
-    fprintf(stream,
-            "variable young index %s\nvariable poisson index 0.3\n"
-            "variable restitution index 0.3667 # makes 0.5: docs/templates.md of mskit says how\n"
-            "variable friction index 0.5\n",
-            ms_script_number(s->young, &young));
-    fprintf(stream, "variable step equal %s*sqrt(%s/${young})\n", ms_script_number(s->step, &step), young.text);
-    fprintf(stream, "variable part equal ceil(%s/10/v_step)\n\n", ms_script_number(s->fall, &step));
-}
 
 static void write_lammps_box(FILE *stream, const ms_script_scene *s)
 {
@@ -77,11 +62,7 @@ static void write_lammps_particles(FILE *stream, const ms_packing *scene, const 
     for (size_t k = 0; k < scene->count; k++) {
         fprintf(stream, "unfix insert%zu\n", k);
     }
-    fprintf(stream,
-            "variable inserted equal atoms\n"
-            "if \"${inserted} != %.0f\" then \"print 'scene: not all particles have room; make the column higher'\" "
-            "\"quit 1\"\n\n",
-            s->spheres + s->carriers);
+    ms_script_scene_inserted(stream, s->spheres + s->carriers);
 }
 
 static void write_lammps_vessel(FILE *stream, const ms_script_scene *s)
@@ -115,10 +96,8 @@ static const char MEASURES[] = "compute sphere all property/atom radius\n"
 
 static void write_lammps_measures(FILE *stream, const ms_script_scene *s)
 {
-    ms_number a;
     fputs(MEASURES, stream);
-    fprintf(stream, "variable fraction equal c_within/(%s*0.5*v_height)\n",
-            ms_script_number(s->density * ms_script_scene_area(s), &a));
+    ms_script_scene_fraction(stream, s);
     fputs("thermo_style custom step atoms v_mass v_kinetic v_total v_height v_highest v_fraction\nthermo ${part}\n"
           "thermo_modify lost error\n\n",
           stream);
@@ -169,7 +148,8 @@ ms_status ms_lammps_scene(FILE *stream, const ms_packing *scene, const char *nam
     const ms_script_scene s = ms_script_scene_of(scene, 1);
     (void)err;
     ms_script_scene_title(stream, &s, scene, name, "lmp -in", ".in");
-    write_lammps_settings(stream, &s);
+    /* through a polynomial (docs/templates.md) */
+    ms_script_scene_settings(stream, &s, "0.3667 # makes 0.5: docs/templates.md of mskit says how");
     write_lammps_box(stream, &s);
     write_lammps_matter(stream);
     write_lammps_particles(stream, scene, &s);

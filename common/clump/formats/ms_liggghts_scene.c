@@ -4,18 +4,6 @@
 #include "ms_liggghts.h"
 #include "ms_script_scene.h"
 
-/* What the user may set on the command line. */
-static void write_liggghts_settings(FILE *stream, const ms_script_scene *s)
-{
-    ms_number young, step;
-    fprintf(stream,
-            "variable young index %s\nvariable poisson index 0.3\nvariable restitution index 0.5\n"
-            "variable friction index 0.5\n",
-            ms_script_number(s->young, &young));
-    fprintf(stream, "variable step equal %s*sqrt(%s/${young})\n", ms_script_number(s->step, &step), young.text);
-    fprintf(stream, "variable part equal ceil(%s/10/v_step)\n\n", ms_script_number(s->fall, &step));
-}
-
 static void write_liggghts_box(FILE *stream, const ms_script_scene *s)
 {
     ms_number x, y, low, top;
@@ -126,16 +114,12 @@ static const char MEASURES[] =
 /* After the first step, when there are particles: before, sums over them are 0. */
 static void write_liggghts_measures(FILE *stream, const ms_packing *scene, const ms_script_scene *s)
 {
-    ms_number a;
-    fprintf(stream,
-            "run 1\nvariable inserted equal atoms\n"
-            "if \"${inserted} != %.0f\" then \"print 'scene: not all particles have room; make the column higher'\" "
-            "\"quit 1\"\n\ncompute sphere all property/atom radius mass\n",
-            s->spheres);
+    fputs("run 1\n", stream);
+    ms_script_scene_inserted(stream, s->spheres);
+    fputs("compute sphere all property/atom radius mass\n", stream);
     write_liggghts_shares(stream, scene);
     fputs(MEASURES, stream);
-    fprintf(stream, "variable fraction equal c_within/(%s*0.5*v_height)\n",
-            ms_script_number(s->density * ms_script_scene_area(s), &a));
+    ms_script_scene_fraction(stream, s);
     fputs("thermo_style custom step atoms v_mass v_kinetic v_total v_height c_high v_fraction\n"
           "thermo ${part}\nthermo_modify lost error\n\n",
           stream);
@@ -164,7 +148,7 @@ ms_status ms_liggghts_scene(FILE *stream, const ms_packing *scene, const char *n
     const ms_script_scene s = ms_script_scene_of(scene, 0);
     (void)err;
     ms_script_scene_title(stream, &s, scene, name, "liggghts -in", ".in");
-    write_liggghts_settings(stream, &s);
+    ms_script_scene_settings(stream, &s, "0.5");
     write_liggghts_box(stream, &s);
     write_liggghts_matter(stream, &s);
     write_liggghts_particles(stream, scene);

@@ -140,6 +140,33 @@ double ms_script_scene_area(const ms_script_scene *s)
     return s->is_round ? PI * s->half[0] * s->half[0] : 4 * s->half[0] * s->half[1];
 }
 
+void ms_script_scene_settings(FILE *stream, const ms_script_scene *s, const char *restitution)
+{
+    ms_number young, number;
+    fprintf(stream,
+            "variable young index %s\nvariable poisson index 0.3\nvariable restitution index %s\n"
+            "variable friction index 0.5\n",
+            ms_script_number(s->young, &young), restitution);
+    fprintf(stream, "variable step equal %s*sqrt(%s/${young})\n", ms_script_number(s->step, &number), young.text);
+    fprintf(stream, "variable part equal ceil(%s/10/v_step)\n\n", ms_script_number(s->fall, &number));
+}
+
+void ms_script_scene_inserted(FILE *stream, double atoms)
+{
+    fprintf(stream,
+            "variable inserted equal atoms\n"
+            "if \"${inserted} != %.0f\" then \"print 'scene: not all particles have room; make the column higher'\" "
+            "\"quit 1\"\n\n",
+            atoms);
+}
+
+void ms_script_scene_fraction(FILE *stream, const ms_script_scene *s)
+{
+    ms_number area;
+    fprintf(stream, "variable fraction equal c_within/(%s*0.5*v_height)\n",
+            ms_script_number(s->density * ms_script_scene_area(s), &area));
+}
+
 void ms_script_scene_results(FILE *stream, const ms_script_scene *s, double atoms)
 {
     ms_number each, rest;

@@ -42,6 +42,16 @@ void ms_script_scene_title(FILE *stream, const ms_script_scene *s, const ms_pack
 /** The floor's, m^2. */
 double ms_script_scene_area(const ms_script_scene *s);
 
+/** Variables of LIGGGHTS and LAMMPS that the user may set on the command line, and of the step and of the steps in a
+ * tenth of the fall. @param restitution as the engine takes it, and a remark on it */
+void ms_script_scene_settings(FILE *stream, const ms_script_scene *s, const char *restitution);
+
+/** Ends a script of LIGGGHTS or LAMMPS that has inserted too few. @param atoms in the scene, as the engine counts */
+void ms_script_scene_inserted(FILE *stream, double atoms);
+
+/** The packing fraction of LIGGGHTS and LAMMPS, from the mass c_within and v_height. */
+void ms_script_scene_fraction(FILE *stream, const ms_script_scene *s);
+
 /** How LIGGGHTS and LAMMPS say at the end what came of it: lines "scene: ...". Their scripts have the variables state,
  * mass, kinetic, total, height, highest and fraction. @param atoms in the scene, as the engine counts */
 void ms_script_scene_results(FILE *stream, const ms_script_scene *s, double atoms);
