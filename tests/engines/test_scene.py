@@ -122,6 +122,17 @@ class Liggghts(Engine):
         self.fail_script("liggghts", "-in", "crowded.in")
 
 
+    def test_spin(self):
+        """Drag on the centres of two spheres ends no spin about their line, which counts as rest."""
+        self.scene.folder = self.scene.top
+        self.scene.mskit("shape", "cube", "a=1", "-o", "cube.stl")
+        self.scene.mskit("scene", "cube.stl", "--particles", "20", "--budget", "40", "-g", "mss", "--cells", "20",
+                         "--density", str(engines.DENSITY), "--unit", "mm", "--format", "liggghts", "-o", "pairs")
+        self.scene.folder = os.path.join(self.scene.top, "pairs")
+        self.assertIn("scene: at rest, kinetic energy of a particle without spin",
+                      self.scene.run("liggghts", "-in", "scene.liggghts.in"))
+
+
 class Lammps(Engine):
     program = "lmp"
 

@@ -97,7 +97,7 @@ static const char MEASURES[] = "compute sphere all property/atom radius\n"
 static void write_lammps_measures(FILE *stream, const ms_script_scene *s)
 {
     fputs(MEASURES, stream);
-    ms_script_scene_fraction(stream, s);
+    ms_script_scene_measures(stream, s);
     fputs("thermo_style custom step atoms v_mass v_kinetic v_total v_height v_highest v_fraction\nthermo ${part}\n"
           "thermo_modify lost error\n\n",
           stream);
@@ -118,7 +118,7 @@ static void write_lammps_rest(FILE *stream, const ms_script_scene *s)
     }
     fprintf(stream,
             "fix drag all addforce v_drag_x v_drag_y v_drag_z\n"
-            "variable end equal 1000*v_part\nvariable moves equal \"v_kinetic > %s || step < v_landed\"\n"
+            "variable end equal 1000*v_part\nvariable moves equal \"v_motion > %s || step < v_landed\"\n"
             "fix rest all halt ${part} v_moves < 0.5 error continue\nrun ${end}\nunfix rest\nrun 0\n",
             ms_script_number(s->rest, &rest));
     fputs("variable state string \"at rest\"\nif \"${moves} > 0.5\" then \"variable state string 'not at rest'\"\n\n"

@@ -119,7 +119,7 @@ static void write_liggghts_measures(FILE *stream, const ms_packing *scene, const
     fputs("compute sphere all property/atom radius mass\n", stream);
     write_liggghts_shares(stream, scene);
     fputs(MEASURES, stream);
-    ms_script_scene_fraction(stream, s);
+    ms_script_scene_measures(stream, s);
     fputs("thermo_style custom step atoms v_mass v_kinetic v_total v_height c_high v_fraction\n"
           "thermo ${part}\nthermo_modify lost error\n\n",
           stream);
@@ -134,7 +134,7 @@ static void write_liggghts_rest(FILE *stream, const ms_script_scene *s)
             ms_script_number(s->drag, &drag));
     fprintf(stream,
             "variable more loop 1000\nvariable state string \"not at rest\"\n"
-            "label more\nrun ${part}\nvariable now equal ${kinetic}\n"
+            "label more\nrun ${part}\nvariable now equal ${motion}\n"
             "if \"${now} < %s\" then \"variable state string 'at rest'\" \"jump SELF end\"\nnext more\njump SELF more\n"
             "label end\n\n",
             ms_script_number(s->rest, &rest));

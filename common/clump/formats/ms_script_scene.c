@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/ms_escape.h"
+#include "base/ms_vector.h"
 
 static const double PI = 3.14159265358979323846, BED = 0.6; /* its packing fraction, to choose a width by */
 /* Of the balls around the particles in the column: well below 0.3, where random insertion begins to fail. */
@@ -15,6 +16,25 @@ static double largest_sphere(const ms_placed *kind)
         most = fmax(most, kind->scale * kind->clump.sphere[b].radius);
     }
     return most;
+}
+
+/* About that line drag on the spheres turns nothing. Off it by a tenth of the reach they end a spin tens of times
+ * more slowly than a motion. */
+static int is_nearly_on_line(const ms_clump *clump)
+{
+    const double *from = clump->sphere[0].centre, *to = from, most = ms_template_reach(clump) / 10;
+    for (size_t b = 1; b < clump->n_spheres; b++) {
+        const double *c = clump->sphere[b].centre;
+        to = ms_squared_distance(from, c) > ms_squared_distance(from, to) ? c : to;
+    }
+    for (size_t b = 1; b < clump->n_spheres; b++) {
+        double across[3];
+        ms_vector_triangle(across, from, to, clump->sphere[b].centre);
+        if (ms_dot(across, across) > most * most * ms_squared_distance(from, to)) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 /* Sums over the particles, and what is the largest or least of them. */
@@ -36,6 +56,7 @@ static double take_kinds(ms_script_scene *s, const ms_packing *scene)
         s->drag = fmax(s->drag, mass / (double)kind->clump.n_spheres);
         s->least = fmin(s->least, kind->scale * ms_clump_smallest_radius(&kind->clump));
         s->most = fmax(s->most, largest_sphere(kind));
+        s->keeps_spin |= is_nearly_on_line(&kind->clump);
     }
     return lightest;
 }
@@ -160,9 +181,14 @@ void ms_script_scene_inserted(FILE *stream, double atoms)
             atoms);
 }
 
-void ms_script_scene_fraction(FILE *stream, const ms_script_scene *s)
+void ms_script_scene_measures(FILE *stream, const ms_script_scene *s)
 {
     ms_number area;
+    fputs(s->keeps_spin
+              ? "# Spheres of a particle lie nearly on one line, and drag on them ends no spin about it: rest "
+                "is that of motion alone.\nvariable motion equal c_moving\n"
+              : "variable motion equal v_kinetic\n",
+          stream);
     fprintf(stream, "variable fraction equal c_within/(%s*0.5*v_height)\n",
             ms_script_number(s->density * ms_script_scene_area(s), &area));
 }
@@ -170,12 +196,12 @@ void ms_script_scene_fraction(FILE *stream, const ms_script_scene *s)
 void ms_script_scene_results(FILE *stream, const ms_script_scene *s, double atoms)
 {
     ms_number each, rest;
-    fprintf(stream, "\nvariable kept equal atoms*%s\nvariable motion equal v_kinetic/%s\n",
+    fprintf(stream, "\nvariable kept equal atoms*%s\nvariable each equal v_motion/%s\n",
             ms_script_number(s->particles / atoms, &each), ms_script_number(s->rest * 1e6, &rest));
     fprintf(stream,
-            "print \"scene: ${state}, kinetic energy of a particle ${motion} m g d\"\n"
+            "print \"scene: ${state}, kinetic energy of a particle%s ${each} m g d\"\n"
             "print \"scene: particles ${kept} of %.0f\"\n",
-            s->particles);
+            s->keeps_spin ? " without spin" : "", s->particles);
     fputs("print \"scene: mass ${mass} kg\"\n"
           "print \"scene: height ${height} m, highest point ${highest} m\"\n"
           "print \"scene: packing fraction ${fraction}\"\n"

@@ -22,6 +22,7 @@ typedef struct ms_script_scene {
     double fall;               /* time of a fall from the top */
     double drag;               /* of each sphere, kg/s: slows every particle within the time of the fall */
     double rest;               /* J: 1e-6 m g d, summed over the particles; d of the ball of equal volume */
+    int keeps_spin;            /* spheres of a particle lie nearly on one line, about which drag on them ends no spin */
 } ms_script_scene;
 
 /**
@@ -49,11 +50,12 @@ void ms_script_scene_settings(FILE *stream, const ms_script_scene *s, const char
 /** Ends a script of LIGGGHTS or LAMMPS that has inserted too few. @param atoms in the scene, as the engine counts */
 void ms_script_scene_inserted(FILE *stream, double atoms);
 
-/** The packing fraction of LIGGGHTS and LAMMPS, from the mass c_within and v_height. */
-void ms_script_scene_fraction(FILE *stream, const ms_script_scene *s);
+/** Two variables of LIGGGHTS and LAMMPS: `motion`, the kinetic energy that has to end, is v_kinetic, or c_moving where
+ * spin does not end; `fraction`, of packing, comes from the mass c_within and v_height. */
+void ms_script_scene_measures(FILE *stream, const ms_script_scene *s);
 
 /** How LIGGGHTS and LAMMPS say at the end what came of it: lines "scene: ...". Their scripts have the variables state,
- * mass, kinetic, total, height, highest and fraction. @param atoms in the scene, as the engine counts */
+ * mass, kinetic, motion, total, height, highest and fraction. @param atoms in the scene, as the engine counts */
 void ms_script_scene_results(FILE *stream, const ms_script_scene *s, double atoms);
 
 #endif
