@@ -2,14 +2,6 @@
 
 #include <math.h>
 
-/* With b / root(N) for b, N contacts have what one has with b. */
-static double restitution_for(double single, double number)
-{
-    const double l = -log(single), pi = acos(-1.0);
-    const double b2 = l * l / (pi * pi + l * l) / number;
-    return exp(-pi * sqrt(b2 / (1 - b2)));
-}
-
 /* The price where the clump meets the same thing in the orientations of another row. */
 static void add_price(ms_factors *f, const ms_contact_row *row)
 {
@@ -17,7 +9,8 @@ static void add_price(ms_factors *f, const ms_contact_row *row)
         const ms_touch *touch = &row->sample[s].touch;
         if (touch->count > 0) {
             f->softest = fmin(f->softest, f->modulus * touch->stiffness);
-            f->bounciest = fmax(f->bounciest, ms_touch_restitution(f->restitution, ms_touch_number(touch)));
+            const double e = f->restitution > 0 ? ms_touch_restitution(f->restitution, ms_touch_number(touch)) : 0;
+            f->bounciest = fmax(f->bounciest, e);
         }
     }
 }
@@ -26,7 +19,7 @@ ms_factors ms_factors_of(const ms_contact *contact, const ms_contact_row *row, d
 {
     const ms_touch mean = {.stiffness = row->stiffness, .damping = row->damping};
     ms_factors f = {.modulus = 1 / row->stiffness,
-                    .restitution = restitution_for(single, ms_touch_number(&mean)),
+                    .restitution = ms_touch_restitution(single, 1 / ms_touch_number(&mean)), /* b / root(N) */
                     .softest = HUGE_VAL};
     for (size_t r = 0; r < contact->n_rows; r++) {
         const ms_contact_row *other = &contact->row[r];

@@ -6,7 +6,8 @@
 
 typedef struct ms_factors {
     double modulus;     /* times that of the material: the mean contact is as stiff as one of r_eq */
-    double restitution; /* to ask for, that the contact of mean damping and stiffness has what one is to have */
+    double restitution; /* to ask for, that the contact of mean damping and stiffness has what one is to have; 0: none
+                           damps as much */
     double softest;   /* the price, on what is touched, at random and in poses: the softest contact over one of r_eq, */
     double bounciest; /* and the greatest restitution of any */
 } ms_factors;

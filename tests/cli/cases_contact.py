@@ -66,6 +66,13 @@ class Contact(Case):
                          r"plane +poses +0\.001 +0\.2\d+ +0\.75\d +0\.1667 +0\.75")
         self.assertIn("leave out --csv", self.mskit("contact", *args, "--factors", "--csv", code=2).err)
 
+    def test_factors_of_soft_contacts(self):
+        """Where the mean contact is damped less than one, no restitution damps it like one that hardly rebounds."""
+        self.write("two.csv", "x,y,z,r\n0,0,0,1\n3,0,0,0.01\n")
+        found = self.contact("two.csv", "--factors", "--restitution", "1e-6")
+        random = next(f for f in found["factors"] if (f["against"], f["where"]) == ("plane", "random"))
+        self.assertEqual((random["restitution"], random["bounciest"]), (0, 0))
+
     def test_second_particle(self):
         """Face on face the six lie on at most their like, and on two each where they stand between four."""
         row = self.row(self.contact("six.csv", "--target", "box.obj", "--overlap", "0.001"), "particle", "poses")
