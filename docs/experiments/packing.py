@@ -5,8 +5,8 @@ volume of the candy.
     docs/experiments/packing.py [--spheres N] [--seeds K] [--step SECONDS] [--work FOLDER] [--most MINUTES]
 
 Adds a row a packing to packing.csv beside it; rows that are there are not run again. Then puts the table of all of them
-into docs/behaviour.md, which --seeds 0 does alone. MSKIT names the program
-(build/eval/mskit), LIGGGHTS the engine (liggghts). Numbers of the table are Yuan's (table 3); his time step is 5e-7 s.
+into docs/behaviour.md, which --seeds 0 does alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine
+(liggghts). Numbers of the table are Yuan's (table 3); his time step is 5e-7 s. Takes numpy.
 
 What is measured, as fixed before the first run, of the particles at rest (kinetic energy below 1e-6 m g d each):
     height_envelope  mean over vertical lines, 0.5 mm apart and 2 mm or more from the wall, of the highest point of a
@@ -16,6 +16,7 @@ What is measured, as fixed before the first run, of the particles at rest (kinet
 """
 import argparse
 import csv
+import json
 import math
 import os
 import re
@@ -92,7 +93,6 @@ write_dump all custom packing.dump id type x y z radius modify sort id
 
 def make_clump(folder, n):
     """The template's line for LIGGGHTS, and what mskit says of the clump."""
-    import json
     shape, clump = os.path.join(folder, "candy.stl"), os.path.join(folder, f"candy-{n}.liggghts")
     subprocess.run([MSKIT, "shape", "ellipsoid", f"a={A}", f"b={A}", f"c={C}", "-o", shape], check=True,
                    stderr=subprocess.DEVNULL)

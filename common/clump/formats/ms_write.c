@@ -17,7 +17,7 @@ const ms_format ms_formats[] = {
     {"vtk", "vtk", "points with radius, for ParaView", MS_NEED_SPHERES, NULL, .part = {{"", ms_vtk_write}}},
     {"liggghts", "liggghts", "sphere file, and a script with its particletemplate/multisphere", MS_NEED_PARTICLE,
      ms_xyzr_read, .part = {{"", ms_liggghts_write}, {".in", ms_liggghts_script}},
-     .not_one = "LIGGGHTS takes no multisphere of one sphere; use its particletemplate/sphere",
+     .not_one = "LIGGGHTS takes no multisphere of one sphere; use its particletemplate/sphere, or more spheres",
      .packing = {{"", ms_liggghts_packing}, {".in", ms_liggghts_settle}}, .mixture = {{".in", ms_liggghts_mixture}},
      .scene = {".in", ms_liggghts_scene}},
     {"lammps", "lammps", "molecule file for fix rigid/small, and a script", MS_NEED_MASSES, ms_lammps_read,
