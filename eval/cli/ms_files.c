@@ -167,6 +167,23 @@ ms_status ms_files_add_shape(ms_files *files, const char *path, ms_error *err)
     return status;
 }
 
+ms_status ms_files_with_ending(const char ***path, size_t *count, const ms_files *files, const char *ending,
+                               ms_error *err)
+{
+    *count = 0;
+    *path = malloc((files->count + 1) * sizeof **path);
+    if (!*path) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the names of %zu files", files->count);
+    }
+    for (size_t f = 0; f < files->count; f++) {
+        const char *dot = strrchr(files->file[f].path, '.');
+        if (dot && strcmp(dot, ending) == 0) {
+            (*path)[(*count)++] = files->file[f].path;
+        }
+    }
+    return MS_OK;
+}
+
 /* By file, and what is read first. */
 static int by_key(const void *a, const void *b)
 {

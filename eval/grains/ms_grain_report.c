@@ -2,7 +2,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/ms_file.h"
 #include "clump/formats/ms_read.h"
