@@ -25,8 +25,7 @@
 ms_status ms_compare_charts(const ms_compare_records *all, const char *folder, FILE *words, ms_error *err);
 
 /**
- * Writes and draws one, and says so. What is no chart (ms_chart_is_one), as a single point, is said in words instead,
- * and of one without any point that.
+ * Writes and draws one, and says so. What is no chart (ms_chart_is_one), as a single point, is said in words instead.
  * @return as above
  */
 ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, FILE *words, ms_error *err);

@@ -66,8 +66,7 @@ static ms_status draw_album_chart(album *a, const char *kind, ms_chart chart, ms
     chart.n_series = a->n_series;
     ms_status status = MS_OK;
     if (!ms_chart_is_one(&chart)) {
-        fprintf(stderr, "no chart %s, but words: ", stem);
-        ms_chart_say(stderr, &chart);
+        ms_chart_say(stderr, &chart, stem);
     } else if ((status = ms_chart_write(&chart, stem, err)) == MS_OK) {
         status = ms_chart_draw(stem, err);
     }
