@@ -1,5 +1,6 @@
 #include "ms_files.h"
 
+#include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -235,6 +236,17 @@ ms_status ms_files_check(ms_files *files, ms_error *err)
         status = files->file[f].use == MS_FILE_WRITTEN ? try_file(files->file[f].path, err) : MS_OK;
     }
     return status;
+}
+
+ms_status ms_files_remove(const ms_files *files, ms_error *err)
+{
+    for (size_t f = 0; f < files->count; f++) {
+        const char *path = files->file[f].path;
+        if (unlink(path) != 0 && errno != ENOENT) {
+            return ms_fail(err, MS_ERR_IO, "%s: the file of a run before cannot be removed: %s", path, strerror(errno));
+        }
+    }
+    return MS_OK;
 }
 
 void ms_files_free(ms_files *files)

@@ -331,10 +331,29 @@ static void draw_kind(ms_status *status, const records *all, const ms_compare_re
     }
 }
 
+/* Those of a run before: this one may draw fewer. */
+static ms_status remove_charts(const records *all, ms_error *err)
+{
+    char name[256];
+    ms_files files = {0};
+    ms_status status = MS_OK;
+    for (size_t r = 0; r < all->count && status == MS_OK; r++) {
+        if (is_first(all, r, 0)) {
+            name_shape(name, sizeof name, &all->record[r]);
+            status = ms_compare_charts_list(&files, all->folder, name, err);
+        }
+    }
+    if (status == MS_OK) {
+        status = ms_files_remove(&files, err);
+    }
+    ms_files_free(&files);
+    return status;
+}
+
 /* Without gnuplot all scripts are written nevertheless; the first failure is reported. */
 static ms_status draw_compare_charts(const records *all, ms_error *err)
 {
-    ms_status status = MS_OK;
+    ms_status status = remove_charts(all, err);
     for (size_t r = 0; r < all->count; r++) {
         const ms_compare_record *shape = &all->record[r];
         for (int m = 0; is_first(all, r, 0) && m < MS_MEASURES; m++) {
