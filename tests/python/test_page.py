@@ -50,6 +50,13 @@ class Page(PythonCase):
         self.assertEqual(scene_of(text)["name"], clump.shape.name)
         self.assertEqual(self.files(), sorted([self.grain, "<b>&.html"]))
 
+    def test_too_far(self):
+        """As the program refuses it, and no page that shows nothing."""
+        for far, radius in ((1e200, 1), (1e308, 1e308)):
+            apart = mskit.Clump([(0, 0, 0), (far, 0, 0)], [1, radius])
+            self.refused(mskit.ArgumentError, "reaches too far; choose another unit", apart.write, self.path("a.html"))
+        self.assertEqual(self.files(), [self.grain])
+
     def test_surface_of_voxels(self):
         shape = mskit.volume(labelled(), label=3, spacing=0.5, origin=(5, 6, 7))
         vertices, faces = shape.surface()
