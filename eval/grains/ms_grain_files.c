@@ -18,7 +18,7 @@ static const char *find_base(const char *path)
     return slash ? slash + 1 : path;
 }
 
-/* Of a clump: a file of another name is another file, and there may be a million. */
+/* A file of another name is another file, and there may be a million clumps. */
 static ms_status add_namesake(void *context, const char *path, int is_frame, ms_error *err)
 {
     const page_files *p = context;
@@ -27,7 +27,22 @@ static ms_status add_namesake(void *context, const char *path, int is_frame, ms_
                : MS_OK;
 }
 
-/* The clumps of all parts, which may have one folder. */
+/* The tables of all parts, which may have one folder, and that of a run in one. */
+static ms_status add_tables(page_files *p, const ms_grains *g, ms_error *err)
+{
+    char path[4096];
+    ms_grains one = *g;
+    ms_status status = MS_OK;
+    for (one.part = 1; one.part <= g->parts && g->parts > 1 && status == MS_OK; one.part++) {
+        ms_grains_table(path, sizeof path, &one);
+        status = add_namesake(p, path, 0, err);
+    }
+    one.part = one.parts = 1;
+    ms_grains_table(path, sizeof path, &one);
+    return status == MS_OK ? add_namesake(p, path, 0, err) : status;
+}
+
+/* The clumps of all parts. */
 static ms_status add_clumps(page_files *p, const ms_grains *g, ms_error *err)
 {
     char path[4096];
@@ -52,6 +67,9 @@ static ms_status add_page(ms_files *files, const ms_grains *g, const char *page,
     if (status == MS_OK) {
         status = ms_files_add(files, page, MS_FILE_WRITTEN, err);
     }
+    if (status == MS_OK) {
+        status = add_tables(&p, g, err);
+    }
     return status == MS_OK ? add_clumps(&p, g, err) : status;
 }
 
@@ -72,13 +90,8 @@ static ms_status add_sources(ms_files *files, const ms_grain_list *list, char *c
 ms_status ms_grain_files_check(const ms_grains *g, char *const *words, size_t count, int has_assembly, const char *page,
                                ms_error *err)
 {
-    char table[4096];
     ms_files files = {0};
-    ms_grains_table(table, sizeof table, g);
-    ms_status status = ms_files_add(&files, table, MS_FILE_LATER, err);
-    if (status == MS_OK && page) {
-        status = add_page(&files, g, page, err);
-    }
+    ms_status status = page ? add_page(&files, g, page, err) : MS_OK;
     if (status == MS_OK && has_assembly) {
         status = ms_grain_assembly_list(&files, g, err);
     }

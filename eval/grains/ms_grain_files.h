@@ -5,8 +5,8 @@
 #include "ms_grains.h"
 
 /**
- * Is each of the table, the page and the files of an assembly another file than all the others, the clumps and what is
- * read?
+ * Is the page another file than the tables and clumps of all parts, and it and the files of an assembly others than
+ * what is read?
  *
  * @param words        of the command line that name the sources
  * @param has_assembly nonzero if there will be one

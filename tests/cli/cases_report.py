@@ -121,6 +121,7 @@ class Report(Case):
         self.assert_refused(*grains, "no/r.html", code=1, says=("no/r.html",))
         for own in ("grains.csv", "assembly.csv", "0000/c.csv"):
             self.assert_refused(*grains, "out/" + own, "--assembly", code=1, says=("out/" + own,))
+        self.assert_refused(*grains, "out/grains-1-of-2.csv", "--part", "2/2", code=1, says=("out/grains-1-of-2.csv",))
         self.assert_refused(*grains, "r.html", "--format", "vtk", code=1, says=("vtk", "--format csv"))
         self.assert_refused(*grains, "r.html", "--dry-run", code=2, says=("--dry-run", "--report"))
         self.assert_refused("grains", "--merge", "a", "-o", "out", "--report", "r.html", code=2, says=("--merge", "--report"))
