@@ -49,15 +49,6 @@ static int has_marks(const ms_chart_series *series)
     return series->style == MS_CHART_CURVE || series->style == MS_CHART_POINTS;
 }
 
-int ms_chart_has_points(const ms_chart *chart)
-{
-    int found = 0;
-    for (size_t s = 0; s < chart->n_series; s++) {
-        found |= has_marks(&chart->series[s]) && ms_chart_parts_count(chart, &chart->series[s]) > 0;
-    }
-    return found;
-}
-
 int ms_chart_is_one(const ms_chart *chart)
 {
     size_t all = 0, longest = 0;
@@ -72,20 +63,20 @@ int ms_chart_is_one(const ms_chart *chart)
     return all > 1 && (!by_x || longest > 1);
 }
 
-void ms_chart_say(FILE *stream, const ms_chart *chart)
+void ms_chart_say(FILE *stream, const ms_chart *chart, const char *stem)
 {
-    const char *between = "";
+    int said = 0;
+    fprintf(stream, "no chart %s", stem);
     for (size_t s = 0; s < chart->n_series; s++) {
         const ms_chart_series *series = &chart->series[s];
         for (size_t p = 0; p < series->count && has_marks(series); p++) {
             if (ms_chart_parts_has_place(chart, series, &series->point[p])) {
-                fprintf(stream, "%s%s: %s %.4g, %s %.4g", between, series->name, chart->x_label, series->point[p].x,
-                        chart->y_label, series->point[p].y);
-                between = "; ";
+                fprintf(stream, "%s%s: %s %.4g, %s %.4g", said++ ? "; " : ", but words: ", series->name, chart->x_label,
+                        series->point[p].x, chart->y_label, series->point[p].y);
             }
         }
     }
-    putc('\n', stream);
+    fputs(said ? "\n" : ": none of its points has a place on the axes\n", stream);
 }
 
 static void widen_range(ms_chart_range *r, int is_log)

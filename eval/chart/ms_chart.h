@@ -55,11 +55,8 @@ void ms_chart_part_looks(ms_chart_series *series, size_t count);
  */
 int ms_chart_is_one(const ms_chart *chart);
 
-/** Whether there is a point or more to tell of. */
-int ms_chart_has_points(const ms_chart *chart);
-
-/** Says in words what the points of a chart are, on one line: x and y of each with the name of its series. */
-void ms_chart_say(FILE *stream, const ms_chart *chart);
+/** In place of a chart one line: that there is none, and x and y of each point with the name of its series. */
+void ms_chart_say(FILE *stream, const ms_chart *chart, const char *stem);
 
 /**
  * Writes STEM.dat and STEM.gp, from which gnuplot makes STEM.svg and STEM.png. A point that has no place (not finite,

@@ -1,5 +1,6 @@
 #include "ms_files.h"
 
+#include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -167,6 +168,23 @@ ms_status ms_files_add_shape(ms_files *files, const char *path, ms_error *err)
     return status;
 }
 
+ms_status ms_files_with_ending(const char ***path, size_t *count, const ms_files *files, const char *ending,
+                               ms_error *err)
+{
+    *count = 0;
+    *path = malloc((files->count + 1) * sizeof **path);
+    if (!*path) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the names of %zu files", files->count);
+    }
+    for (size_t f = 0; f < files->count; f++) {
+        const char *dot = strrchr(files->file[f].path, '.');
+        if (dot && strcmp(dot, ending) == 0) {
+            (*path)[(*count)++] = files->file[f].path;
+        }
+    }
+    return MS_OK;
+}
+
 /* By file, and what is read first. */
 static int by_key(const void *a, const void *b)
 {
@@ -218,6 +236,17 @@ ms_status ms_files_check(ms_files *files, ms_error *err)
         status = files->file[f].use == MS_FILE_WRITTEN ? try_file(files->file[f].path, err) : MS_OK;
     }
     return status;
+}
+
+ms_status ms_files_remove(const ms_files *files, ms_error *err)
+{
+    for (size_t f = 0; f < files->count; f++) {
+        const char *path = files->file[f].path;
+        if (unlink(path) != 0 && errno != ENOENT) {
+            return ms_fail(err, MS_ERR_IO, "%s: the file of a run before cannot be removed: %s", path, strerror(errno));
+        }
+    }
+    return MS_OK;
 }
 
 void ms_files_free(ms_files *files)

@@ -67,6 +67,15 @@ ms_status ms_files_add_charts(ms_files *files, const char *folder, const char *n
 ms_status ms_files_add_shape(ms_files *files, const char *path, ms_error *err);
 
 /**
+ * Those of one ending, in their order.
+ *
+ * @param[out] path their paths, borrowed from `files`; the caller frees the array; NULL on failure
+ * @return MS_OK; MS_ERR_NOMEM
+ */
+ms_status ms_files_with_ending(const char ***path, size_t *count, const ms_files *files, const char *ending,
+                               ms_error *err);
+
+/**
  * Is each output another file than all inputs and outputs, and can it be made? A regular file that is there may be
  * replaced.
  *
@@ -74,6 +83,10 @@ ms_status ms_files_add_shape(ms_files *files, const char *path, ms_error *err);
  * Cost: O(files log files).
  */
 ms_status ms_files_check(ms_files *files, ms_error *err);
+
+/** Removes the files that a run before left there, so that none stands for one that this run does not write.
+ * @return MS_OK; MS_ERR_IO */
+ms_status ms_files_remove(const ms_files *files, ms_error *err);
 
 void ms_files_free(ms_files *files);
 

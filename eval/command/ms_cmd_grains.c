@@ -10,6 +10,7 @@
 #include "cli/ms_report.h"
 #include "cli/ms_until.h"
 #include "grains/ms_grain_assembly.h"
+#include "grains/ms_grain_files.h"
 #include "grains/ms_grain_merge.h"
 #include "grains/ms_grain_report.h"
 #include "grains/ms_grains.h"
@@ -434,9 +435,12 @@ static ms_status execute_grains(grains_arguments *a, char *const *words, size_t 
     a->grains.list = &list;
     /* Rows of a run with the flag and of one without are no one run. */
     a->grains.run = ms_grain_list_checksum(&list) ^ (uint64_t)a->grains.equal_volume;
-    status = a->assembly ? ms_grain_assembly_check(&a->grains, words, count, err) : MS_OK;
+    status = a->assembly ? ms_grain_assembly_check(&a->grains, err) : MS_OK;
     if (status == MS_OK && a->report) {
-        status = ms_grain_report_check(a->report, &a->grains, words, count, err);
+        status = ms_grain_report_check(&a->grains, err);
+    }
+    if (status == MS_OK && (a->assembly || a->report)) {
+        status = ms_grain_files_check(&a->grains, words, count, a->assembly, a->report, err);
     }
     if (status == MS_OK) {
         status = a->dry_run ? try_three(a, err) : make_all(a, err);

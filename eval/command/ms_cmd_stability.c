@@ -207,7 +207,7 @@ static ms_status report_stability(const stability_arguments *a, const ms_stabili
     free(groups);
     if (status == MS_OK && a->charts) {
         status = ms_files_make_folder(a->charts, err);
-        status = status == MS_OK ? ms_stability_charts(a->charts, run, count, err) : status;
+        status = status == MS_OK ? ms_stability_charts(a->charts, &a->methods, run, count, err) : status;
     }
     if (status == MS_OK && a->report) {
         const ms_stability_report report = {.plan = &a->plan,

@@ -270,16 +270,11 @@ static void add_bars(char *out, size_t size, const records *all, const ms_compar
 
 ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, FILE *words, ms_error *err)
 {
-    if (!ms_chart_is_one(chart) && ms_chart_has_points(chart)) {
-        fprintf(words, "no chart %s, but words: ", stem);
-        ms_chart_say(words, chart);
+    if (!ms_chart_is_one(chart)) { /* nor where every run failed: the rows say why */
+        ms_chart_say(words, chart, stem);
         return MS_OK;
     }
     ms_status status = ms_chart_write(chart, stem, err);
-    if (status == MS_ERR_ARG) { /* every run failed: the rows say why */
-        fprintf(stderr, "%s\n", err->text);
-        return MS_OK;
-    }
     if (status == MS_OK && (status = ms_chart_draw(stem, err)) == MS_OK) {
         fprintf(words, "drew %s.svg, .png\n", stem);
     }
@@ -336,10 +331,29 @@ static void draw_kind(ms_status *status, const records *all, const ms_compare_re
     }
 }
 
+/* Those of a run before: this one may draw fewer. */
+static ms_status remove_charts(const records *all, ms_error *err)
+{
+    char name[256];
+    ms_files files = {0};
+    ms_status status = MS_OK;
+    for (size_t r = 0; r < all->count && status == MS_OK; r++) {
+        if (is_first(all, r, 0)) {
+            name_shape(name, sizeof name, &all->record[r]);
+            status = ms_compare_charts_list(&files, all->folder, name, err);
+        }
+    }
+    if (status == MS_OK) {
+        status = ms_files_remove(&files, err);
+    }
+    ms_files_free(&files);
+    return status;
+}
+
 /* Without gnuplot all scripts are written nevertheless; the first failure is reported. */
 static ms_status draw_compare_charts(const records *all, ms_error *err)
 {
-    ms_status status = MS_OK;
+    ms_status status = remove_charts(all, err);
     for (size_t r = 0; r < all->count; r++) {
         const ms_compare_record *shape = &all->record[r];
         for (int m = 0; is_first(all, r, 0) && m < MS_MEASURES; m++) {

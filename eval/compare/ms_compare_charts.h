@@ -18,15 +18,16 @@
  * - inertia, corrected: error of the moments by number of spheres, of the union and with masses by ms_density_solve;
  * - resolution: D by cells at the largest number of spheres, if there are several resolutions.
  *
+ * Those that a run before left there are removed.
+ *
  * @param folder exists
  * @param words  where it says what it drew
- * @return MS_OK; as ms_chart_write, ms_chart_draw
+ * @return MS_OK; as ms_files_remove, ms_chart_write, ms_chart_draw
  */
 ms_status ms_compare_charts(const ms_compare_records *all, const char *folder, FILE *words, ms_error *err);
 
 /**
- * Writes and draws one, and says so. What is no chart (ms_chart_is_one), as a single point, is said in words instead,
- * and of one without any point that.
+ * Writes and draws one, and says so. What is no chart (ms_chart_is_one), as a single point, is said in words instead.
  * @return as above
  */
 ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, FILE *words, ms_error *err);

@@ -318,6 +318,31 @@ static int describe_kind(int kind, const char **name, const char **label, ms_col
     return kind <= MS_MEASURES;
 }
 
+static ms_status list_charts(ms_files *files, const char *folder, ms_error *err)
+{
+    const char *name, *label;
+    ms_column column;
+    ms_status status = MS_OK;
+    for (int k = 0; describe_kind(k, &name, &label, &column) && status == MS_OK; k++) {
+        char file[64];
+        snprintf(file, sizeof file, "population-%s", name);
+        status = label ? ms_files_add_charts(files, folder, file, MS_CHART_ENDINGS, err) : MS_OK;
+    }
+    return status;
+}
+
+/* Those of a run before: this one may draw fewer. */
+static ms_status remove_charts(const char *folder, ms_error *err)
+{
+    ms_files files = {0};
+    ms_status status = list_charts(&files, folder, err);
+    if (status == MS_OK) {
+        status = ms_files_remove(&files, err);
+    }
+    ms_files_free(&files);
+    return status;
+}
+
 /* All charts; without gnuplot their scripts are written nevertheless, and the first failure is reported. */
 static ms_status draw_charts(const ms_compare_population *p, const ms_compare_records *all, const char *folder,
                              FILE *words, ms_error *err)
@@ -353,7 +378,10 @@ ms_status ms_compare_population_write(const ms_compare_records *all, const char 
         return status;
     }
     fprintf(words, "wrote %s/population.csv, best.csv, population.json\n", folder);
-    status = ms_compare_population_make(&p, all, all->record[all->count - 1].field[MS_COLUMN_CELLS], err);
+    status = remove_charts(folder, err);
+    if (status == MS_OK) {
+        status = ms_compare_population_make(&p, all, all->record[all->count - 1].field[MS_COLUMN_CELLS], err);
+    }
     if (status == MS_OK) {
         status = draw_charts(&p, all, folder, words, err);
         ms_compare_population_free(&p);
@@ -364,13 +392,6 @@ ms_status ms_compare_population_write(const ms_compare_records *all, const char 
 ms_status ms_compare_population_list(ms_files *files, const char *folder, ms_error *err)
 {
     static const char *const TABLES[] = {"population.csv", "best.csv", "population.json", NULL};
-    const char *name, *label;
-    ms_column column;
-    ms_status status = ms_files_add_charts(files, folder, "", TABLES, err);
-    for (int k = 0; describe_kind(k, &name, &label, &column) && status == MS_OK; k++) {
-        char file[64];
-        snprintf(file, sizeof file, "population-%s", name);
-        status = label ? ms_files_add_charts(files, folder, file, MS_CHART_ENDINGS, err) : MS_OK;
-    }
-    return status;
+    const ms_status status = ms_files_add_charts(files, folder, "", TABLES, err);
+    return status == MS_OK ? list_charts(files, folder, err) : status;
 }

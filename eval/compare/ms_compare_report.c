@@ -186,7 +186,7 @@ static ms_status put_shape(FILE *stream, const report_work *w, size_t shape, siz
 static ms_status begin_page(FILE *stream, const report_work *w, int argc, char *const *argv, ms_error *err)
 {
     ms_files files = {0};
-    const char *column[MS_COLUMNS];
+    const char *column[MS_COLUMNS], **chart = NULL;
     ms_view_report report = {.title = "comparison of clumps",
                              .argc = argc,
                              .argv = argv,
@@ -205,17 +205,12 @@ static ms_status begin_page(FILE *stream, const report_work *w, int argc, char *
         ms_compare_name(name, sizeof name, w->a->shape[s], w->a->label);
         status = ms_compare_charts_list(&files, w->a->charts, name, err);
     }
-    const char **chart = malloc((files.count + 1) * sizeof *chart);
-    for (size_t f = 0; chart && f < files.count; f++) {
-        const char *ending = strrchr(files.file[f].path, '.');
-        if (ending && strcmp(ending, ".svg") == 0) {
-            chart[report.n_charts++] = files.file[f].path;
-        }
-    }
-    report.chart = chart;
     if (status == MS_OK) {
-        status =
-            chart ? ms_view_report_begin(stream, &report, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the report");
+        status = ms_files_with_ending(&chart, &report.n_charts, &files, ".svg", err);
+    }
+    if (status == MS_OK) {
+        report.chart = chart;
+        status = ms_view_report_begin(stream, &report, err);
     }
     free(chart);
     ms_files_free(&files);

@@ -9,7 +9,6 @@
 #include "base/ms_file.h"
 #include "base/ms_quaternion.h"
 #include "base/ms_text.h"
-#include "cli/ms_files.h"
 #include "cli/ms_mass.h"
 #include "clump/formats/ms_read.h"
 #include "clump/formats/ms_write_packing.h"
@@ -32,8 +31,7 @@ static const ms_format *readable_format(const ms_grains *g, ms_error *err)
     return NULL;
 }
 
-/* Lists what is written: assembly.csv and the packings. */
-static ms_status list_outputs(ms_files *files, const ms_grains *g, ms_error *err)
+ms_status ms_grain_assembly_list(ms_files *files, const ms_grains *g, ms_error *err)
 {
     char path[4096];
     snprintf(path, sizeof path, "%s/assembly.csv", g->folder);
@@ -47,25 +45,7 @@ static ms_status list_outputs(ms_files *files, const ms_grains *g, ms_error *err
     return status;
 }
 
-/* No source, and no word that names one, is written over. */
-static ms_status check_files(const ms_grains *g, char *const *words, size_t count, ms_error *err)
-{
-    ms_files files = {0};
-    ms_status status = list_outputs(&files, g, err);
-    for (size_t w = 0; w < count && status == MS_OK; w++) {
-        status = ms_files_add(&files, words[w], MS_FILE_READ, err);
-    }
-    for (size_t s = 0; s < g->list->n_sources && status == MS_OK; s++) {
-        status = ms_files_add_shape(&files, g->list->source[s]->path, err);
-    }
-    if (status == MS_OK) {
-        status = ms_files_check(&files, err);
-    }
-    ms_files_free(&files);
-    return status;
-}
-
-ms_status ms_grain_assembly_check(const ms_grains *g, char *const *words, size_t count, ms_error *err)
+ms_status ms_grain_assembly_check(const ms_grains *g, ms_error *err)
 {
     const ms_grain_list *list = g->list;
     for (size_t s = 0; s < list->n_sources && list->n_sources > 1; s++) {
@@ -76,7 +56,7 @@ ms_status ms_grain_assembly_check(const ms_grains *g, char *const *words, size_t
                            list->source[s]->path);
         }
     }
-    return readable_format(g, err) ? check_files(g, words, count, err) : MS_ERR_ARG;
+    return readable_format(g, err) ? MS_OK : MS_ERR_ARG;
 }
 
 /* Spheres of a file in the frame of the source become those of the template. */

@@ -2,6 +2,7 @@
 #ifndef MS_GRAIN_ASSEMBLY_H
 #define MS_GRAIN_ASSEMBLY_H
 
+#include "cli/ms_files.h"
 #include "ms_grains.h"
 
 /** What came of it. Depths are over the equivalent radius of the smaller of two grains. */
@@ -15,11 +16,12 @@ typedef struct ms_grain_assembly {
 /**
  * Can there be one of these grains, in these formats?
  *
- * @param words count of them, which named the grains
- * @return MS_OK; MS_ERR_ARG for grains of several frames, formats that are not read back, and an input that would be
- *         written over; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for grains of several frames and formats that are not read back
  */
-ms_status ms_grain_assembly_check(const ms_grains *grains, char *const *words, size_t count, ms_error *err);
+ms_status ms_grain_assembly_check(const ms_grains *grains, ms_error *err);
+
+/** Adds what is written: assembly.csv and the packings. @return MS_OK; MS_ERR_NOMEM */
+ms_status ms_grain_assembly_list(ms_files *files, const ms_grains *grains, ms_error *err);
 
 /**
  * Reads all clumps of a complete table back from their files and writes beside the table assembly.csv, a row for each

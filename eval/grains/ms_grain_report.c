@@ -2,10 +2,8 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/ms_file.h"
-#include "cli/ms_files.h"
 #include "clump/formats/ms_read.h"
 #include "view/ms_view_page.h"
 #include "view/ms_view_report.h"
@@ -53,32 +51,9 @@ static const ms_format *find_format(const ms_grains *g, ms_error *err)
     return NULL;
 }
 
-ms_status ms_grain_report_check(const char *path, const ms_grains *g, char *const *words, size_t count, ms_error *err)
+ms_status ms_grain_report_check(const ms_grains *g, ms_error *err)
 {
-    char table[4096];
-    ms_files files = {0};
-    if (!find_format(g, err)) {
-        return MS_ERR_ARG;
-    }
-    ms_grains_table(table, sizeof table, g);
-    ms_status status = ms_files_add_folder(&files, g->folder, err); /* in which the page may stand */
-    if (status == MS_OK) {
-        status = ms_files_add(&files, path, MS_FILE_WRITTEN, err);
-    }
-    if (status == MS_OK) {
-        status = ms_files_add(&files, table, MS_FILE_LATER, err);
-    }
-    for (size_t w = 0; w < count && status == MS_OK; w++) {
-        status = ms_files_add(&files, words[w], MS_FILE_READ, err);
-    }
-    for (size_t s = 0; s < g->list->n_sources && status == MS_OK; s++) {
-        status = ms_files_add_shape(&files, g->list->source[s]->path, err);
-    }
-    if (status == MS_OK) {
-        status = ms_files_check(&files, err);
-    }
-    ms_files_free(&files);
-    return status;
+    return find_format(g, err) ? MS_OK : MS_ERR_ARG;
 }
 
 static ms_status find_clumps(grains_page *w, ms_error *err)

@@ -7,15 +7,8 @@
 /** Clumps on a page; of more grains those of the largest D are taken. */
 enum { MS_GRAIN_REPORT_MOST = 500 };
 
-/**
- * Before the work: does the run write a format that is read back in the frame of the grain, and is the page no other
- * file of the run?
- *
- * @param words of the command line that name the sources
- * @return MS_OK; MS_ERR_ARG; as ms_files_check
- */
-ms_status ms_grain_report_check(const char *path, const ms_grains *grains, char *const *words, size_t count,
-                                ms_error *err);
+/** Does the run write a format that is read back in the frame of the grain? @return MS_OK; MS_ERR_ARG */
+ms_status ms_grain_report_check(const ms_grains *grains, ms_error *err);
 
 /**
  * Writes the page, after ms_grains_make. The clumps are read back from their files, those of runs before, too, and each

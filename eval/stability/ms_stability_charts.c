@@ -66,8 +66,7 @@ static ms_status draw_album_chart(album *a, const char *kind, ms_chart chart, ms
     chart.n_series = a->n_series;
     ms_status status = MS_OK;
     if (!ms_chart_is_one(&chart)) {
-        fprintf(stderr, "no chart %s, but words: ", stem);
-        ms_chart_say(stderr, &chart);
+        ms_chart_say(stderr, &chart, stem);
     } else if ((status = ms_chart_write(&chart, stem, err)) == MS_OK) {
         status = ms_chart_draw(stem, err);
     }
@@ -135,15 +134,27 @@ static int is_known(const ms_stability_run *runs, size_t r)
     return known;
 }
 
-ms_status ms_stability_charts(const char *folder, const ms_stability_run *runs, size_t n_runs, ms_error *err)
+static ms_status remove_charts(const char *folder, const ms_methods *methods, ms_error *err)
+{
+    ms_files files = {0};
+    ms_status status = ms_stability_charts_list(&files, folder, methods, err);
+    if (status == MS_OK) {
+        status = ms_files_remove(&files, err);
+    }
+    ms_files_free(&files);
+    return status;
+}
+
+ms_status ms_stability_charts(const char *folder, const ms_methods *methods, const ms_stability_run *runs,
+                              size_t n_runs, ms_error *err)
 {
     album a = {.folder = folder,
                .runs = runs,
                .n_runs = n_runs,
                .point = malloc((n_runs + 1) * sizeof *a.point),
                .series = malloc((n_runs + MS_CHANGE_MOST) * sizeof *a.series)};
-    ms_status status =
-        a.point && a.series ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for charts of %zu runs", n_runs);
+    ms_status status = a.point && a.series ? remove_charts(folder, methods, err)
+                                           : ms_fail(err, MS_ERR_NOMEM, "no memory for charts of %zu runs", n_runs);
     for (size_t r = 0; r < n_runs && status == MS_OK; r++) {
         if (!is_known(runs, r)) {
             a.method = runs[r].method;

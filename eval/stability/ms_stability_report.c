@@ -1,7 +1,6 @@
 #include "ms_stability_report.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/ms_file.h"
 #include "ms_stability_charts.h"
@@ -82,24 +81,6 @@ static ms_status put_shape(FILE *stream, const ms_stability_report *report, size
     return status;
 }
 
-/* Those that there can be. @param[out] files hold their paths, of which `chart` are those of the pictures */
-static ms_status list_pictures(const char ***chart, size_t *count, ms_files *files, const ms_stability_report *report,
-                               ms_error *err)
-{
-    ms_status status = MS_OK;
-    if (report->charts) {
-        status = ms_stability_charts_list(files, report->charts, report->plan->methods, err);
-    }
-    *chart = malloc((files->count + 1) * sizeof **chart);
-    for (size_t f = 0; *chart && f < files->count; f++) {
-        const char *ending = strrchr(files->file[f].path, '.');
-        if (ending && strcmp(ending, ".svg") == 0) {
-            (*chart)[(*count)++] = files->file[f].path;
-        }
-    }
-    return *chart ? status : ms_fail(err, MS_ERR_NOMEM, "no memory for the report");
-}
-
 /* The table up to its scenes. */
 static ms_status begin_page(FILE *stream, const ms_stability_report *report, const long *scene, char *header,
                             ms_error *err)
@@ -111,7 +92,11 @@ static ms_status begin_page(FILE *stream, const ms_stability_report *report, con
     const char *const *name = (const char *const *)column;
     const size_t n_columns = ms_csv_split(column, MOST_COLUMNS, header);
     const size_t n_shown = ms_view_report_columns(shown, SHOWN, N_SHOWN, name, n_columns);
-    ms_status status = list_pictures(&chart, &n_charts, &files, report, err);
+    ms_status status =
+        report->charts ? ms_stability_charts_list(&files, report->charts, report->plan->methods, err) : MS_OK;
+    if (status == MS_OK) {
+        status = ms_files_with_ending(&chart, &n_charts, &files, ".svg", err);
+    }
     if (status == MS_OK) {
         const ms_view_report page = {.title = "stability of clumps",
                                      .argc = report->argc,

@@ -15,9 +15,8 @@ typedef struct ms_view_about {
     size_t max_points;         /* of that lattice */
     int argc;                  /* the command, without the program's name */
     char *const *argv;
-    char
-        *remark; /* MS_WRITE_REMARK, empty: takes what a surface does not show, if that is a piece or 2 % of the volume;
-                   * NULL: not wanted */
+    char *remark; /* room for MS_WRITE_REMARK, empty; NULL: not wanted. Takes what a surface does not show, if that is a
+                   * piece or 2 % of the volume */
 } ms_view_about;
 
 /** html, stl, ply, obj, vtp, png; a row with a NULL name ends them. */

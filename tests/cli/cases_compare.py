@@ -455,13 +455,20 @@ class Charts(Compare):
 
     @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed (package gnuplot-nox)")
     def test_a_point_is_no_chart(self):
-        """It is said in words; points of times have bars from the fastest run to the slowest, of which one is the median."""
+        """It is said in words; points of times have bars from the fastest run to the slowest, of which one is the median.
+        What a run before drew goes from folder and page."""
+        os.mkdir(self.path("charts"))
+        before = [f"charts/{name}.svg" for name in ("box-dice", "box-resolution")]
+        for name in before:
+            self.write(name, "of a run before")
         result = self.mskit("compare", "box.obj", "-g", "mss", "-g", "fcm", "-n", "3", "--cells", "8", "--repeat", "3",
-                            "--charts", "charts")
+                            "--charts", "charts", "--report", "r.html")
         rows = self.rows()
         said = "; ".join(f"{r['generator']}: number of spheres 3, mismatch D {float(r['dice']):.4g}" for r in rows)
         self.assertIn(f"no chart charts/box-dice, but words: {said}\n", result.out)
-        self.assertNotIn("box-dice.svg", os.listdir(self.path("charts")))
+        for name in before:
+            self.assertFalse(os.path.exists(self.path(name)), name)
+        self.assertEqual(re.findall(r'class="chart" alt="([^"]*)"', self.read("r.html").decode()), ["box-time.svg", "box-work.svg"])
         bars = [line.split(" ") for line in self.read("charts/box-time.dat").decode().splitlines() if line.count(" ") == 4]
         for bar, row in zip((bar for bar in bars if bar[0] != "#"), rows, strict=True):
             for value, column in zip((bar[0], bar[3], bar[4]), ("seconds_generate", "seconds_least", "seconds_most")):

@@ -126,6 +126,8 @@ class Clumps(Population):
         self.clumps()
         self.write("clumps/other.csv", "not read: it goes with no shape")
         os.mkdir(self.path("clumps/box-1.mercury"))  # a template that is a folder, which is written and not read
+        os.mkdir(self.path("pop"))
+        self.write("pop/population-dice.svg", "of a run before")
         for word in ("clumps", "clumps/box-*.csv", "./clumps/*-tool.csv"):
             self.mskit("compare", "shapes", "-g", "mss", "-n", "4", "--cells", "8", "-j", "1", "--clump", f"tool={word}",
                        "-o", "c.csv", "--population", "pop")
@@ -140,6 +142,7 @@ class Clumps(Population):
             self.assertEqual((found["dice"]["n_asked"], found["dice"]["shapes"]), ("4", "6"))
             self.assertFalse({"seconds_generate", "time_normalised"} & set(found), "nobody knows its time")
             self.assertEqual({r["shapes"] for r in self.table("pop/best.csv") if r["generator"] == "tool"}, {"6"})
+            self.assertFalse(os.path.exists(self.path("pop/population-dice.svg")), "of one number there is no chart")
             os.remove(self.path("c.csv"))
 
     def test_the_longer_name_has_it(self):

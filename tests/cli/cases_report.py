@@ -119,7 +119,9 @@ class Report(Case):
         self.assert_refused(*grains, "-", code=2, says=("--report", "file"))
         self.assert_refused(*grains, "c.obj", code=1, says=("c.obj", "input"))
         self.assert_refused(*grains, "no/r.html", code=1, says=("no/r.html",))
-        self.assert_refused(*grains, "out/grains.csv", code=1, says=("out/grains.csv",))
+        for own in ("grains.csv", "assembly.csv", "0000/c.csv"):
+            self.assert_refused(*grains, "out/" + own, "--assembly", code=1, says=("out/" + own,))
+        self.assert_refused(*grains, "out/grains-1-of-2.csv", "--part", "2/2", code=1, says=("out/grains-1-of-2.csv",))
         self.assert_refused(*grains, "r.html", "--format", "vtk", code=1, says=("vtk", "--format csv"))
         self.assert_refused(*grains, "r.html", "--dry-run", code=2, says=("--dry-run", "--report"))
         self.assert_refused("grains", "--merge", "a", "-o", "out", "--report", "r.html", code=2, says=("--merge", "--report"))

@@ -238,6 +238,8 @@ class Stability(Case):
         """Every run stands in the chart of all; the lines over the noise are ratios of D, from the least level up."""
         if not shutil.which("gnuplot"):
             self.skipTest("gnuplot is not installed here")
+        os.mkdir(self.path("charts"))
+        self.write("charts/1-mss-variant-paper-resolution.svg", "of a run before")
         rows = self.rows("speck", "cube", "-g", "mss:variant=paper", "-n", "3", "--cells", "8", "--runs", "3", "--perturb",
                          "noise", "--perturb", "seed", "--charts", "charts")
         stems = ("1-mss-variant-paper-all", "1-mss-variant-paper-noise")

@@ -2,36 +2,14 @@
 import base64
 import html
 import json
-import os
 import re
-import shutil
 import unittest
 
 import mskit
 import numpy
 from mskit import _view
 from support_python import PythonCase, labelled
-
-LACKING = [name for name in ("chromium", "chromedriver") if not shutil.which(name)]
-try:
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-except ImportError:
-    LACKING.append("selenium")
-
-# Share of coloured pixels in the left and the right half, in the frame in which they are drawn.
-LOOK = """
-const done = arguments[0], canvas = document.getElementById('canvas'), gl = canvas.getContext('webgl2');
-const w = canvas.width, h = canvas.height, pixels = new Uint8Array(4 * w * h), seen = [0, 0];
-document.getElementById('first').dispatchEvent(new Event('input'));
-requestAnimationFrame(() => {
-  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-  for (let p = 0; p < w * h; p++) {
-    seen[p % w < w / 2 ? 0 : 1] += pixels[4 * p] + pixels[4 * p + 1] + pixels[4 * p + 2] < 720;
-  }
-  done(seen.map(count => 2 * count / (w * h)));
-});
-"""
+import support_browser as chromium  # found by support_python
 
 
 def scene_of(page):
@@ -72,6 +50,13 @@ class Page(PythonCase):
         self.assertEqual(scene_of(text)["name"], clump.shape.name)
         self.assertEqual(self.files(), sorted([self.grain, "<b>&.html"]))
 
+    def test_too_far(self):
+        """As the program refuses it, and no page that shows nothing."""
+        for far, radius in ((1e200, 1), (1e308, 1e308)):
+            apart = mskit.Clump([(0, 0, 0), (far, 0, 0)], [1, radius])
+            self.refused(mskit.ArgumentError, "reaches too far; choose another unit", apart.write, self.path("a.html"))
+        self.assertEqual(self.files(), [self.grain])
+
     def test_surface_of_voxels(self):
         shape = mskit.volume(labelled(), label=3, spacing=0.5, origin=(5, 6, 7))
         vertices, faces = shape.surface()
@@ -85,37 +70,26 @@ class Page(PythonCase):
         self.assertAlmostEqual(volume_of(vertices, faces) / ball.volume, 1, delta=0.02)
         self.assertIs(_view.decimate(vertices, faces, 3000)[1], faces)
 
-    @unittest.skipIf(LACKING, "not installed: " + ", ".join(LACKING))
+    @chromium.skip_without
     def test_in_a_browser(self):
         """As a page, and as what Jupyter takes, within another page: both draw, and neither has an error."""
         clump = mskit.correct(self.clump(), density=2650)
         clump.write(self.path("page.html"))
         self.write("frame.html", "<!doctype html><meta charset='utf-8'><body>" + clump._repr_html_())
-        options = webdriver.ChromeOptions()
-        options.binary_location = shutil.which("chromium")
-        for flag in ("--headless", "--no-sandbox", "--enable-unsafe-swiftshader", "--disable-quic",
-                     "--user-data-dir=" + self.path("profile")):
-            options.add_argument(flag)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-        browser = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
-        self.addCleanup(browser.quit)
-        browser.set_window_size(1100, 900)
-        browser.set_script_timeout(60)
+        browser = chromium.start(self)
         for name in ("page", "frame"):
             browser.get("file://" + self.path(name + ".html"))
             if name == "frame":
                 browser.switch_to.frame(0)
-            left, right = browser.execute_async_script(LOOK)
-            self.assertGreater(min(left, right), 0.05, name)
-            self.assertLess(abs(left / right - 1), 0.2, "the clump is about as large as the shape")
+            seen = browser.execute_async_script(chromium.LOOK)
+            self.assertGreater(min(seen["left"], seen["right"]), 0.05, name)
+            self.assertLess(abs(seen["left"] / seen["right"] - 1), 0.2, "the clump is about as large as the shape")
             said = browser.execute_script("return document.getElementById('count').textContent")
             self.assertTrue(said.startswith("7 spheres"), said)
             for colour in ("radius", "mass", "index"):
                 browser.execute_script("const e = document.getElementById('colour'); e.value = arguments[0];"
                                        "e.dispatchEvent(new Event('change'))", colour)
-            self.assertEqual([e["message"] for e in browser.get_log("browser") if e["level"] == "SEVERE"], [])
-            if os.environ.get("MSKIT_SCREENSHOTS"):
-                browser.save_screenshot(os.path.join(os.environ["MSKIT_SCREENSHOTS"], name + ".png"))
+            self.assertEqual(chromium.errors(browser), [])
 
     def test_measures_stand_beside_it(self):
         self.clump().write(self.path("page.html"))

@@ -6,45 +6,22 @@
 import csv
 import math
 import os
-import shutil
 import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 
-MSKIT = os.environ.get("MSKIT", "mskit")
-LACKING = [name for name in ("chromium", "chromedriver") if not shutil.which(name)]
-try:
-    from selenium import webdriver
+sys.dont_write_bytecode = True
+import support_browser as chromium  # noqa: E402
+
+if not chromium.LACKING:
     from selenium.webdriver.common.action_chains import ActionChains
-    from selenium.webdriver.chrome.service import Service
-except ImportError:
-    LACKING.append("selenium")
 
-# Draws once more and looks at the pixels in the same frame: those not white of the left and the right half, and those
-# that differ from the call before.
-LOOK = """
-const done = arguments[0], canvas = document.getElementById('canvas'), gl = canvas.getContext('webgl2');
-const w = canvas.width, h = canvas.height, pixels = new Uint8Array(4 * w * h), start = performance.now();
-document.getElementById('first').dispatchEvent(new Event('input'));
-requestAnimationFrame(() => {
-  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-  const milliseconds = performance.now() - start, seen = [0, 0];
-  let changed = 0;
-  for (let p = 0; p < w * h; p++) {
-    const at = 4 * p, is = (k) => window.before && window.before[at + k] !== pixels[at + k];
-    seen[p % w < w / 2 ? 0 : 1] += pixels[at] + pixels[at + 1] + pixels[at + 2] < 720;
-    changed += is(0) || is(1) || is(2) ? 1 : 0;
-  }
-  window.before = pixels;
-  done({left: 2 * seen[0] / (w * h), right: 2 * seen[1] / (w * h), changed: changed / (w * h), milliseconds});
-});
-"""
+MSKIT = os.environ.get("MSKIT", "mskit")
 
-
-# The same frame: pixels of each of three spheres in the colours of the index, of which the first has the least green, the
-# second the least red, the third the least blue; and the size of the picture.
+# In the frame in which they are drawn: pixels of each of three spheres in the colours of the index, of which the first
+# has the least green, the second the least red, the third the least blue; and the size of the picture.
 COUNT = """
 const done = arguments[0], canvas = document.getElementById('canvas'), gl = canvas.getContext('webgl2');
 const w = canvas.width, h = canvas.height, pixels = new Uint8Array(4 * w * h), seen = [0, 0, 0];
@@ -83,7 +60,7 @@ def count_pixels(spheres, w, h):
     return seen
 
 
-@unittest.skipIf(LACKING, "not installed: " + ", ".join(LACKING))
+@chromium.skip_without
 class Browser(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="mskit-view-")
@@ -94,20 +71,11 @@ class Browser(unittest.TestCase):
         return subprocess.run([MSKIT] + [str(a) for a in args], cwd=self.dir, check=True, capture_output=True, text=True)
 
     def open(self, name, *flags):
-        options = webdriver.ChromeOptions()
-        options.binary_location = shutil.which("chromium")
-        for flag in ("--headless", "--no-sandbox", "--enable-unsafe-swiftshader", "--disable-quic",
-                     "--user-data-dir=" + os.path.join(self.dir, "profile")) + flags:
-            options.add_argument(flag)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-        self.browser = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
-        self.addCleanup(self.browser.quit)
-        self.browser.set_window_size(1100, 800)
-        self.browser.set_script_timeout(60)
+        self.browser = chromium.start(self, *flags)
         self.browser.get("file://" + os.path.join(self.dir, name))
 
     def look(self):
-        return self.browser.execute_async_script(LOOK)
+        return self.browser.execute_async_script(chromium.LOOK)
 
     def text(self, name):
         return self.browser.execute_script(f"return document.getElementById('{name}').textContent")
@@ -117,8 +85,7 @@ class Browser(unittest.TestCase):
                                     "e.dispatchEvent(new Event(arguments[2]))", name, value, event)
 
     def expect_no_error(self):
-        """Driver's words on speed are no errors; a breach of the policy is one."""
-        self.assertEqual([e["message"] for e in self.browser.get_log("browser") if e["level"] == "SEVERE"], [])
+        self.assertEqual(chromium.errors(self.browser), [])
 
     def test_clump_and_shape(self):
         self.mskit("shape", "grain", "-o", "grain.ply")
@@ -285,5 +252,4 @@ class Browser(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    sys.dont_write_bytecode = True
     unittest.main()

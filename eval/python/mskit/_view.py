@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Dict, Tuple
 
 import numpy
 
-from ._errors import FileError
+from ._errors import ArgumentError, FileError
 from ._measures import measures
 
 if TYPE_CHECKING:
@@ -73,10 +73,14 @@ def _mesh(vertices: numpy.ndarray, faces: numpy.ndarray, centre: numpy.ndarray, 
 def scene(clump: "Clump") -> Dict[str, Any]:
     """What eval/view/ms_view_scene.h describes, but for the distances between spheres and shape."""
     surface = clump.shape.surface() if clump.shape is not None else (numpy.empty((0, 3)), numpy.empty((0, 3), int))
-    ends = numpy.concatenate((clump.centres - clump.radii[:, None], clump.centres + clump.radii[:, None], surface[0]))
-    centre = (ends.min(axis=0) + ends.max(axis=0)) / 2
-    reach = numpy.linalg.norm(clump.centres - centre, axis=1) + clump.radii
-    scale = max([reach.max(), *numpy.linalg.norm(surface[0] - centre, axis=1)])
+    with numpy.errstate(over="ignore", invalid="ignore"):
+        radii = clump.radii[:, None]
+        ends = numpy.concatenate((clump.centres - radii, clump.centres + radii, surface[0]))
+        centre = (ends.min(axis=0) + ends.max(axis=0)) / 2
+        reach = numpy.linalg.norm(clump.centres - centre, axis=1) + clump.radii
+        scale = max([reach.max(), *numpy.linalg.norm(surface[0] - centre, axis=1)])
+    if not math.isfinite(scale):
+        raise ArgumentError("what is to be shown reaches too far; choose another unit")
     made = {"ordered": clump.ordered, "scale": scale, "centre": centre.tolist(),
             "name": "the clump alone" if clump.shape is None else clump.shape.name,
             "spheres": _pack(numpy.column_stack(((clump.centres - centre) / scale, clump.radii / scale)), "<f4")}
