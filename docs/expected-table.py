@@ -17,6 +17,7 @@ import csv
 import json
 import math
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -190,7 +191,7 @@ def print_range(role, ratios):
     for n in sorted(ratios):
         values = sorted(ratios[n])
         print(f"{role}, {n} spheres: {len(values)} bodies, {values[0]:.2f} to {values[-1]:.2f}, "
-              f"median {values[len(values) // 2]:.2f}")
+              f"median {statistics.median(values):.2f}")
 
 
 def number_for(dice, points):

@@ -56,6 +56,7 @@ for k in 5 10 20 50; do
     [ "$k" -lt "$(wc -l <"$OUT/clumps/grains.csv")" ] || continue
     rm -rf "$OUT/library-$k"
     { TIMEFORMAT='%U'; time "$MSKIT" grains --choose "$k" "$OUT/clumps" --with-size -o "$OUT/library-$k" --json \
-        >"$OUT/library-$k.json" 2>"$OUT/library-$k.err"; } 2>"$OUT/library-$k.time"
+        >"$OUT/library-$k.json" 2>"$OUT/library-$k.err"; } 2>"$OUT/library-$k.time" ||
+        { cat "$OUT/library-$k.err" >&2; exit 1; }
 done
 python3 "$here/population-tables.py" "$OUT" "$here/population.md"

@@ -33,8 +33,9 @@ done
 for method in $METHODS; do
     for n in 10 20 50 100; do
         clump="$OUT/hollow-$method-$n"
-        "$MSKIT" generate "$OUT/hollow.stl" -g "$method" -n "$n" --deq 60 -o "$clump.csv" 2>"$clump.err" >"$clump.out"
-        "$MSKIT" score "$clump.csv" --target "$OUT/filling.stl" --json 2>"$clump.err" >"$clump.filled.json"
+        "$MSKIT" generate "$OUT/hollow.stl" -g "$method" -n "$n" --deq 60 -o "$clump.csv" 2>"$clump.err" >"$clump.out" &&
+            "$MSKIT" score "$clump.csv" --target "$OUT/filling.stl" --json 2>"$clump.err" >"$clump.filled.json" ||
+            { cat "$clump.err" >&2; exit 1; }
     done
 done
 "$MSKIT" --version >"$OUT/version.txt"

@@ -4,8 +4,8 @@
 #     docs/make-validation.sh SHARED [NAME...]
 #
 # SHARED holds the meshes and the judge that the scripts of docs/validation name. NAME, one of those below, makes that
-# table alone. MSKIT names the program, OUT the folder of what the scripts print (validation). Tables of times are meant
-# for a machine that has nothing else to do.
+# table alone. MSKIT names the program, OUT the folder of what the scripts print (validation); what they say beside their
+# table, as which meshes are not there, is shown. Tables of times are meant for a machine that has nothing else to do.
 set -eu
 here="$(cd "$(dirname "$0")" && pwd)"
 export MSKIT="${MSKIT:-$here/../build/eval/mskit}"
@@ -15,6 +15,9 @@ shared=$1
 shift
 mkdir -p "$OUT"
 wanted=" $* "
+for name in "$@"; do
+    grep -q "^<!-- $name -->\$" "$here/validation.md" || { echo "there is no table $name in validation.md" >&2; exit 2; }
+done
 begun=$(date +%s)
 
 fill() { # NAME, the table that it fills, the command
@@ -23,6 +26,7 @@ fill() { # NAME, the table that it fills, the command
     [ "$wanted" = "  " ] || case "$wanted" in *" $name "*) ;; *) return 0 ;; esac
     start=$(date +%s)
     "$@" >"$OUT/$name.md" 2>"$OUT/$name.err" || { cat "$OUT/$name.err" >&2; exit 1; }
+    cat "$OUT/$name.err" >&2
     python3 "$here/tables.py" "$here/validation.md" "$name=$OUT/$name.md" >/dev/null
     echo "$name: $what; $(($(date +%s) - start)) s"
 }
@@ -56,5 +60,7 @@ fill radii "clustered spheres by the radii of their paper" "$scripts/judge-table
 if [ "$wanted" = "  " ]; then
     "$MSKIT" --version | head -1 >"$OUT/told.md"
     echo "made all tables in one run of $((($(date +%s) - begun) / 60)) minutes on $(nproc) cores." >>"$OUT/told.md"
-    python3 "$here/tables.py" "$here/validation.md" "told=$OUT/told.md"
+else
+    echo "The tables are of several builds." >"$OUT/told.md"
 fi
+python3 "$here/tables.py" "$here/validation.md" "told=$OUT/told.md"

@@ -187,11 +187,15 @@ double ms_shape_dumbbell_volume(const double *value)
     return 2 * (4.0 / 3.0 * M_PI * ball * ball * ball - cap_volume) + neck_volume;
 }
 
+/* Along the axis. On failure the mesh is freed. */
 static ms_status move_to_centre(ms_mesh *mesh, ms_error *err)
 {
     ms_body body;
     const ms_status status = ms_inertia_mesh(&body, mesh, err);
-    for (size_t v = 0; v < mesh->n_vertices && status == MS_OK; v++) {
+    if (status != MS_OK) {
+        ms_mesh_free(mesh);
+    }
+    for (size_t v = 0; v < mesh->n_vertices; v++) {
         mesh->vertex[v][2] -= body.centroid[2];
     }
     return status;

@@ -5,7 +5,8 @@
 
 SHARED holds data/open-clumps/NAME.stl, data/human_femur.stl and data/bunny.ply. Each shape gets N spheres (60, 150) three
 times: free, with `gap` half the largest gap of the free ones, and `connected`. D, gap (voxels of 100 cells) and pieces
-are those of mskit's own measures, times are user times of one thread, reading and scoring included.
+are those of mskit's own measures, times are user times of one thread, reading and scoring included. How often both are
+held goes to standard error.
 """
 import json
 import os
@@ -54,7 +55,8 @@ def main():
             print(f"| {name} | {n} | {free['dice']:.4f} | {free['gap']:.1f} | {free['pieces']} | {free['seconds']:.1f} "
                   f"| {bound:.2f} | {near['gap']:.2f} | {near['dice']:.4f} | {near['seconds']:.1f} "
                   f"| {one['n']} | {one['pieces']} | {one['dice']:.4f} | {one['seconds']:.1f} |", flush=True)
-        print(f"{n} spheres: gap held in {held['gap']}, connected with all spheres in {held['connected']}, of {tried}")
+        print(f"{n} spheres: gap held in {held['gap']}, connected with all spheres in {held['connected']}, of {tried}",
+              file=sys.stderr)
 
 
 if __name__ == "__main__":

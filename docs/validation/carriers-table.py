@@ -5,7 +5,8 @@
 
 Every body of `mskit shape` with its default parameters, and every mesh of SHARED/data, by 10, 30 and 100 spheres of each
 METHOD (setcover, mss, variational) at --cells 40. A cell is the number of carriers; - where the method gave fewer than
-10 spheres, ! where none do, with the cause below. The ten sums are made again here, from the CSV.
+10 spheres, ! where none do, with the cause on standard error, as the largest error of the ten
+sums, which are made again here from the CSV.
 """
 import glob
 import json
@@ -82,8 +83,7 @@ def main():
             cells = [cell(shape, path, m, n, folder, causes) for m in methods for n in SPHERES]
             worst = max([worst] + [error for _, error in cells])
             print(f"| {shape} | " + " | ".join(str(count) for count, _ in cells) + " |", flush=True)
-    print(f"\nlargest error of the ten sums: {worst:.1e}")
-    print("\n".join(causes))
+    print("\n".join([f"largest error of the ten sums: {worst:.1e}", *causes]), file=sys.stderr)
 
 
 main()

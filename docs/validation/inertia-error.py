@@ -8,9 +8,10 @@ of its box are not given); further meshes are files.
 """
 import json
 import os
-import subprocess
 import sys
 import tempfile
+
+from judge import run
 
 MSKIT = os.environ.get("MSKIT", "mskit")
 MADE = {
@@ -22,19 +23,12 @@ MADE = {
 }
 
 
-def run(*command):
-    done = subprocess.run([MSKIT, *command], capture_output=True, text=True)
-    if done.returncode:
-        sys.exit(f"{' '.join(command)}\n{done.stderr}")
-    return done.stdout
-
-
 def row(name, mesh, folder):
     cells = []
     for coverage in ("0.90", "0.95"):
         clump = os.path.join(folder, "clump.csv")
-        run("generate", mesh, "-g", "setcover", "--deq", "100", "--until", f"coverage={coverage}", "-o", clump)
-        scores = json.loads(run("score", clump, "--target", mesh, "--deq", "100", "--json"))["scores"]
+        run(MSKIT, "generate", mesh, "-g", "setcover", "--deq", "100", "--until", f"coverage={coverage}", "-o", clump)
+        scores = json.loads(run(MSKIT, "score", clump, "--target", mesh, "--deq", "100", "--json"))["scores"]
         cells.append(f"{100 * scores['inertia_error']['weighted_mean']:.1f} % ({scores['spheres']})")
     print(f"| {name} | {' | '.join(cells)} |", flush=True)
 
@@ -44,7 +38,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for name, shape in MADE.items():
             mesh = os.path.join(folder, name + ".stl")
-            run("shape", *shape, "-o", mesh)
+            run(MSKIT, "shape", *shape, "-o", mesh)
             row(name, mesh, folder)
         for mesh in sys.argv[1:]:
             row(os.path.basename(mesh), mesh, folder)

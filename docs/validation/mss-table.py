@@ -5,8 +5,8 @@
 
 SHARED holds data/ with the meshes, peers-mss.csv with the better D of other codes, and tools/ with the judge (score.c,
 compiled here by cc) and tostl.py. Meshes that are not there are named and left out. All n of a nested variant come from
-one run, each a prefix; with polish each n is a run of its own. Prints D, and its ratio to that of the other codes, as tables; what they are goes to
-standard error.
+one run, each a prefix; with polish each n is a run of its own. Prints D, and its ratio to that of the other codes, as
+tables; what they are goes to standard error.
 `spacing`: D of variant=paper over delta_min for the two bodies of the paper.
 `heldout`: best beside paper on shapes outside the table; there are no figures of other codes for them.
 """
@@ -32,7 +32,8 @@ def say_mean(ratios):
 def against_others(judge, peers, variant):
     ratios = []
     print(f"{variant}: D (ratio)", file=sys.stderr)
-    print("| | " + " | ".join(str(n) for n in next(iter(peers.values()))) + " |\n" + "|---" * (1 + len(next(iter(peers.values())))) + "|")
+    numbers = next(iter(peers.values()))
+    print("| | " + " | ".join(str(n) for n in numbers) + " |\n" + "|---" * (1 + len(numbers)) + "|")
     for shape, row in peers.items():
         mesh = judge.mesh(shape)
         if not mesh:
@@ -93,18 +94,22 @@ def held_out(judge):
         say_mean(ratios)
 
 
-def main():
-    if len(sys.argv) < 2:
-        sys.exit(__doc__)
-    shared, chosen = sys.argv[1], sys.argv[2:] or ["best", "polish", "paper", "spacing", "heldout"]
-    table = os.path.join(shared, "peers-mss.csv")
+def read_peers(shared):
+    """D of the better of the other codes by shape and number."""
+    table, peers = os.path.join(shared, "peers-mss.csv"), {}
     if not os.path.exists(table):
-        print(f"skipped: no {table}")
-        return
-    peers = {}
+        sys.exit(f"no {table}")
     with open(table) as lines:
         for row in csv.DictReader(lines):
             peers.setdefault(row["shape"], {})[int(row["n"])] = float(row["best_public_mss_dice"])
+    return peers
+
+
+def main():
+    tables = ["best", "polish", "paper", "spacing", "heldout"]
+    if len(sys.argv) < 2 or not set(sys.argv[2:]) <= set(tables):
+        sys.exit(__doc__)
+    shared, chosen = sys.argv[1], sys.argv[2:] or tables
     with tempfile.TemporaryDirectory() as folder:
         judge = Judge(shared, folder)
         for name in chosen:
@@ -113,7 +118,7 @@ def main():
             elif name == "heldout":
                 held_out(judge)
             else:
-                against_others(judge, peers, name)
+                against_others(judge, read_peers(shared), name)
 
 
 if __name__ == "__main__":

@@ -6,22 +6,17 @@
 SHARED (or MSKIT_SHARED) holds data/open-clumps with NAME.stl and NAME.spheres.csv, and tools/score.c, the judge, compiled
 here by cc. Each shape gets as many spheres as theirs four times: by default options, with `gap` set to the largest gap of
 theirs, `connected`, and no sphere below their least radius. D is the judge's, and lower only where that of
-`mskit score --cells 100` is, too; gap (in voxels of 100 cells) and pieces are those of mskit score.
+`mskit score --cells 100` is, too; gap (in voxels of 100 cells) and pieces are those of mskit score. In how many it is held
+and lower goes to standard error.
 """
 import json
 import os
-import subprocess
 import sys
 import tempfile
 
+from judge import run
+
 MSKIT = os.environ.get("MSKIT", "mskit")
-
-
-def run(*command):
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
-    if done.returncode:
-        sys.exit(f"{' '.join(map(str, command))}\n{done.stderr}")
-    return done.stdout
 
 
 def judge(program, mesh, clump):
@@ -58,8 +53,7 @@ def main():
         sys.exit(__doc__)
     data = os.path.join(shared, "data/open-clumps")
     if not os.path.isdir(data):
-        print(f"skipped: no {data}")
-        return
+        sys.exit(f"no {data}")
     names = sorted(name[:-4] for name in os.listdir(data) if name.endswith(".stl"))
     held, won = dict.fromkeys(("free", "gap", "connected", "radius"), 0), dict.fromkeys(
         ("free", "gap", "connected", "radius"), 0)
@@ -82,7 +76,7 @@ def main():
                   f"| {theirs['pieces']} | {one['pieces']} | {one['dice']:.4f} "
                   f"| {theirs['least']:.4f} | {radius['least']:.4f} | {radius['dice']:.4f} |", flush=True)
     for key in held:
-        print(f"{key}: held in {held[key]}, and D lower in {won[key]}, of {len(names)}")
+        print(f"{key}: held in {held[key]}, and D lower in {won[key]}, of {len(names)}", file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -8,9 +8,9 @@ Spheroid and tablet of Yuan 2019, at d_eq/100 where nothing else is said, up to 
 """
 import csv
 import os
-import subprocess
-import sys
 import tempfile
+
+from judge import run
 
 MSKIT = os.environ.get("MSKIT", "mskit")
 BODIES = {"spheroid": ("ellipsoid", "a=6.585", "b=6.585", "c=3.395"), "tablet": ("tablet",)}
@@ -24,17 +24,11 @@ CHOICES = (("default", 100, ()), ("`--skeleton-deq 100`", 100, ("--skeleton-deq"
 PAPER = "| paper | its own | 48 | 181 | 461 | 675 | 95.04 % | 97.85 % | 99.13 % |"
 
 
-def run(*command):
-    done = subprocess.run([MSKIT, *(str(word) for word in command)], capture_output=True, text=True)
-    if done.returncode:
-        sys.exit(f"{' '.join(map(str, command))}\n{done.stderr}")
-
-
 def curve(folder, body, spheres, deq, options):
     """Both coverages of the first n spheres, for n from 1."""
     path = os.path.join(folder, "curve.csv")
-    run("generate", os.path.join(folder, body + ".stl"), "-g", "setcover", "--deq", deq, "-n", spheres, *options, "--cut",
-        "--curve", path, "-o", os.path.join(folder, "clump.csv"))
+    run(MSKIT, "generate", os.path.join(folder, body + ".stl"), "-g", "setcover", "--deq", deq, "-n", spheres, *options,
+        "--cut", "--curve", path, "-o", os.path.join(folder, "clump.csv"))
     with open(path, newline="", encoding="utf-8") as stream:
         return list(csv.DictReader(stream))
 
@@ -53,7 +47,7 @@ def main():
           + " | ".join(f"by {n}" for n in NUMBERS[1:]) + " |\n" + "|---" * (2 + len(GOALS) + len(NUMBERS)) + f"|\n{PAPER}")
     with tempfile.TemporaryDirectory() as folder:
         for body, kind in BODIES.items():
-            run("shape", *kind, "-o", os.path.join(folder, body + ".stl"))
+            run(MSKIT, "shape", *kind, "-o", os.path.join(folder, body + ".stl"))
         for name, deq, options in CHOICES:
             spheroid, tablet = (curve(folder, body, n, deq, options) for body, n in (("spheroid", 900), ("tablet", 500)))
             for count in COUNTS:

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/ms_vector.h"
+#include "shared/ms_cover_groups.h"
 
 /* All in voxels of the lattice. */
 static const double SLACK = 0.6;  /* by as much the field may rise too little before the rolling ends: its own error */
@@ -91,26 +92,6 @@ static void roll_in(ms_setcover_start *start, const ms_setcover_field *f, const 
     }
 }
 
-/* A sphere and the cell of its centre. */
-typedef struct cell_entry {
-    uint64_t cell;
-    double radius;
-    size_t index;
-} cell_entry;
-
-/* By cell, in it the largest first. */
-static int compare_rolled(const void *one, const void *other)
-{
-    const cell_entry *a = one, *b = other;
-    if (a->cell != b->cell) {
-        return a->cell < b->cell ? -1 : 1;
-    }
-    if (a->radius != b->radius) {
-        return a->radius > b->radius ? -1 : 1;
-    }
-    return a->index < b->index ? -1 : 1;
-}
-
 /* The cell of a place; cells have this side, in voxels of the lattice. Their borders lie on no point of the lattice,
  * where spheres may end: rounding would tell on which side. */
 static uint64_t find_end_cell(const ms_setcover_field *f, const double centre[3], double side)
@@ -125,19 +106,19 @@ static uint64_t find_end_cell(const ms_setcover_field *f, const double centre[3]
 }
 
 /* Of n spheres leaves in front the largest of each cell. @return how many they are */
-static size_t gather_largest(cell_entry *entry, size_t n, const ms_setcover_start *start, const ms_setcover_field *f,
-                             double side)
+static size_t gather_largest(ms_cover_groups_member *member, size_t n, const ms_setcover_start *start,
+                             const ms_setcover_field *f, double side)
 {
     size_t found = 0;
     for (size_t e = 0; e < n; e++) {
-        entry[e].cell = find_end_cell(f, start[entry[e].index].centre, side);
+        member[e].cell = find_end_cell(f, start[member[e].index].centre, side);
     }
-    qsort(entry, n, sizeof *entry, compare_rolled);
+    ms_cover_groups_sort(member, n);
     uint64_t last = 0;
     for (size_t e = 0; e < n; e++) {
-        const uint64_t cell = entry[e].cell;
+        const uint64_t cell = member[e].cell;
         if (e == 0 || cell != last) {
-            entry[found++] = entry[e];
+            member[found++] = member[e];
         }
         last = cell;
     }
@@ -145,17 +126,18 @@ static size_t gather_largest(cell_entry *entry, size_t n, const ms_setcover_star
 }
 
 /* Finds the largest cells of which each is the largest, and drops those that are it of none. */
-static void rank_largest(ms_setcover_start *start, size_t *count, cell_entry *entry, const ms_setcover_field *f)
+static void rank_largest(ms_setcover_start *start, size_t *count, ms_cover_groups_member *member,
+                         const ms_setcover_field *f)
 {
     size_t n = *count, kept = 0;
     for (size_t i = 0; i < n; i++) {
-        entry[i] = (cell_entry){.radius = start[i].radius, .index = i};
+        member[i] = (ms_cover_groups_member){.radius = start[i].radius, .index = i};
         start[i].scale = 0;
     }
     for (double side = CELL; n > 0; side = side < LEVEL ? LEVEL : 2 * side) {
-        n = gather_largest(entry, n, start, f, side);
+        n = gather_largest(member, n, start, f, side);
         for (size_t e = 0; e < n; e++) {
-            start[entry[e].index].scale = side * f->h;
+            start[member[e].index].scale = side * f->h;
         }
         if (n == 1) {
             break;
@@ -173,15 +155,15 @@ ms_status ms_setcover_roll(ms_setcover_start *start, size_t *count, const ms_set
                            const ms_closest *closest, ms_error *err)
 {
     const ptrdiff_t all = (ptrdiff_t)*count;
-    cell_entry *entry = malloc((*count + 1) * sizeof *entry);
-    if (!entry) {
+    ms_cover_groups_member *member = malloc((*count + 1) * sizeof *member);
+    if (!member) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu candidate spheres; use a smaller skeleton-deq", *count);
     }
 #pragma omp parallel for schedule(dynamic, 64)
     for (ptrdiff_t i = 0; i < all; i++) {
         roll_in(&start[i], field, closest);
     }
-    rank_largest(start, count, entry, field);
-    free(entry);
+    rank_largest(start, count, member, field);
+    free(member);
     return MS_OK;
 }

@@ -60,8 +60,7 @@ struct ms_cover {
     size_t free_runs;       /* that may still be kept */
     ms_cover_room *scratch; /* of each thread */
     int threads;
-    uint32_t
-        *next; /* in a group of candidates: its largest leads to the others, the last to its end; NULL: no groups */
+    uint32_t *next;    /* in groups of candidates, as of ms_cover_groups_form; NULL: no groups */
     int largest_class; /* of the groups that are not dissolved */
     /* A heap, the best first, and behind it those that touch no ball taken so far (connected). */
     heap_entry *entry;

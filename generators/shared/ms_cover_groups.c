@@ -13,17 +13,9 @@ int ms_cover_groups_class(double radius)
     return exponent - 1;
 }
 
-/* A candidate and the cell of its group. */
-typedef struct group_entry {
-    uint64_t cell;
-    double radius;
-    uint32_t index;
-} group_entry;
-
-/* By cell, in it the largest first. */
 static int compare_members(const void *one, const void *other)
 {
-    const group_entry *a = one, *b = other;
+    const ms_cover_groups_member *a = one, *b = other;
     if (a->cell != b->cell) {
         return a->cell < b->cell ? -1 : 1;
     }
@@ -31,6 +23,11 @@ static int compare_members(const void *one, const void *other)
         return a->radius > b->radius ? -1 : 1;
     }
     return a->index < b->index ? -1 : 1;
+}
+
+void ms_cover_groups_sort(ms_cover_groups_member *member, size_t count)
+{
+    qsort(member, count, sizeof *member, compare_members);
 }
 
 static uint64_t find_group_cell(const ms_ball *ball, int class)
@@ -46,11 +43,11 @@ static uint64_t find_group_cell(const ms_ball *ball, int class)
 ms_status ms_cover_groups_form(uint32_t **next, int *largest_class, const ms_ball *candidate, size_t count,
                                ms_error *err)
 {
-    group_entry *entry = malloc((count + 1) * sizeof *entry);
+    ms_cover_groups_member *member = malloc((count + 1) * sizeof *member);
     *next = malloc((count + 1) * sizeof **next);
     *largest_class = 0;
-    if (!entry || !*next) {
-        free(entry);
+    if (!member || !*next) {
+        free(member);
         free(*next);
         *next = NULL;
         return ms_fail(err, MS_ERR_NOMEM, "no memory to group %zu spheres; use fewer cells", count);
@@ -59,13 +56,13 @@ ms_status ms_cover_groups_form(uint32_t **next, int *largest_class, const ms_bal
         const ms_ball *ball = &candidate[c];
         const int class = ball->radius >= 1 ? ms_cover_groups_class(ball->radius) : 0;
         *largest_class = class > *largest_class ? class : *largest_class;
-        entry[c] = (group_entry){find_group_cell(ball, class), ball->radius, (uint32_t)c};
+        member[c] = (ms_cover_groups_member){find_group_cell(ball, class), ball->radius, c};
     }
-    qsort(entry, count, sizeof *entry, compare_members);
+    ms_cover_groups_sort(member, count);
     for (size_t c = 0; c < count; c++) {
-        const int follows = c + 1 < count && entry[c + 1].cell == entry[c].cell;
-        (*next)[entry[c].index] = follows ? entry[c + 1].index : MS_COVER_GROUPS_END;
+        const int follows = c + 1 < count && member[c + 1].cell == member[c].cell;
+        (*next)[member[c].index] = follows ? (uint32_t)member[c + 1].index : MS_COVER_GROUPS_END;
     }
-    free(entry);
+    free(member);
     return MS_OK;
 }

@@ -11,6 +11,16 @@
 /** What the last of a group leads to. */
 #define MS_COVER_GROUPS_END UINT32_MAX
 
+/** A ball and the cell of its centre. */
+typedef struct ms_cover_groups_member {
+    uint64_t cell;
+    double radius;
+    size_t index; /* differs between any two */
+} ms_cover_groups_member;
+
+/** Sorts by cell, in it the largest first, of equal ones that of least index. */
+void ms_cover_groups_sort(ms_cover_groups_member *member, size_t count);
+
 /** The class of a radius from 2^class on, below 2^(class + 1). */
 int ms_cover_groups_class(double radius);
 

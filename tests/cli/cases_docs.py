@@ -1,4 +1,5 @@
 """The documents: every command in the guide runs, the man page and the formats name all there is."""
+import glob
 import json
 import os
 import re
@@ -94,6 +95,14 @@ class Documents(Case):
                 headings = [re.sub(r"[^\w -]", "", h).strip().lower().replace(" ", "-")
                             for h in re.findall(r"(?m)^#+ (.+)$", document(os.path.join("..", path)))]
                 self.assertIn(heading, headings, path)
+
+    def test_scripts_of_docs_can_be_run(self):
+        scripts = [path for ending in ("sh", "py") for path in glob.glob(f"{DOCS}/**/*.{ending}", recursive=True)]
+        self.assertIn(os.path.join(DOCS, "make-validation.sh"), scripts)
+        for script in scripts:
+            with open(script, "rb") as stream:
+                if stream.read(2) == b"#!":
+                    self.assertTrue(os.access(script, os.X_OK), script)
 
     def test_man_pages_name_every_command_and_flag(self):
         overview = document("mskit.1")
