@@ -5,6 +5,7 @@
 """
 import csv
 import os
+import statistics
 import sys
 
 
@@ -61,22 +62,23 @@ def inertia(row):
 
 
 def worst(rows, numbers):
-    """For each method where it is farthest behind the best method, by the same number of spheres."""
+    """For each method how far, and where farthest, it is behind the best method, by the same number of spheres."""
     rows = [row for row in rows if row["n_asked"] in numbers and row["dice"]]
     best = {}
     for row in rows:
         key = row["name"], row["n_asked"]
         best[key] = min(best.get(key, 1e300), float(row["dice"]))
-    print("\nWhere each method is farthest behind the best (D over the best D of as many spheres)\n")
-    print("| method | worst | second | third | best of all in |\n|---|---|---|---|---|")
+    print("\nHow far each method is behind the best (D over the best D of as many spheres)\n")
+    print("| method | geometric mean | worst | second | third | best of all in |\n|---|---|---|---|---|---|")
     for method in unique(rows, "method"):
-        own = [(float(row["dice"]) / max(best[row["name"], row["n_asked"]], 1e-12), row) for row in rows
+        own = [(max(float(row["dice"]), 1e-12) / max(best[row["name"], row["n_asked"]], 1e-12), row) for row in rows
                if row["method"] == method]
         own.sort(key=lambda pair: -pair[0])
         cells = [f"{row['name']}, n = {row['n_asked']}: {ratio:.1f} (D {float(row['dice']):.2g})"
                  for ratio, row in own[:3]]
         cells += ["-"] * (3 - len(cells))
-        print(f"| {method} | " + " | ".join(cells) + f" | {sum(ratio == 1 for ratio, _ in own)} of {len(own)} |")
+        mean = f"{statistics.geometric_mean(ratio for ratio, _ in own):.2f}" if own else "-"
+        print(f"| {method} | {mean} | " + " | ".join(cells) + f" | {sum(ratio == 1 for ratio, _ in own)} of {len(own)} |")
 
 
 def faults(rows):
@@ -90,6 +92,31 @@ def faults(rows):
         pieces = sum(int(row["pieces"]) > 1 for row in done)
         unmet = sum(not row["epsilon"] for row in done)
         print(f"| {method} | {len(own)} | {len(own) - len(done)} | {fewer} | {pieces} | {unmet} |")
+
+
+def on_front(row, rows):
+    """Whether no run on its shape was both faster and at least as true."""
+    return not any(other["name"] == row["name"] and float(other["seconds_generate"]) < float(row["seconds_generate"])
+                   and float(other["dice"]) <= float(row["dice"]) for other in rows)
+
+
+def in_voxels(rows, measure, number):
+    values = [float(row[measure]) / float(row["voxel_size"]) for row in rows if row["n_asked"] == number]
+    return f"{statistics.median(values):.1f}" if values else "-"
+
+
+def places(rows, numbers):
+    """Time and mismatch together, and by how far surfaces differ."""
+    done = [row for row in rows if row["dice"] and row["seconds_generate"]]
+    print("\nOn the Pareto front of time and D, of all rows; largest protrusion and largest gap, voxels, median of the "
+          "shapes\n")
+    heads = [f"{measure} {n}" for measure in ("protrusion", "gap") for n in numbers]
+    print("| method | on the front | " + " | ".join(heads) + " |\n" + "|---" * (2 + len(heads)) + "|")
+    for method in unique(done, "method"):
+        own = [row for row in done if row["method"] == method]
+        cells = [in_voxels(own, measure, n) for measure in ("protrusion_max", "gap_max") for n in numbers]
+        front = sum(on_front(row, done) for row in own)
+        print(f"| {method} | {front} of {len(own)} | " + " | ".join(cells) + " |")
 
 
 def told(rows):
@@ -111,6 +138,7 @@ def main():
     table(rows, "Error of the principal moments, %: of the union / with corrected masses (none: no masses meet the "
           "centre)", numbers, inertia)
     worst(rows, numbers)
+    places(rows, numbers)
     faults(rows)
 
 

@@ -12,12 +12,18 @@ vec3 light(vec3 colour, vec3 normal) { return colour * (.62 + .42 * dot(normal, 
 /* `cap`: the direction u of a unit vector p and the least p u, of all p of the sphere that can be seen. */
 const SPHERE = [HEAD + `layout(location = 0) in vec4 sphere; layout(location = 1) in float value;
 layout(location = 2) in vec4 cap; out vec2 at; flat out vec4 ball; flat out vec3 base;
-vec2 reach(vec2 u) { /* of the cap to the right and up */
-  return mix(cap.w * u + sqrt((1. - cap.w * cap.w) * max(vec2(0), 1. - u * u)), vec2(1), greaterThanEqual(u, cap.ww));
+float reach(float c) { /* greatest p e of the cap, c = u e */
+  return c >= cap.w ? 1. : cap.w * c + sqrt((1. - cap.w * cap.w) * max(0., 1. - c * c));
+}
+bool looksAway(float z) { /* all of the cap, u with that component towards the eye */
+  return cap.w >= 1. || (cap.w > 0. && z < -sqrt(1. - cap.w * cap.w));
 }
 void main() {
-  vec2 u = (turn * cap.xyz).xy;
-  at = mix(-reach(-u), reach(u), vec2(gl_VertexID & 1, gl_VertexID >> 1));
+  vec3 u = turn * cap.xyz;
+  float c = length(u.xy), across = reach(0.);
+  vec2 along = c > 0. ? u.xy / c : vec2(1, 0), part = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+  at = mix(-reach(-c), reach(c), part.x) * along + mix(-across, across, part.y) * vec2(-along.y, along.x);
+  if (looksAway(u.z)) at = vec2(2); /* of one point nothing is drawn */
   ball = vec4(turn * sphere.xyz, sphere.w); base = ramp(value);
   gl_Position = vec4((ball.xy + at * ball.w) * view.xy + view.zw, 0, 1);
 }`, HEAD + `in vec2 at; flat in vec4 ball; flat in vec3 base; out vec4 colour;

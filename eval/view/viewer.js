@@ -66,7 +66,7 @@ function findGaps() {
    little more than that. Halves the pixels to be drawn of a clump of many. */
 function findCaps() {
   const s = scene.spheres, caps = new Float32Array(4 * first), at = Array.from({length: first}, (_, k) => 4 * k);
-  const largest = [...at].sort((p, q) => s[q + 3] - s[p + 3]).slice(0, 250);
+  const largest = [...at].sort((p, q) => s[q + 3] - s[p + 3]).slice(0, 1000);
   for (const k of at) {
     caps[k + 3] = -1;
     for (const i of largest) {
