@@ -175,7 +175,7 @@ static ms_status explain(ms_clump *clump, const ms_density_report *alone, const 
             err, MS_ERR_LIMIT,
             "no carriers so deep below the surface: the wall around sphere %zu at (%g, %g, %g), of radius %g, "
             "has no room for what they would have to carry; %g below the surface it has "
-            "(--carrier-depth)",
+            "(carrier-depth)",
             at + 1, host->centre[0], host->centre[1], host->centre[2], host->radius, depth);
     }
     if (status != MS_OK) {
@@ -184,7 +184,7 @@ static ms_status explain(ms_clump *clump, const ms_density_report *alone, const 
     if (ever_do) {
         return ms_fail(err, MS_ERR_LIMIT,
                        "no carriers were found that all have the least mass, %g of the particle's, though lighter ones "
-                       "would do; a smaller least mass (--least-mass), or more spheres, may help",
+                       "would do; a smaller least mass (least-mass), or more spheres, may help",
                        ms_density_least(options, clump->n_spheres + MS_MASS_EQUATIONS_COUNT));
     }
     if (alone->centre > MS_DENSITY_CENTRE_TOLERANCE) {

@@ -78,8 +78,7 @@ ms_status ms_linear_program_apart(ms_linear_program_work work, void *context, ms
     errand e = {.work = work, .context = context, .err = err};
     pthread_t thread;
     if (!glp_config("TLS")) {
-        return ms_fail(err, MS_ERR_LIMIT,
-                       "this GLPK keeps nothing apart for threads; build it with --enable-reentrant");
+        return ms_fail(err, MS_ERR_LIMIT, "this GLPK keeps nothing apart for threads; build it reentrant");
     }
     if (pthread_create(&thread, NULL, run_errand, &e) != 0) {
         return ms_fail(err, MS_ERR_NOMEM, "no thread could be started to solve for the masses");

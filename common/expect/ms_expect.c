@@ -136,3 +136,9 @@ double ms_expect_least_spheres(const ms_expect *expect, ms_expect_kind kind)
     }
     return curve->pair[curve->count - 1].spheres;
 }
+
+double ms_expect_round(double spheres)
+{
+    const double unit = pow(10, fmax(0, floor(log10(spheres)) - 2));
+    return isfinite(spheres) ? ceil(spheres / unit - 1e-9) * unit : spheres;
+}

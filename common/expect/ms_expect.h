@@ -78,6 +78,9 @@ MS_API double ms_expect_spheres(const ms_expect *expect, ms_expect_kind kind, do
 /** The least number of spheres with which no more than a tenth of the body is better left without any. */
 MS_API double ms_expect_least_spheres(const ms_expect *expect, ms_expect_kind kind);
 
+/** A number of spheres as it may be told: whole, and rounded up to three digits, as none is better known. */
+MS_API double ms_expect_round(double spheres);
+
 MS_C_END
 
 #endif

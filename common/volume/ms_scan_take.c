@@ -20,7 +20,7 @@ static ms_status fail_value(double value, const uint8_t *at, const ms_scan_store
     ms_scan_store_place(p, store, at);
     return ms_fail(err, MS_ERR_FORMAT,
                    "%s: voxel (%zu, %zu, %zu) holds %.9g, which is no label (0, 1, 2, ...%s); make labels of grey "
-                   "values by --threshold T or --otsu, or by a program for images",
+                   "values by a threshold, or otsu, or by a program for images",
                    store->path, p[0], p[1], p[2], value,
                    store->stored.header.sample.kind == MS_SAMPLE_BOOL ? " up to 1 for bool" : " up to 4294967295");
 }

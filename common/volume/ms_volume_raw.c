@@ -43,8 +43,8 @@ ms_status ms_volume_parse_raw(ms_stored *stored, const ms_bytes *bytes, const ch
     size_t voxels = 0;
     *stored = (ms_stored){0};
     if (options->raw_n[0] == 0 || options->raw_sample.size == 0) {
-        return ms_fail(err, MS_ERR_FORMAT,
-                       "%s: has no header; say what it holds by --raw-size X,Y,Z and --raw-type u16", path);
+        return ms_fail(err, MS_ERR_FORMAT, "%s: has no header; say what it holds (raw-size X,Y,Z and raw-type, as u16)",
+                       path);
     }
     memcpy(header.n, options->raw_n, sizeof header.n);
     header.sample = options->raw_sample;
@@ -58,7 +58,7 @@ ms_status ms_volume_parse_raw(ms_stored *stored, const ms_bytes *bytes, const ch
         return ms_fail(
             err, MS_ERR_FORMAT,
             "%s: %lld x %lld x %lld voxels of %zu bytes behind %zu others would be %zu bytes and the file has "
-            "%zu; check --raw-size, --raw-type and --raw-skip",
+            "%zu; check raw-size, raw-type and raw-skip",
             path, (long long)header.n[0], (long long)header.n[1], (long long)header.n[2], header.sample.size, skip,
             voxels + skip, bytes->size);
     }

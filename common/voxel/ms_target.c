@@ -206,8 +206,7 @@ ms_status ms_target_voxels_from_volume(ms_target *target, const ms_volume *volum
         return ms_fail(err, MS_ERR_SHAPE, "no voxel of the volume has the label %u", label);
     }
     if (other) {
-        return ms_fail(err, MS_ERR_SHAPE, "the volume has several labels (%u among them); choose one with --label",
-                       other);
+        return ms_fail(err, MS_ERR_SHAPE, "the volume has several labels (%u among them); choose one (label)", other);
     }
     for (int a = 0; a < 3; a++) {
         n[a] = hi[a] - lo[a] + 2 * MS_GRID_HULL;

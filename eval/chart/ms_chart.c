@@ -248,6 +248,19 @@ ms_status ms_chart_draw(const char *stem, ms_error *err)
     return MS_OK;
 }
 
+ms_status ms_chart_make(const ms_chart *chart, const char *stem, FILE *words, ms_error *err)
+{
+    if (!ms_chart_is_one(chart)) { /* nor where every run failed: the rows say why */
+        ms_chart_say(words, chart, stem);
+        return MS_OK;
+    }
+    ms_status status = ms_chart_write(chart, stem, err);
+    if (status == MS_OK && (status = ms_chart_draw(stem, err)) == MS_OK) {
+        fprintf(words, "drew %s.svg, .png\n", stem);
+    }
+    return status;
+}
+
 static int by_x_then_y(const void *a, const void *b)
 {
     const ms_chart_point *p = a, *q = b;

@@ -74,6 +74,12 @@ ms_status ms_chart_write(const ms_chart *chart, const char *stem, ms_error *err)
 ms_status ms_chart_draw(const char *stem, ms_error *err);
 
 /**
+ * Writes and draws one, and says so. What is no chart (ms_chart_is_one), as a single point, is said in words instead.
+ * @return MS_OK; as ms_chart_write and ms_chart_draw
+ */
+ms_status ms_chart_make(const ms_chart *chart, const char *stem, FILE *words, ms_error *err);
+
+/**
  * The Pareto front: points to which no other is as good in both x and y and better in one; less is better. Of
  * equal points all are on it, points that are not finite never.
  *

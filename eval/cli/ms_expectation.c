@@ -80,16 +80,9 @@ json_t *ms_expectation_factor_json(const ms_expect *expect, const ms_metrics *me
                                    ms_report_number(metrics->score.dice / dice));
 }
 
-/* A number of spheres is whole, and no better known than to three digits. */
-static double round_number(double spheres)
-{
-    const double unit = pow(10, fmax(0, floor(log10(spheres)) - 2));
-    return isfinite(spheres) ? ceil(spheres / unit - 1e-9) * unit : spheres;
-}
-
 static double find_number(const ms_expect *expect, int kind, double dice)
 {
-    return round_number(ms_expect_spheres(expect, (ms_expect_kind)kind, dice));
+    return ms_expect_round(ms_expect_spheres(expect, (ms_expect_kind)kind, dice));
 }
 
 void ms_expectation_print(FILE *stream, const ms_expect *expect)
@@ -117,7 +110,7 @@ void ms_expectation_print(FILE *stream, const ms_expect *expect)
         for (int i = 0; i < N_MISMATCHES; i++) {
             fprintf(stream, " %7g", find_number(expect, kind, MISMATCHES[i]));
         }
-        fprintf(stream, " %14g", round_number(ms_expect_least_spheres(expect, (ms_expect_kind)kind)));
+        fprintf(stream, " %14g", ms_expect_round(ms_expect_least_spheres(expect, (ms_expect_kind)kind)));
     }
     putc('\n', stream);
 }
@@ -145,8 +138,8 @@ json_t *ms_expectation_json(const ms_expect *expect)
                                                   find_number(expect, 1, MISMATCHES[i])));
     }
     return json_pack("{s:o,s:o,s:o,s:[f,f]}", "dice", dice, "spheres", spheres, "least_spheres",
-                     pair_json(NULL, 0, round_number(ms_expect_least_spheres(expect, MS_EXPECT_FREE)),
-                               round_number(ms_expect_least_spheres(expect, MS_EXPECT_INSCRIBED))),
+                     pair_json(NULL, 0, ms_expect_round(ms_expect_least_spheres(expect, MS_EXPECT_FREE)),
+                               ms_expect_round(ms_expect_least_spheres(expect, MS_EXPECT_INSCRIBED))),
                      "range", 1 / MS_EXPECT_RANGE, MS_EXPECT_RANGE);
 }
 
@@ -163,7 +156,7 @@ ms_status ms_expectation_warn(const ms_expect *expect, const ms_input *input, si
         fprintf(stderr,
                 "%s: for %zu spheres the least D to be expected is about %.2g: most of the shape is too thin for so "
                 "few; %g would bring it to about %.2g\n",
-                input->path, n, dice, round_number(least), ms_expect_dice(&whole, MS_EXPECT_FREE, least));
+                input->path, n, dice, ms_expect_round(least), ms_expect_dice(&whole, MS_EXPECT_FREE, least));
     }
     return status;
 }

@@ -11,7 +11,6 @@
 #include "cli/ms_report.h"
 #include "cli/ms_until.h"
 #include "compare/ms_compare.h"
-#include "compare/ms_compare_report.h"
 #include "compare/ms_compare_walk.h"
 #include "ms_commands.h"
 
@@ -44,10 +43,8 @@ static const ms_flag FLAGS[] = {
 
 typedef struct compare_arguments {
     ms_comparison comparison;
-    const char *output, *report;
+    const char *output;
     int resume, json;
-    int argc; /* as the command was typed */
-    char **argv;
 } compare_arguments;
 
 static void insert_number(ms_numbers *list, double value)
@@ -121,7 +118,7 @@ static ms_status take_compare_flag(void *context, const char *name, const char *
         return MS_OK;
     }
     const char **const file = strcmp(name, "output") == 0   ? &a->output
-                              : strcmp(name, "report") == 0 ? &a->report
+                              : strcmp(name, "report") == 0 ? &c->report
                               : strcmp(name, "charts") == 0 ? &c->charts
                                                             : &c->population;
     *file = value;
@@ -129,8 +126,7 @@ static ms_status take_compare_flag(void *context, const char *name, const char *
 }
 
 /* What can be known before the work. The folders are there as long as `files` is. */
-static ms_status check_files(ms_files *files, const ms_comparison *c, const char *output, const char *report,
-                             ms_error *err)
+static ms_status check_files(ms_files *files, const ms_comparison *c, const char *output, ms_error *err)
 {
     for (size_t s = 0; s < c->n_shapes; s++) {
         if (access(c->shape[s], R_OK) != 0) {
@@ -147,8 +143,8 @@ static ms_status check_files(ms_files *files, const ms_comparison *c, const char
     if (status == MS_OK) {
         status = ms_files_add(files, output, MS_FILE_WRITTEN, err);
     }
-    if (status == MS_OK && report) {
-        status = ms_files_add(files, report, MS_FILE_WRITTEN, err);
+    if (status == MS_OK && c->report) {
+        status = ms_files_add(files, c->report, MS_FILE_WRITTEN, err);
     }
     if (status == MS_OK) {
         status = ms_files_check(files, err);
@@ -157,16 +153,13 @@ static ms_status check_files(ms_files *files, const ms_comparison *c, const char
 }
 
 /* What was walked is told, even where each row failed. */
-static ms_status walk_and_report(ms_csv *csv, const compare_arguments *a, ms_error *err)
+static ms_status walk_and_tell(ms_csv *csv, const compare_arguments *a, ms_error *err)
 {
     ms_error cause;
     const ms_status walked = ms_compare_walk(csv, &a->comparison, err);
     const ms_status told =
         a->json ? ms_report_print(stdout, ms_compare_json(csv->row, csv->n_rows), walked == MS_OK ? err : &cause)
                 : MS_OK;
-    if (a->report && walked == MS_OK && told == MS_OK) {
-        return ms_compare_report_write(a->report, csv, &a->comparison, a->argc, a->argv, err);
-    }
     return walked == MS_OK ? told : walked;
 }
 
@@ -196,13 +189,13 @@ static int execute_compare(const ms_command *command, const compare_arguments *a
     ms_csv csv;
     ms_files files = {0};
     char *header = ms_compare_header();
-    ms_status status = header ? check_files(&files, &a->comparison, a->output, a->report, &err)
+    ms_status status = header ? check_files(&files, &a->comparison, a->output, &err)
                               : ms_fail(&err, MS_ERR_NOMEM, "no memory for the header");
     if (status == MS_OK) {
         say_small_clumps(&a->comparison);
         status = ms_csv_open(&csv, a->output, header, a->resume, &err);
         if (status == MS_OK) {
-            status = walk_and_report(&csv, a, &err);
+            status = walk_and_tell(&csv, a, &err);
         }
         ms_csv_close(&csv);
     }
@@ -282,7 +275,7 @@ static int compare_shapes(const ms_command *command, compare_arguments *a, char 
     a->comparison.shape = paths.path;
     a->comparison.n_shapes = paths.count;
     a->comparison.words = a->json ? stderr : stdout;
-    status = a->report && !a->comparison.charts
+    status = a->comparison.report && !a->comparison.charts
                  ? ms_fail(&err, MS_ERR_ARG, "--report takes --charts DIR, where the clumps are kept")
                  : resolve_compare(&a->comparison, &err);
     const int code = status == MS_OK ? execute_compare(command, a) : ms_flags_refuse(command, status, &err);
@@ -292,8 +285,8 @@ static int compare_shapes(const ms_command *command, compare_arguments *a, char 
 
 static int run_compare(const ms_command *command, int argc, char **argv)
 {
-    compare_arguments a = {
-        .comparison = {.repeats = 1, .seed = 1}, .output = "compare.csv", .argc = argc, .argv = argv};
+    compare_arguments a = {.comparison = {.repeats = 1, .seed = 1, .argc = argc, .argv = argv},
+                           .output = "compare.csv"};
     int first;
     ms_input_defaults(&a.comparison.input);
     int code = ms_flags_parse(&first, command, 0, argc, argv, take_compare_flag, &a);

@@ -13,11 +13,7 @@
 #include "clump/formats/ms_read.h"
 #include "clump/ms_particle.h"
 #include "contact/ms_contact_report.h"
-#include "mesh/ms_hull.h"
 #include "ms_commands.h"
-#include "voxel/ms_grid_hull.h"
-
-static const double PI = 3.14159265358979323846;
 
 static const ms_flag FLAGS[] = {
     {"target", 't', "SHAPE", "the mesh or volume that the clump stands for: its volume, centre and poses"},
@@ -43,11 +39,11 @@ typedef struct contact_arguments {
     int json, csv, factors;
 } contact_arguments;
 
-/* What the clump stands for, and both bodies about its centre of mass. */
+/* A clump, and what it stands for. */
 typedef struct contact_bodies {
-    ms_clump spheres;
-    ms_support clump, shape; /* `shape` is empty without --target */
-    double r_eq;
+    ms_clump clump;
+    ms_body body;
+    ms_support shape; /* empty without --target */
 } contact_bodies;
 
 static ms_status take_overlaps(ms_contact_options *options, const char *value, ms_error *err)
@@ -56,7 +52,7 @@ static ms_status take_overlaps(ms_contact_options *options, const char *value, m
     for (const char *at = value;; at++) {
         const ms_word word = {at, strcspn(at, ",")};
         double part;
-        if (!ms_text_to_double(&part, &word) || !(part >= 1e-9 && part <= 0.1)) {
+        if (!ms_text_to_double(&part, &word) || !(part >= 1e-9 && part <= MS_CONTACT_MOST_OVERLAP)) {
             return ms_fail(err, MS_ERR_ARG, "--overlap takes parts of r_eq from 1e-9 to 0.1, as 0.001,0.01, not %s",
                            value);
         }
@@ -113,97 +109,54 @@ static ms_status take_contact_flag(void *context, const char *name, const char *
     return MS_OK;
 }
 
-/* The hull of voxels, in the unit of the shape. */
-static ms_status hull_of_volume(ms_mesh *hull, ms_input *input, const ms_input_flags *flags, ms_error *err)
-{
-    ms_mesh centres;
-    const ms_grid *grid = &input->target.grid;
-    ms_status status = ms_target_voxels_from_volume(&input->target, &input->volume, flags->label, err);
-    if (status == MS_OK) {
-        status = ms_grid_hull_build(&centres, hull, grid, err);
-        status = status == MS_ERR_SHAPE && hull->n_vertices ? MS_OK : status; /* flat: no hull of the centres */
-        ms_mesh_free(&centres);
-    }
-    for (size_t v = 0; status == MS_OK && v < hull->n_vertices; v++) {
-        for (int k = 0; k < 3; k++) {
-            hull->vertex[v][k] = grid->origin[k] + grid->h * hull->vertex[v][k];
-        }
-    }
-    return status;
-}
-
-/* What the mesh reaches with; where this build can, of its hull alone, which is less. */
-static ms_status hull_of_mesh(ms_mesh *hull, const ms_input *input, ms_error *err)
-{
-    if (!input->report.closed) {
-        return ms_fail(err, MS_ERR_SHAPE, "%s is not closed and has no centre of mass; mend it (--fill-holes, --weld)",
-                       input->path);
-    }
-    return ms_hull_is_built() ? ms_hull_build(hull, (const double(*)[3])input->mesh.vertex, input->mesh.n_vertices, err)
-                              : MS_OK;
-}
-
-static ms_status read_shape(contact_bodies *b, ms_body *body, const contact_arguments *a, ms_error *err)
+static ms_status read_shape(contact_bodies *b, const contact_arguments *a, ms_error *err)
 {
     ms_input input;
-    ms_mesh hull = {0};
     ms_status status = ms_input_read(&input, a->target, &a->input, err);
     if (status != MS_OK) {
         return status;
     }
     status = ms_input_check_flags(&input, &a->input, err);
-    if (status == MS_OK) {
-        status = input.is_volume ? hull_of_volume(&hull, &input, &a->input, err) : hull_of_mesh(&hull, &input, err);
+    if (status == MS_OK && input.is_volume) {
+        status = ms_target_voxels_from_volume(&input.target, &input.volume, a->input.label, err);
+    } else if (status == MS_OK && !input.report.closed) {
+        status = ms_fail(err, MS_ERR_SHAPE,
+                         "%s is not closed and has no centre of mass; mend it (--fill-holes, --weld)", input.path);
     }
-    *body = input.is_volume ? input.target.body : input.solid.body;
     if (status == MS_OK) {
-        status = ms_support_from_mesh(&b->shape, hull.n_vertices ? &hull : &input.mesh, body->centroid, err);
+        b->body = input.is_volume ? input.target.body : input.solid.body;
+        status = input.is_volume ? ms_support_from_grid(&b->shape, &input.target.grid, b->body.centroid, err)
+                                 : ms_support_from_mesh(&b->shape, &input.mesh, b->body.centroid, err);
     }
-    ms_mesh_free(&hull);
     ms_input_free(&input);
     return status;
-}
-
-/* Spheres in another unit than the shape, or far off, would have poses and overlaps that mean nothing. */
-static ms_status check_reach(const contact_bodies *b, const contact_arguments *a, ms_error *err)
-{
-    enum { FACTOR = 500 }; /* that of a cylinder 27000 times as long as its radius, and below the 1000 of mm for m */
-    double reach = 0;
-    for (int side = 0; side < 6; side++) {
-        double u[3] = {0};
-        u[side / 2] = side % 2 ? 1 : -1;
-        reach = fmax(reach, ms_support_height(&b->clump, u));
-    }
-    return reach < FACTOR * b->r_eq && b->r_eq < FACTOR * reach
-               ? MS_OK
-               : ms_fail(err, MS_ERR_LIMIT,
-                         "%s reaches %g from a centre of mass about which r_eq is %g; check units and frame of the "
-                         "spheres",
-                         ms_file_name(a->clump), reach, b->r_eq);
 }
 
 /* Volume and centre of mass: of the shape, of the particle that the file knows, or of the union of the spheres. */
 static ms_status read_bodies(contact_bodies *b, const contact_arguments *a, ms_error *err)
 {
-    ms_body body;
     ms_particle particle;
-    ms_status status = ms_read_clump(&b->spheres, &particle, a->clump, err);
+    const ms_status status = ms_read_clump(&b->clump, &particle, a->clump, err);
     if (status != MS_OK) {
         return status;
     }
     if (a->target) {
-        status = read_shape(b, &body, a, err);
-    } else if (particle.mass > 0 && particle.density > 0) {
-        body.volume = particle.mass / particle.density / pow(particle.scale, 3);
-        memcpy(body.centroid, particle.centre, sizeof body.centroid);
-    } else {
-        status = ms_particle_union(&body, &b->spheres, ms_input_max_voxels(&a->input), err);
+        return read_shape(b, a, err);
     }
-    if (status == MS_OK) {
-        b->r_eq = cbrt(3 * body.volume / (4 * PI));
-        status = ms_support_from_clump(&b->clump, &b->spheres, body.centroid, err);
+    if (particle.mass > 0 && particle.density > 0) {
+        b->body.volume = particle.mass / particle.density / pow(particle.scale, 3);
+        memcpy(b->body.centroid, particle.centre, sizeof b->body.centroid);
+        return MS_OK;
     }
-    return status == MS_OK ? check_reach(b, a, err) : status;
+    return ms_particle_union(&b->body, &b->clump, ms_input_max_voxels(&a->input), err);
+}
+
+static ms_status study_contact(ms_contact *contact, const contact_bodies *b, const contact_arguments *a, ms_error *err)
+{
+    ms_error cause;
+    const ms_status status =
+        ms_contact_study(contact, &b->clump, &b->body, b->shape.count ? &b->shape : NULL, &a->options, &cause);
+    return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", ms_file_name(a->clump), cause.text);
 }
 
 static json_t *contact_json(const contact_arguments *a, const ms_contact *contact, size_t spheres)
@@ -221,22 +174,22 @@ static json_t *contact_json(const contact_arguments *a, const ms_contact *contac
 
 static ms_status execute_contact(const contact_arguments *a, ms_error *err)
 {
-    contact_bodies b = {.r_eq = 0};
+    contact_bodies b = {.clump = {0}};
     ms_contact contact;
     if (a->input.threads) {
         omp_set_num_threads(a->input.threads);
     }
     ms_status status = read_bodies(&b, a, err);
     if (status == MS_OK) {
-        status = ms_contact_study(&contact, &b.clump, b.shape.count ? &b.shape : NULL, b.r_eq, &a->options, err);
+        status = study_contact(&contact, &b, a, err);
     }
     if (status == MS_OK) {
         if (a->json) {
-            status = ms_report_print(stdout, contact_json(a, &contact, b.spheres.n_spheres), err);
+            status = ms_report_print(stdout, contact_json(a, &contact, b.clump.n_spheres), err);
         } else if (a->csv) {
             ms_contact_report_csv(stdout, &contact);
         } else {
-            printf("%s, %zu spheres\n", ms_file_name(a->clump), b.spheres.n_spheres);
+            printf("%s, %zu spheres\n", ms_file_name(a->clump), b.clump.n_spheres);
             ms_contact_report_print(stdout, &contact);
             if (a->factors) {
                 ms_contact_report_factors(stdout, &contact, a->options.restitution);
@@ -244,9 +197,8 @@ static ms_status execute_contact(const contact_arguments *a, ms_error *err)
         }
         ms_contact_free(&contact);
     }
-    ms_support_free(&b.clump);
     ms_support_free(&b.shape);
-    ms_clump_free(&b.spheres);
+    ms_clump_free(&b.clump);
     return status;
 }
 
@@ -267,9 +219,7 @@ static ms_status resolve_contact(const contact_arguments *a, ms_error *err)
 
 static int run_contact(const ms_command *command, int argc, char **argv)
 {
-    contact_arguments a = {
-        .options = {
-            .orientations = 1000, .restitution = 0.5, .overlap = {0.0005, 0.002, 0.01}, .n_overlaps = 3, .seed = 1}};
+    contact_arguments a = {.options = ms_contact_defaults()};
     int first;
     ms_error err;
     ms_input_defaults(&a.input);

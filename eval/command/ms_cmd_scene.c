@@ -12,6 +12,7 @@
 #include "cli/ms_until.h"
 #include "clump/formats/ms_json.h"
 #include "ms_commands.h"
+#include "scene/ms_scene_charts.h"
 #include "scene/ms_scene_choose.h"
 #include "scene/ms_scene_engines.h"
 #include "scene/ms_scene_page.h"
@@ -36,7 +37,8 @@ static const ms_flag FLAGS[] = {
     {"equal-volume", 0, NULL,
      "scale each template about the centroid of its shape until its union has the shape's volume"},
     MS_SCENE_ENGINE_FLAGS,
-    {"report", 0, "FILE", "a page with a row for each shape and the templates in 3-D (.html)"},
+    {"charts", 0, "DIR", "charts of D, or what the tolerance is of, by number of spheres; takes gnuplot"},
+    {"report", 0, "FILE", "a page with a row for each shape, the charts, if any, and the templates in 3-D (.html)"},
     {"json", 0, NULL, "as JSON"},
     MS_INPUT_FLAGS,
     {0},
@@ -52,7 +54,7 @@ typedef struct scene_arguments {
     const char *folder;
     const ms_format *format[MS_OUTPUTS_FORMATS];
     size_t n_formats;
-    const char *report; /* path of the page; NULL: none */
+    const char *charts, *report; /* folder; path of the page; NULL: none */
     int equal_volume, json, argc;
     char *const *argv;
 } scene_arguments;
@@ -148,9 +150,9 @@ static ms_status take_scene_flag(void *context, const char *name, const char *va
     if (strcmp(name, "min-radius") == 0) {
         return ms_until_min_radius(&a->min_radius, value, err);
     }
-    if (strcmp(name, "output") == 0) {
-        a->folder = value;
-        return value[0] ? MS_OK : ms_fail(err, MS_ERR_ARG, "--output '' names no folder");
+    if (strcmp(name, "output") == 0 || strcmp(name, "charts") == 0) {
+        *(name[0] == 'o' ? &a->folder : &a->charts) = value;
+        return value[0] ? MS_OK : ms_fail(err, MS_ERR_ARG, "--%s '' names no folder", name);
     }
     if (strcmp(name, "report") == 0) {
         a->report = value;
@@ -267,6 +269,9 @@ static ms_status check_scene_files(const ms_outputs *outputs, const scene_argume
     const char *refined = a->recipe.settings.clump_file;
     ms_files files = {0};
     ms_status status = ms_files_add(&files, a->source, MS_FILE_READ, err);
+    if (status == MS_OK && a->charts) {
+        status = ms_files_add_folder(&files, a->charts, err);
+    }
     if (status == MS_OK && refined) {
         status = ms_files_add(&files, refined, MS_FILE_READ, err);
     }
@@ -274,6 +279,9 @@ static ms_status check_scene_files(const ms_outputs *outputs, const scene_argume
         status = ms_files_add_shape(&files, manifest->row[r].path, err);
         if (status == MS_OK) {
             status = ms_outputs_list(&files, &outputs[r], err);
+        }
+        if (status == MS_OK && a->charts) {
+            status = ms_scene_charts_list(&files, a->charts, &manifest->row[r], r + 1, &a->goal, err);
         }
     }
     if (status == MS_OK) {
@@ -324,14 +332,18 @@ static ms_status write_templates(const ms_outputs *outputs, const scene_argument
                : status;
 }
 
-static ms_status write_report(const scene_arguments *a, const ms_scene *scene, const ms_scene_run *run, ms_error *err)
+/* Charts and page; that without its charts, too, where gnuplot is not there. */
+static ms_status show_scene(const scene_arguments *a, const ms_scene *scene, const ms_scene_run *run, ms_error *err)
 {
-    const ms_scene_page page = {.scene = scene, .goal = &a->goal, .run = run, .argc = a->argc, .argv = a->argv};
-    const ms_status status = ms_scene_page_write(a->report, &page, err);
-    if (status == MS_OK) {
-        fprintf(a->json ? stderr : stdout, "wrote %s\n", a->report);
+    ms_error cause;
+    FILE *words = a->json ? stderr : stdout;
+    const ms_scene_page page = {scene, &a->goal, run, a->charts, a->argc, a->argv};
+    const ms_status drawn = a->charts ? ms_scene_charts_draw(scene, &a->goal, a->charts, words, err) : MS_OK,
+                    shown = a->report ? ms_scene_page_write(a->report, &page, drawn == MS_OK ? err : &cause) : MS_OK;
+    if (a->report && shown == MS_OK) {
+        fprintf(words, "wrote %s\n", a->report);
     }
-    return status;
+    return drawn == MS_OK ? shown : drawn;
 }
 
 static ms_status report_scene(const scene_arguments *a, const ms_scene *scene, ms_error *err)
@@ -362,7 +374,7 @@ static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, 
     ms_scene scene;
     const ms_scene_run run = {&a->recipe, &a->input, (size_t)a->max_spheres, a->min_radius, a->equal_volume};
     ms_status status = plan_outputs(outputs, a, manifest, err);
-    if (status == MS_OK && (a->folder || a->report)) {
+    if (status == MS_OK && (a->folder || a->charts || a->report)) {
         status = check_scene_files(outputs, a, manifest, err);
     }
     if (status == MS_OK) {
@@ -379,8 +391,8 @@ static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, 
     if (status == MS_OK) {
         status = write_templates(outputs, a, &scene, err);
     }
-    if (status == MS_OK && a->report) {
-        status = write_report(a, &scene, &run, err);
+    if (status == MS_OK) {
+        status = show_scene(a, &scene, &run, err);
     }
     ms_scene_free(&scene);
     return status;

@@ -207,9 +207,13 @@ static ms_status report_stability(const stability_arguments *a, const ms_stabili
     free(groups);
     if (status == MS_OK && a->charts) {
         status = ms_files_make_folder(a->charts, err);
-        status = status == MS_OK ? ms_stability_charts(a->charts, &a->methods, run, count, err) : status;
     }
-    if (status == MS_OK && a->report) {
+    if (status != MS_OK) {
+        return status;
+    }
+    const ms_status drawn = a->charts ? ms_stability_charts(a->charts, &a->methods, run, count, err) : MS_OK;
+    if (a->report) { /* without its charts, too, where gnuplot is not there */
+        ms_error cause;
         const ms_stability_report report = {.plan = &a->plan,
                                             .run = run,
                                             .n_runs = count,
@@ -217,8 +221,9 @@ static ms_status report_stability(const stability_arguments *a, const ms_stabili
                                             .charts = a->charts,
                                             .argc = a->argc,
                                             .argv = a->argv};
-        status = ms_stability_report_write(a->report, &report, err);
+        status = ms_stability_report_write(a->report, &report, drawn == MS_OK ? err : &cause);
     }
+    status = drawn == MS_OK ? status : drawn;
     return status == MS_OK ? check_any_gave(run, count, err) : status;
 }
 

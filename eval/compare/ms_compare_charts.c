@@ -268,19 +268,6 @@ static void add_bars(char *out, size_t size, const records *all, const ms_compar
     }
 }
 
-ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, FILE *words, ms_error *err)
-{
-    if (!ms_chart_is_one(chart)) { /* nor where every run failed: the rows say why */
-        ms_chart_say(words, chart, stem);
-        return MS_OK;
-    }
-    ms_status status = ms_chart_write(chart, stem, err);
-    if (status == MS_OK && (status = ms_chart_draw(stem, err)) == MS_OK) {
-        fprintf(words, "drew %s.svg, .png\n", stem);
-    }
-    return status;
-}
-
 static ms_status draw_compare_chart(const records *all, const ms_compare_record *shape, const chart_kind *k,
                                     ms_error *err)
 {
@@ -309,7 +296,7 @@ static ms_status draw_compare_chart(const records *all, const ms_compare_record 
                                 .n_series = d.n_series,
                                 .series = d.series};
         snprintf(stem, room, "%s/%s-%s", all->folder, name, k->name);
-        status = ms_compare_charts_draw(&chart, stem, all->words, err);
+        status = ms_chart_make(&chart, stem, all->words, err);
     }
     free_draft(&d);
     free(stem);

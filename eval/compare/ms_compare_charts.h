@@ -22,15 +22,9 @@
  *
  * @param folder exists
  * @param words  where it says what it drew
- * @return MS_OK; as ms_files_remove, ms_chart_write, ms_chart_draw
+ * @return MS_OK; as ms_files_remove, ms_chart_make
  */
 ms_status ms_compare_charts(const ms_compare_records *all, const char *folder, FILE *words, ms_error *err);
-
-/**
- * Writes and draws one, and says so. What is no chart (ms_chart_is_one), as a single point, is said in words instead.
- * @return as above
- */
-ms_status ms_compare_charts_draw(const ms_chart *chart, const char *stem, FILE *words, ms_error *err);
 
 /**
  * How the times of a shape were measured: machine, threads, of how many runs they are the medians, and whether others

@@ -275,7 +275,7 @@ static ms_status draw_population(const ms_compare_population *p, curves *d, cons
                             .y_least = 1e-6,
                             .n_series = 2 * p->n_methods,
                             .series = d->series};
-    return ms_compare_charts_draw(&chart, stem, words, err);
+    return ms_chart_make(&chart, stem, words, err);
 }
 
 static void free_curves(curves *d, const ms_compare_population *p)

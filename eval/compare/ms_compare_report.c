@@ -183,13 +183,13 @@ static ms_status put_shape(FILE *stream, const report_work *w, size_t shape, siz
 }
 
 /* The charts that there can be, in the order of the shapes. */
-static ms_status begin_page(FILE *stream, const report_work *w, int argc, char *const *argv, ms_error *err)
+static ms_status begin_page(FILE *stream, const report_work *w, ms_error *err)
 {
     ms_files files = {0};
     const char *column[MS_COLUMNS], **chart = NULL;
     ms_view_report report = {.title = "comparison of clumps",
-                             .argc = argc,
-                             .argv = argv,
+                             .argc = w->a->argc,
+                             .argv = w->a->argv,
                              .column = column,
                              .shown = SHOWN,
                              .n_columns = MS_COLUMNS,
@@ -217,12 +217,12 @@ static ms_status begin_page(FILE *stream, const report_work *w, int argc, char *
     return status;
 }
 
-static ms_status write_page(FILE *stream, report_work *w, int argc, char *const *argv, ms_error *err)
+static ms_status write_page(FILE *stream, report_work *w, ms_error *err)
 {
     size_t written = 0;
     ms_status status = find_scenes(w, err);
     if (status == MS_OK) {
-        status = begin_page(stream, w, argc, argv, err);
+        status = begin_page(stream, w, err);
     }
     for (size_t s = 0; s < w->a->n_shapes && status == MS_OK; s++) {
         status = put_shape(stream, w, s, &written, err);
@@ -231,26 +231,25 @@ static ms_status write_page(FILE *stream, report_work *w, int argc, char *const 
     return status;
 }
 
-ms_status ms_compare_report_write(const char *path, const ms_csv *csv, const ms_comparison *comparison, int argc,
-                                  char *const *argv, ms_error *err)
+ms_status ms_compare_report_write(const ms_csv *csv, const ms_comparison *comparison, ms_error *err)
 {
     ms_output output;
     report_work w = {.a = comparison,
                      .csv = csv,
                      .subject = calloc(csv->n_rows + 1, sizeof *w.subject),
                      .scene = calloc(csv->n_rows + 1, sizeof *w.scene)};
-    ms_status status = w.subject && w.scene ? ms_output_open(&output, path, err)
+    ms_status status = w.subject && w.scene ? ms_output_open(&output, comparison->report, err)
                                             : ms_fail(err, MS_ERR_NOMEM, "no memory for the report");
     if (status == MS_OK) {
-        status = ms_output_close(&output, write_page(output.stream, &w, argc, argv, err), err);
+        status = ms_output_close(&output, write_page(output.stream, &w, err), err);
     }
     for (size_t r = 0; w.subject && r < csv->n_rows; r++) {
         free(w.subject[r].clump);
     }
     free(w.subject);
     free(w.scene);
-    if (status == MS_OK && !ms_file_is_standard(path)) {
-        fprintf(comparison->words, "wrote %s\n", path);
+    if (status == MS_OK && !ms_file_is_standard(comparison->report)) {
+        fprintf(comparison->words, "wrote %s\n", comparison->report);
     }
     return status;
 }

@@ -7,12 +7,10 @@
 
 /**
  * Writes a page with all rows, the charts in the folder of the comparison, and the clumps that were kept there, each
- * with its shape (ms_view_report.h). After ms_compare_walk; reads each shape once more.
+ * with its shape (ms_view_report.h). After the charts; reads each shape once more.
  *
- * @param argv the command without the program's name
  * @return MS_OK; as ms_input_read, ms_input_target, ms_read_spheres, ms_view_scene_write; MS_ERR_IO; MS_ERR_NOMEM
  */
-ms_status ms_compare_report_write(const char *path, const ms_csv *csv, const ms_comparison *comparison, int argc,
-                                  char *const *argv, ms_error *err);
+ms_status ms_compare_report_write(const ms_csv *csv, const ms_comparison *comparison, ms_error *err);
 
 #endif

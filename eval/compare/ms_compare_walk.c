@@ -13,6 +13,7 @@
 #include "ms_compare_charts.h"
 #include "ms_compare_plan.h"
 #include "ms_compare_population_write.h"
+#include "ms_compare_report.h"
 #include "ms_compare_sheet.h"
 #include "ms_compare_verdict.h"
 #include "ms_trial.h"
@@ -334,7 +335,7 @@ static ms_status walk_plan(compare_walk *w, ms_error *err)
     return status;
 }
 
-/* What is made of all rows together: charts, the population, the verdict. */
+/* What is made of all rows together: charts, the population, the page, the verdict. */
 static void conclude(compare_walk *w)
 {
     const ms_comparison *a = w->a;
@@ -347,6 +348,9 @@ static void conclude(compare_walk *w)
     }
     if (cut == MS_OK && a->population) {
         note_drawn(w, ms_compare_population_write(&all, a->population, a->words, &why), &why);
+    }
+    if (cut == MS_OK && a->report) { /* without its charts, too, where gnuplot is not there */
+        note_drawn(w, ms_compare_report_write(w->csv, a, &why), &why);
     }
     if (cut == MS_OK) {
         note_drawn(w, ms_compare_verdict_say(stderr, &all, &why), &why);

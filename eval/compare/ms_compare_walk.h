@@ -29,6 +29,9 @@ typedef struct ms_comparison {
     FILE *words;            /* where rows are said */
     const char *charts;     /* folder, which exists; NULL for none */
     const char *population; /* the same, of tables and charts of all shapes together */
+    const char *report;     /* path of the page, which takes the clumps kept beside the charts; NULL for none */
+    int argc;               /* the command as it was typed, for the page: without the program's name */
+    char *const *argv;
 } ms_comparison;
 
 /** Adds what is read, shapes and clumps, and the files of the charts. @return MS_OK; MS_ERR_ARG for two shapes of one
@@ -38,7 +41,7 @@ ms_status ms_compare_list_files(ms_files *files, const ms_comparison *comparison
 /**
  * Adds the rows of all runs, in a fixed order; those that are there already must be its first rows, and are not run
  * again. Runs go side by side (ms_queue.h), unless times are the result: with charts, or repeats. Says each row.
- * Then draws the charts, writes the tables of the population, and says on stderr what it comes to.
+ * Then draws the charts, writes the tables of the population and the page, and says on stderr what it comes to.
  *
  * @param csv with ms_compare_header
  * @return MS_OK, also where some runs failed: that is in their rows; MS_ERR_SHAPE where each of the new ones did, when

@@ -6,7 +6,7 @@
 #include "chart/ms_csv.h"
 #include "cli/ms_json_object.h"
 #include "cli/ms_report.h"
-#include "ms_factors.h"
+#include "contact/ms_factors.h"
 
 static const char *const AGAINST[] = {[MS_CONTACT_PLANE] = "plane", [MS_CONTACT_PARTICLE] = "particle"};
 static const char *const WHERE[] = {[MS_CONTACT_RANDOM] = "random", [MS_CONTACT_POSES] = "poses"};

@@ -5,7 +5,7 @@
 #include <jansson.h>
 #include <stdio.h>
 
-#include "ms_contact.h"
+#include "contact/ms_contact.h"
 
 void ms_contact_report_print(FILE *stream, const ms_contact *contact);
 

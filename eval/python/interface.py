@@ -35,6 +35,7 @@ ms_status ms_mesh_parse(ms_mesh *mesh, ms_error *remark, const ms_bytes *bytes, 
 ms_status ms_mesh_mend(ms_mesh *mesh, ms_mesh_report *report, const ms_mesh_mending *how, ms_error *err);
 void ms_mesh_box(double *lo, double *hi, const ms_mesh *mesh);
 double ms_mesh_area(const ms_mesh *mesh);
+ms_status ms_mesh_decimate(ms_mesh *out, const ms_mesh *mesh, size_t most_triangles, ms_error *err);
 void ms_mesh_free(ms_mesh *mesh);
 int ms_mesh_read_is_mesh_path(const char *path);
 ms_status ms_solid_mesh(ms_solid *solid, const ms_mesh *mesh, ms_error *err);
@@ -189,6 +190,72 @@ ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_
 ms_status ms_carriers_solve(ms_clump *clump, ms_density_report *report, const ms_particle *particle,
                             const ms_carriers_options *options, ms_error *err);
 ms_status ms_equal_volume_scale(ms_clump *clump, ms_equal_volume *done, const ms_body *body, ms_error *err);
+
+/* what is expected */
+typedef struct { ...; } ms_expect;
+typedef enum { MS_EXPECT_FREE, MS_EXPECT_INSCRIBED, ... } ms_expect_kind;
+static const double MS_EXPECT_RANGE;
+static const double MS_EXPECT_RANGE_MANY;
+ms_status ms_expect_mesh(ms_expect *expect, const ms_mesh *mesh, ms_error *err);
+ms_status ms_expect_grid(ms_expect *expect, const ms_grid *grid, ms_error *err);
+double ms_expect_dice(const ms_expect *expect, ms_expect_kind kind, double spheres);
+double ms_expect_spheres(const ms_expect *expect, ms_expect_kind kind, double dice);
+double ms_expect_least_spheres(const ms_expect *expect, ms_expect_kind kind);
+double ms_expect_round(double spheres);
+
+/* contacts */
+#define MS_CONTACT_MAX_OVERLAPS ...
+static const double MS_CONTACT_MOST_OVERLAP;
+typedef struct { size_t count; ...; } ms_support;
+typedef struct {
+    size_t orientations;
+    double restitution;
+    double overlap[...];
+    size_t n_overlaps;
+    unsigned long seed;
+    ...;
+} ms_contact_options;
+typedef struct { size_t count; ...; } ms_touch;
+typedef enum { MS_CONTACT_PLANE, MS_CONTACT_PARTICLE, ... } ms_contact_against;
+typedef enum { MS_CONTACT_RANDOM, MS_CONTACT_POSES, ... } ms_contact_where;
+typedef struct { ms_touch touch; double weight; ...; } ms_contact_sample;
+typedef struct {
+    ms_contact_against against;
+    ms_contact_where where;
+    double overlap;
+    size_t samples;
+    ms_contact_sample *sample;
+    double whole, missed, mean;
+    size_t median, most;
+    double stiffness, most_stiffness, damping, most_damping, restitution, least_restitution, overdamped;
+    ...;
+} ms_contact_row;
+typedef struct { double friction, mean, largest, slope_mean, slope_largest, jammed, missed; ...; } ms_sled;
+typedef struct { double overlap; ms_sled sled[...]; ...; } ms_contact_sled;
+typedef struct { double direction[3]; double height, barrier, share; ...; } ms_pose;
+typedef struct { double mean_width; ms_pose *pose; size_t n_poses; ...; } ms_contact_form;
+typedef struct {
+    double r_eq;
+    ms_contact_form clump, shape;
+    double rms;
+    size_t n_rows;
+    ms_contact_row row[...];
+    const ms_pose *face;
+    size_t n_sleds;
+    ms_contact_sled sled[...];
+    ...;
+} ms_contact;
+typedef struct { double modulus, restitution, softest, bounciest; ...; } ms_factors;
+ms_contact_options ms_contact_defaults(void);
+ms_status ms_contact_study(ms_contact *contact, const ms_clump *clump, const ms_body *body, const ms_support *shape,
+                           const ms_contact_options *options, ms_error *err);
+const ms_pose *ms_contact_nearest(double *angle, const ms_contact_form *from, const double *direction);
+void ms_contact_free(ms_contact *contact);
+ms_factors ms_factors_of(const ms_contact *contact, const ms_contact_row *row, double single);
+ms_status ms_support_from_mesh(ms_support *body, const ms_mesh *mesh, const double *centre, ms_error *err);
+ms_status ms_support_from_grid(ms_support *body, const ms_grid *grid, const double *centre, ms_error *err);
+void ms_support_free(ms_support *body);
+ms_status ms_particle_union(ms_body *body, const ms_clump *clump, size_t max_voxels, ms_error *err);
 
 /* files */
 #define MS_WRITE_REMARK ...

@@ -4,6 +4,7 @@
 
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
+#include "ms_scene_charts.h"
 #include "view/ms_view_page.h"
 #include "view/ms_view_report.h"
 #include "view/ms_view_scene.h"
@@ -45,9 +46,20 @@ static char *make_text(const ms_scene_page *page, const ms_scene_shape *shape)
     return fclose(stream) == 0 ? text : NULL;
 }
 
+static ms_status list_charts(ms_files *files, const ms_scene_page *page, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t s = 0; page->charts && s < page->scene->count && status == MS_OK; s++) {
+        status = ms_scene_charts_list(files, page->charts, page->scene->shape[s].row, s + 1, page->goal, err);
+    }
+    return status;
+}
+
 /* A scene of the page for each shape, in their order. */
 static ms_status begin_page(FILE *stream, const ms_scene_page *page, char **row, long *number, ms_error *err)
 {
+    ms_files files = {0};
+    const char **chart = NULL;
     size_t shown[N_COLUMNS];
     const size_t count = page->scene->count;
     const ms_csv csv = {.n_rows = count, .row = row};
@@ -70,8 +82,17 @@ static ms_status begin_page(FILE *stream, const ms_scene_page *page, char **row,
         row[s] = make_text(page, &page->scene->shape[s]);
         has_memory = row[s] != NULL;
     }
-    const ms_status status = has_memory ? ms_view_report_begin(stream, &report, err)
-                                        : ms_fail(err, MS_ERR_NOMEM, "no memory for the report");
+    ms_status status =
+        has_memory ? list_charts(&files, page, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the report");
+    if (status == MS_OK) {
+        status = ms_files_with_ending(&chart, &report.n_charts, &files, ".svg", err);
+    }
+    if (status == MS_OK) {
+        report.chart = chart;
+        status = ms_view_report_begin(stream, &report, err);
+    }
+    ms_files_free(&files);
+    free(chart);
     free(report.sums);
     return status;
 }

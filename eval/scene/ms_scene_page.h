@@ -9,7 +9,8 @@ typedef struct ms_scene_page {
     const ms_scene *scene; /* after ms_scene_choose */
     const ms_goal *goal;
     const ms_scene_run *run;
-    int argc; /* the command, without the program's name */
+    const char *charts; /* folder of ms_scene_charts_draw; NULL: none */
+    int argc;           /* the command, without the program's name */
     char *const *argv;
 } ms_scene_page;
 

@@ -115,11 +115,22 @@ static ms_status draw_levels(album *a, const ms_change *change, ms_error *err)
     return a->n_points ? draw_album_chart(a, change->name, chart, err) : MS_OK;
 }
 
+/* Without gnuplot all scripts are written nevertheless; the first failure is reported. */
+static void keep_first(ms_status *status, ms_error *err, ms_status drawn, const ms_error *why)
+{
+    if (*status == MS_OK && drawn != MS_OK) {
+        *status = drawn;
+        ms_fail(err, drawn, "%s", why->text);
+    }
+}
+
 static ms_status draw_method(album *a, ms_error *err)
 {
+    ms_error why;
     ms_status status = draw_all_changes(a, err);
-    for (const ms_change *change = ms_changes; change->name && status == MS_OK; change++) {
-        status = change->axis ? draw_levels(a, change, err) : MS_OK;
+    for (const ms_change *change = ms_changes; change->name; change++) {
+        const ms_status drawn = change->axis ? draw_levels(a, change, &why) : MS_OK;
+        keep_first(&status, err, drawn, &why);
     }
     return status;
 }
@@ -155,11 +166,13 @@ ms_status ms_stability_charts(const char *folder, const ms_methods *methods, con
                .series = malloc((n_runs + MS_CHANGE_MOST) * sizeof *a.series)};
     ms_status status = a.point && a.series ? remove_charts(folder, methods, err)
                                            : ms_fail(err, MS_ERR_NOMEM, "no memory for charts of %zu runs", n_runs);
-    for (size_t r = 0; r < n_runs && status == MS_OK; r++) {
+    const size_t count = status == MS_OK ? n_runs : 0;
+    for (size_t r = 0; r < count; r++) {
         if (!is_known(runs, r)) {
+            ms_error why;
             a.method = runs[r].method;
             a.number++;
-            status = draw_method(&a, err);
+            keep_first(&status, err, draw_method(&a, &why), &why);
         }
     }
     free(a.point);

@@ -87,9 +87,6 @@ static ms_status put_table(FILE *stream, const ms_view_report *report, ms_error 
 static ms_status put_chart(FILE *stream, const char *path, ms_error *err)
 {
     ms_bytes bytes;
-    if (access(path, F_OK) != 0) {
-        return MS_OK;
-    }
     const ms_status status = ms_file_read(&bytes, path, err);
     if (status == MS_OK) {
         const char *slash = strrchr(path, '/');
@@ -99,6 +96,36 @@ static ms_status put_chart(FILE *stream, const char *path, ms_error *err)
         ms_view_base64_put(stream, bytes.data, bytes.size, 1);
         fputs("\">\n", stream);
         ms_file_free(&bytes);
+    }
+    return status;
+}
+
+/* The script of a chart that gnuplot did not draw. */
+static ms_status put_undrawn(FILE *stream, const char *path, ms_error *err)
+{
+    const char *ending = strrchr(path, '.');
+    const size_t room = strlen(path) + sizeof ".gp";
+    char *script = malloc(room);
+    if (!script) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the charts of the report");
+    }
+    snprintf(script, room, "%.*s.gp", (int)(ending ? ending - path : (long)strlen(path)), path);
+    if (access(script, F_OK) == 0) {
+        fputs("<p>not drawn: ", stream);
+        ms_escape_html(stream, script);
+        fputs("; charts need gnuplot (package gnuplot-nox)</p>\n", stream);
+    }
+    free(script);
+    return MS_OK;
+}
+
+static ms_status put_charts(FILE *stream, const ms_view_report *report, ms_error *err)
+{
+    ms_status status = MS_OK;
+    fputs(report->n_charts > 0 ? "<h2>charts</h2>\n" : "", stream);
+    for (size_t c = 0; c < report->n_charts && status == MS_OK; c++) {
+        const char *path = report->chart[c];
+        status = access(path, F_OK) == 0 ? put_chart(stream, path, err) : put_undrawn(stream, path, err);
     }
     return status;
 }
@@ -116,9 +143,8 @@ ms_status ms_view_report_begin(FILE *stream, const ms_view_report *report, ms_er
     if (status == MS_OK) {
         status = put_table(stream, report, err);
     }
-    fputs(report->n_charts > 0 ? "<h2>charts</h2>\n" : "", stream);
-    for (size_t c = 0; c < report->n_charts && status == MS_OK; c++) {
-        status = put_chart(stream, report->chart[c], err);
+    if (status == MS_OK) {
+        status = put_charts(stream, report, err);
     }
     ms_view_page_begin_scenes(stream);
     return status;

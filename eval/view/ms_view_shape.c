@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "mesh/ms_isosurface.h"
-#include "ms_view_decimate.h"
+#include "mesh/ms_mesh_decimate.h"
 
 /* Voxels along an axis from which on a volume is drawn by blocks of them, and how often its corners are smoothed. */
 enum { MOST_VOXELS = 160, SMOOTH = 3 };
@@ -94,7 +94,7 @@ ms_status ms_view_shape_make(ms_view_shape *shape, const ms_target *target, size
     }
     shape->shown = shape->mesh;
     if (status == MS_OK && shape->mesh->n_triangles > most_triangles) {
-        status = ms_view_decimate(&shape->decimated, shape->mesh, most_triangles, err);
+        status = ms_mesh_decimate(&shape->decimated, shape->mesh, most_triangles, err);
         shape->shown = &shape->decimated;
     }
     return status;

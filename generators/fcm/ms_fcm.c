@@ -173,7 +173,7 @@ static void remark_thinning(const fcm *f, size_t counted)
     if (counted < f->nodes.count) {
         ms_generator_remark(f->run,
                             "%zu nodes are thinned to %zu, one in each cube of edge %.2g, the size of a filling "
-                            "sphere's share: --nodes-covered counts these; --nodes all counts each, and takes longer",
+                            "sphere's share: nodes-covered counts these; nodes=all counts each, and takes longer",
                             f->nodes.count, counted, f->rule.thinned * f->run->target->grid.h);
     }
 }

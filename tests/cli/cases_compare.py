@@ -442,10 +442,13 @@ class Charts(Compare):
         self.assertIn(r'set label "o\047dd"', script)
 
     def test_without_gnuplot(self):
-        """A clear error; results and scripts are there."""
-        result = self.mskit("compare", "box.obj", "-g", "mss", "-n", "3,4", "--cells", "8", "--charts", "charts", code=1,
-                            env={**os.environ, "PATH": self.dir})
+        """A clear error; results and scripts are there, and the page, which says that charts are missing."""
+        result = self.mskit("compare", "box.obj", "-g", "mss", "-n", "3,4", "--cells", "8", "--charts", "charts",
+                            "--report", "r.html", code=1, env={**os.environ, "PATH": self.dir})
         self.assert_says(result, "gnuplot-nox", "box-sheet.gp")
+        page = self.read("r.html").decode()
+        self.assertIn("not drawn: charts/box-dice.gp; charts need gnuplot (package gnuplot-nox)", page)
+        self.assertEqual((page.count("not drawn: "), page.count("data-scene=")), (page.count("charts/box-"), 2))
         self.assertEqual(len(self.rows()), 2)
         names = sorted(os.listdir(self.path("charts")))
         sheet = ["box-mss-3.csv", "box-mss-4.csv", "box-sheet.gp", "box-tiles.png"]

@@ -5,6 +5,7 @@ import io
 import json
 import os
 import re
+import shutil
 import struct
 
 from html import unescape
@@ -73,6 +74,33 @@ class Report(Case):
             self.assertEqual(scene["mesh"]["of"], 12)
             self.assertIn("mass", scene)
             self.assert_shown(scene, "out/" + clump)
+
+    def test_scene_charts(self):
+        """A chart for each shape: D of its templates with the chosen one marked, or the measure of the tolerance; where
+        gnuplot is missing the page stands without them and says so."""
+        self.write("scene.csv", "shape,count\na&<b>.obj,3\nc.obj,4\n")
+        common = ("scene", "scene.csv", *GRID, "--max-spheres", "6", "--charts", "charts", "--report", "r.html", "--json")
+        names = [f"charts/{stem}-dice" for stem in ("1-a&_b_", "2-c")]
+        run = self.mskit(*common, "--budget", "20", code=1, env={**os.environ, "PATH": self.dir})
+        self.assert_says(run, "gnuplot-nox", names[0] + ".gp")
+        self.assertEqual(len(scenes_of(self.page())), 2)
+        undrawn = re.findall(r"<p>not drawn: (.*?)\.gp; charts need gnuplot", unescape(self.page()))
+        self.assertEqual(undrawn, names)
+        for shape, name in zip(run.json["shapes"], names):
+            templates, chosen = self.read(name + ".dat").decode().strip("\n").split("\n\n\n")
+            drawn = [[float(word) for word in line.split()[:2]] for line in templates.split("\n")[1:]]
+            self.assertEqual(drawn, [[n + 1, float(f"{dice:.9g}")] for n, dice in enumerate(shape["curve"])])
+            n = shape["scores"]["spheres"]
+            self.assertEqual(chosen.split("\n")[1].split()[:3:2], [str(n), f'"{n}"'])
+        if not shutil.which("gnuplot"):
+            self.skipTest("gnuplot is not installed (package gnuplot-nox)")
+        self.write("charts/1-a&_b_-coverage.svg", "of a run before")
+        run = self.mskit(*common, "--tolerance", "coverage=0.7")
+        self.assertIn("drew charts/2-c-coverage.svg", run.err)
+        self.assertEqual(self.page().count('<img class="chart" alt="'), 2)
+        tolerance = self.read("charts/2-c-coverage.dat").decode().strip("\n").split("\n\n\n")[2]
+        self.assertEqual([line.split()[1] for line in tolerance.split("\n")[1:]], ["0.7", "0.7"])
+        self.assertNotIn(b"before", self.read("charts/1-a&_b_-coverage.svg"))
 
     def test_grains(self):
         """Of a volume each label, of a mesh itself, as they lie there; a grain without a clump is a row alone."""

@@ -90,7 +90,7 @@ class Grey(Case):
     def test_fractions_are_told_what_to_do(self):
         self.write("f.raw", struct.pack("<8f", *(0.5 * i for i in range(8))))
         raw = ("f.raw", "--raw-size", "2,2,2", "--raw-type", "f32")
-        self.assert_refused("generate", *raw, code=1, says=("voxel (1, 0, 0) holds 0.5", "--threshold T or --otsu"))
+        self.assert_refused("generate", *raw, code=1, says=("voxel (1, 0, 0) holds 0.5", "by a threshold, or otsu"))
         self.assertEqual(self.mskit("info", *raw, "--threshold", 1.9, "--json").json["voxels"], 4)
 
 

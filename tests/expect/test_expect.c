@@ -283,6 +283,16 @@ static void ragged_meshes_give_finite_figures(void **state)
     ms_mesh_free(&mesh);
 }
 
+static void numbers_are_told_to_three_digits(void **state)
+{
+    (void)state;
+    const double told[][2] = {{1, 1}, {3.2, 4}, {99.5, 100}, {100, 100}, {456.001, 457}, {1234, 1240}, {98765, 98800}};
+    for (size_t i = 0; i < sizeof told / sizeof *told; i++) {
+        assert_close(ms_expect_round(told[i][0]), told[i][1], 0);
+    }
+    assert_true(isinf(ms_expect_round(HUGE_VAL)));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -298,6 +308,7 @@ int main(void)
         cmocka_unit_test(voxels_are_taken_by_their_surface),
         cmocka_unit_test(what_has_no_volume_is_refused),
         cmocka_unit_test(ragged_meshes_give_finite_figures),
+        cmocka_unit_test(numbers_are_told_to_three_digits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

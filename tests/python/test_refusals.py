@@ -75,16 +75,18 @@ class Refusals(PythonCase):
                   numpy.array(None), numpy.arange(12.0).reshape(3, 4), "/", lambda *_: 1]
         given = {"generate": "spheres until min_radius cells deq voxel_size max_voxels rule max_memory seed threads progress "
                  "spacing plane refine variant", "score": "cells cut threads rule", "curve": "cells progress",
-                 "correct": "density unit scale axes least_mass carriers carrier_depth", "volume": "spacing origin label "
+                 "correct": "density unit scale axes least_mass carriers carrier_depth", "expect": "threads",
+                 "contact": "poses overlap restitution factors seed threads", "volume": "spacing origin label "
                  "threshold connectivity", "grains": "spacing min_voxels border", "mesh": "weld fill_holes drop_bodies", "read": "label weld",
                  "Clump": "masses", "body": "r", "equal_volume": "", "read_clump": "", "write": "format"}
         usual = {"generate": [grain, "mss"], "volume": [labelled()], "grains": [labelled()], "mesh": [CORNERS, FACES],
                  "read": [self.path(self.grain)], "Clump": [[(0, 0, 0)], [1]], "body": ["ball"], "read_clump": ["none.csv"],
-                 "write": [clump, self.path("c.csv")]}
+                 "expect": [grain], "write": [clump, self.path("c.csv")]}
         refused = 0
         for name, options in given.items():
             first = usual.get(name, [clump])
-            least = {"generate": {"spheres": 1, "cells": 6}, "correct": {"density": 1}}.get(name, {})
+            least = {"generate": {"spheres": 1, "cells": 6}, "correct": {"density": 1},
+                     "contact": {"poses": 1, "overlap": 0.01}}.get(name, {})
             for thing in things:
                 calls = [(first[:k] + [thing] + first[k + 1:], least) for k in range(len(first))]
                 calls += [(first, {**least, option: thing}) for option in options.split()]
@@ -179,6 +181,37 @@ class Refusals(PythonCase):
         self.refused(mskit.ArgumentError, "cvs", clump.write, self.path("c"), "cvs")
         self.refused(mskit.FileError, "none.csv", mskit.read_clump, self.path("none.csv"))
         self.assertEqual(self.files(), [self.grain], "a refusal leaves no file")
+
+    def test_expected(self):
+        opened = mskit.mesh(CORNERS, FACES[1:], allow_open=True)
+        self.refused(mskit.ShapeError, "is open nothing can be expected", mskit.expect, opened)
+        corners, faces = numpy.array(CORNERS), numpy.array(FACES)
+        two = numpy.concatenate((corners, corners + 0.1)), numpy.concatenate((faces, faces + len(corners)))
+        self.refused(mskit.ShapeError, "passes through itself", mskit.expect, two)
+        expected = mskit.expect(mskit.body("ball", fineness=8))
+        for values, words in [(0, "spheres=0 "), ([5, -1], "spheres=-1"), ("x", "spheres='x'"), (None, "spheres=None"),
+                              ([[1], [2, 3]], "spheres=")]:
+            self.refused(mskit.ArgumentError, words, expected.dice, values)
+        self.refused(mskit.ArgumentError, "dice=0 ", expected.spheres, 0)
+        self.refused(mskit.ArgumentError, "inscribed=1", expected.dice, 5, inscribed=1)
+
+    def test_contact(self):
+        clump = mskit.generate(self.path(self.grain), "mss", spheres=3, cells=12)
+        for options, words in [({"poses": 0}, "poses=0"), ({"overlap": 0.5}, "overlap=0.5"), ({"overlap": []}, "overlap=[]"),
+                               ({"overlap": [0.01] * 17}, "nor 1 to 16 of them"), ({"overlap": "x"}, "overlap='x'"),
+                               ({"restitution": 0}, "restitution=0"), ({"seed": -1}, "seed=-1"), ({"factors": 2}, "factors=2"),
+                               ({"shape": 3}, "is no shape"), ({"threads": 0}, "threads=0"),
+                               ({"shape": mskit.mesh(CORNERS, FACES[1:], allow_open=True)}, "is not closed"),
+                               ({"shape": mskit.mesh(numpy.array(CORNERS) * 1e-4, FACES)}, "check units and frame")]:
+            self.refused(mskit.Error, words, mskit.contact, clump, **options)
+
+    def test_no_sentence_names_a_flag(self):
+        """Those of the library reach Python as they are."""
+        self.refused(mskit.FormatError, "no label (0, 1, 2, ... up to 4294967295); make labels of grey values by a "
+                     "threshold, or otsu,", mskit.volume, labelled() * 0.3)
+        clump = mskit.generate(self.path(self.grain), "mss", spheres=3, cells=12)
+        said = self.refused(mskit.LimitError, "carriers", mskit.correct, clump, density=1, carriers=True, carrier_depth=0.9)
+        self.assertNotIn("--", said)
 
     def test_bodies(self):
         for kind, parameters, words in [("bal", {}, "ball"), ("ball\0", {}, "no name"), ("ball", {"x": 1}, "no parameter 'x', but r, fineness"),

@@ -193,6 +193,28 @@ class Runs(PythonCase):
             "    print(set(pool.map(child, range(3))) == {before})\n", OMP_NUM_THREADS="2")
         self.assertEqual(said.stdout, "True\n")
 
+    def test_pool_of_shapes(self):
+        """Forked and spawned children get shapes and send clumps."""
+        self.write("work.py", "import mskit\n"
+                   "def run(shape): return mskit.generate(shape, 'mss', spheres=3, cells=20)\n")
+        said = self.script(
+            "import multiprocessing, mskit, work\n"
+            "shapes = [mskit.body('ball', fineness=8), mskit.body('torus', fineness=8)]\n"
+            "if __name__ == '__main__':\n"
+            "    before = [work.run(shape).spheres.tobytes() for shape in shapes]\n"
+            "    for how in ('fork', 'spawn'):\n"
+            "        with multiprocessing.get_context(how).Pool(2) as pool:\n"
+            "            print([c.spheres.tobytes() for c in pool.map(work.run, shapes)] == before)\n")
+        self.assertEqual(said.stdout, "True\nTrue\n")
+
+    def test_memory_of_pickled_shapes_is_given_back(self):
+        data = [pickle.dumps(mskit.body("torus", fineness=8)), pickle.dumps(mskit.volume(labelled(), label=3))]
+
+        def use():
+            return [pickle.loads(each).volume for each in data]
+
+        self.assertLess(self.growth(use, 20, 50), 500)
+
     def test_arrays_outlive_what_they_come_from(self):
         shape = mskit.read(self.path(self.grain))
         clump = mskit.generate(shape, "mss", spheres=5, cells=20)

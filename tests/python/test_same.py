@@ -1,5 +1,6 @@
 """Results are the program's, to the last bit: spheres, scores, curves, masses, whichever way the shape came in."""
 import json
+import pickle
 import unittest
 
 import mskit
@@ -151,6 +152,64 @@ class Same(PythonCase):
         clump = mskit.generate(self.path(self.grain), "mss", spheres=6, cells=20)
         self.expect_same(mskit.equal_volume(clump), "generate", self.grain, "-g", "mss", "-n", 6, "--cells", 20,
                          "--equal-volume")
+
+    def test_expected(self):
+        numpy.save(self.path("v.npy"), labelled())
+        for shape, flags in ((mskit.read(self.path(self.grain)), (self.grain,)),
+                             (mskit.volume(labelled(), label=3), ("v.npy", "--label", 3))):
+            told = self.mskit("info", *flags, "--expect", "--json").json["expected"]
+            expected = mskit.expect(shape)
+            for kind, inscribed in (("free", False), ("inscribed", True)):
+                for given, found in (("spheres", expected.dice), ("dice", expected.spheres)):
+                    rows = told["dice" if given == "spheres" else "spheres"]
+                    self.assertEqual(found([row[given] for row in rows], inscribed=inscribed).tolist(),
+                                     [row[kind] for row in rows])
+                self.assertEqual(expected.least_spheres(inscribed=inscribed), told["least_spheres"][kind])
+            self.assertEqual(told["range"], [1 / expected.range, expected.range])
+            self.assertEqual(expected.dice(7.5), pickle.loads(pickle.dumps(expected)).dice(7.5))
+            self.assertEqual(expected.dice(numpy.array([[2, 3]])).shape, (1, 2))
+
+    def plain(self, value):
+        """As JSON has it."""
+        if isinstance(value, dict):
+            return {key: [[n, part] for n, part in each.items()] if key == "counts" else self.plain(each)
+                    for key, each in value.items()}
+        if isinstance(value, (list, numpy.ndarray)):
+            return [self.plain(each) for each in value]
+        return None if isinstance(value, float) and not numpy.isfinite(value) else value
+
+    def test_contact(self):
+        """Of a mesh, of a volume, of the particle that a file knows, and of the spheres alone."""
+        numpy.save(self.path("v.npy"), labelled())
+        clump = mskit.generate(self.path(self.grain), "mss", spheres=6, cells=20)
+        clump.write(self.path("c.csv"))
+        in_voxels = mskit.generate(mskit.volume(labelled(), label=3), "mss", spheres=3)
+        in_voxels.write(self.path("v.csv"))
+        mskit.correct(clump, density=2650, unit="mm").write(self.path("m.json"))
+        for found, flags in [
+                (mskit.contact(clump, poses=20, overlap=0.001, factors=True, restitution=0.7, seed=3),
+                 ("c.csv", "--target", self.grain, "--overlap", 0.001, "--factors", "--restitution", 0.7, "--seed", 3)),
+                (mskit.contact(in_voxels, poses=20), ("v.csv", "--target", "v.npy", "--label", 3)),
+                (mskit.contact(self.path("m.json"), poses=20, threads=1), ("m.json",)),
+                (mskit.contact(clump.spheres, poses=20, overlap=[0.002, 0.1]), ("c.csv", "--overlap", "0.002,0.1"))]:
+            told = self.mskit("contact", *flags, "--poses", 20, "--json").json
+            for name in ("path", "target", "spheres", "orientations", "single_restitution", "seed"):
+                del told[name]
+            self.assertEqual(self.plain(found), told, flags)
+
+    def test_shapes_from_another_process(self):
+        """A pickled shape has the same voxels and gives the same spheres, masses and contacts."""
+        for shape in (mskit.read(self.path(self.grain)), mskit.volume(labelled(), label=8, spacing=0.5),
+                      mskit.mesh(mskit.body("torus").vertices, mskit.body("torus").faces[3:], allow_open=True)):
+            again = pickle.loads(pickle.dumps(shape))
+            self.assertEqual((again.name, again.report, again.label, again.voxels, again.cut, repr(again)),
+                             (shape.name, shape.report, shape.label, shape.voxels, shape.cut, repr(shape)))
+            one, other = (mskit.generate(each, "mss", spheres=4) for each in (shape, again))
+            self.assertEqual(one.spheres.tobytes(), other.spheres.tobytes())
+            self.assertEqual(repr(one.scores), repr(other.scores))
+            self.assertEqual(again.volume, shape.volume)
+            for a, b in zip(again.surface(), shape.surface()):
+                self.assertEqual(a.tobytes(), b.tobytes())
 
     def test_tables_are_those_of_the_program(self):
         for name, generator in mskit.generators.items():

@@ -252,13 +252,12 @@ static void raw_files_are_what_is_said(void **state)
         ms_scan_close(&scan);
         ms_file_free(&bytes);
         options.raw_skip = 3;
-        expect_refused(&made, "s.raw", &options, SIZE_MAX, MS_ERR_FORMAT,
-                       "check --raw-size, --raw-type and --raw-skip");
+        expect_refused(&made, "s.raw", &options, SIZE_MAX, MS_ERR_FORMAT, "check raw-size, raw-type and raw-skip");
     }
     sample made = {.size = 0};
     const ms_scan_options none = ms_scan_defaults();
     put_text(&made, "abc");
-    expect_refused(&made, "s.raw", &none, SIZE_MAX, MS_ERR_FORMAT, "say what it holds by --raw-size");
+    expect_refused(&made, "s.raw", &none, SIZE_MAX, MS_ERR_FORMAT, "say what it holds (raw-size");
     static const char *const BAD[] = {"", "u", "u12", "f16", "u16xe", "16", "u16leb", "d8"};
     for (size_t b = 0; b < sizeof BAD / sizeof *BAD; b++) {
         ms_sample kind;

@@ -18,7 +18,9 @@ if "OMP_WAIT_POLICY" not in _os.environ and "GOMP_SPINCOUNT" not in _os.environ:
     _os.environ["OMP_WAIT_POLICY"] = "passive"
 
 from ._clumps import Clump, Particle, formats, read_clump, write
+from ._contact import contact
 from ._errors import (ArgumentError, Error, FileError, FormatError, LimitError, OutOfMemoryError, Remark, ShapeError)
+from ._expect import Expectation, expect
 from ._generate import Progress, correct, curve, equal_volume, generate, score
 from ._library import ffi as _ffi
 from ._library import lib as _lib
@@ -31,10 +33,10 @@ from ._volumes import grains, volume
 
 __version__: str = _ffi.string(_lib.ms_version()).decode()
 __all__ = [
-    "ArgumentError", "Clump", "Error", "FileError", "FormatError", "Generator", "LimitError", "Measure", "Option",
-    "OutOfMemoryError", "Particle", "Progress", "Remark", "Shape", "ShapeError", "body", "correct", "curve",
-    "equal_volume", "formats", "generate", "generators", "grains", "measures", "mesh", "read", "read_clump", "score",
-    "volume", "write",
+    "ArgumentError", "Clump", "Error", "Expectation", "FileError", "FormatError", "Generator", "LimitError", "Measure",
+    "Option", "OutOfMemoryError", "Particle", "Progress", "Remark", "Shape", "ShapeError", "body", "contact", "correct",
+    "curve", "equal_volume", "expect", "formats", "generate", "generators", "grains", "measures", "mesh", "read",
+    "read_clump", "score", "volume", "write",
 ]
 
 # Forked while OpenMP has threads, a child waits for them for ever: its runs take the one thread that it has.

@@ -5,7 +5,8 @@ import math
 import os
 import sys
 import warnings
-from typing import Any, Iterable, NoReturn, Union
+from contextlib import contextmanager
+from typing import Any, Iterable, Iterator, NoReturn, Optional, Union
 
 import numpy
 
@@ -154,3 +155,15 @@ def whole(name: str, value: Any, low: int, high: int) -> int:
     if wide != int(wide):
         raise ArgumentError(f"{name}={show(value)} is not a whole number from {low} to {high}")
     return int(value)
+
+
+@contextmanager
+def use_threads(count: Optional[int]) -> Iterator[None]:
+    """So many threads of OpenMP for what this thread runs; None: as it is."""
+    before = lib.omp_get_max_threads()
+    if count is not None:
+        lib.omp_set_num_threads(whole("threads", count, 1, 1024))
+    try:
+        yield
+    finally:
+        lib.omp_set_num_threads(before)

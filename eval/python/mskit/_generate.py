@@ -10,7 +10,7 @@ from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Tuple, T
 import numpy
 
 from ._clumps import Clump, as_clump, c_particle_of, from_c, lend, new_c_clump, own
-from ._errors import ArgumentError, call, choice, flag, number, remark, show, text, whole, word
+from ._errors import ArgumentError, call, choice, flag, number, remark, show, text, use_threads, whole, word
 from ._library import ffi, lib
 from ._measures import curve_of, scores_of
 from ._methods import DEFAULT, find_generator, generators, make_settings
@@ -107,18 +107,6 @@ def _watched(name: str, progress: Listener) -> Iterator[_Watch]:
         raise watch.failure
 
 
-@contextmanager
-def _threads(count: Optional[int]) -> Iterator[None]:
-    """So many threads of OpenMP for what this thread runs; None: as it is."""
-    before = lib.omp_get_max_threads()
-    if count is not None:
-        lib.omp_set_num_threads(whole("threads", count, 1, 1024))
-    try:
-        yield
-    finally:
-        lib.omp_set_num_threads(before)
-
-
 class Run:
     """How a clump was made, so that it can be repeated."""
 
@@ -187,7 +175,7 @@ def generate(shape: Any, generator: str = DEFAULT, *, spheres: Optional[int] = N
     grid = make_grid(cells, deq, voxel_size, max_voxels, rule, max_memory)
     run = Run(generator, _make_stop(spheres, until, min_radius), seed, grid, options)
     made, reason = new_c_clump(), ffi.new("ms_stop_reason *")
-    with _threads(threads), _watched(shape.name, progress) as watch:
+    with use_threads(threads), _watched(shape.name, progress) as watch:
         target = shape.c_target(grid, run.need)
         call(lib.ms_generator_run, made, reason, run.row, run.c_run(target, watch), name=shape.name)
     if reason[0] == lib.MS_STOP_INTERRUPTED:
@@ -234,7 +222,7 @@ def score(clump: Any, shape: Any = None, *, cells: Optional[int] = None, deq: Op
     clump = as_clump(clump)
     grid = make_grid(cells, deq, voxel_size, max_voxels, rule, max_memory)
     metrics = ffi.new("ms_metrics *")
-    with _threads(threads):
+    with use_threads(threads):
         target, most = _target_for(clump, shape, grid)
         c, kept = lend(clump)
         judged = ffi.new("ms_target *", target[0])  # others may work on the same voxels now
@@ -258,7 +246,7 @@ def curve(clump: Any, shape: Any = None, *, cells: Optional[int] = None, deq: Op
     scores = ffi.new("ms_score[]", len(clump))
     if not clump.ordered and (shape is not None or grid != Grid()):
         raise ArgumentError("each clump of this curve is a run of its own, on shape and grid of the first: give none")
-    with _threads(threads), _watched("curve", progress) as watch:
+    with use_threads(threads), _watched("curve", progress) as watch:
         target, most = _target_for(clump, shape, grid)
         c, kept = lend(clump)
         if clump.ordered:

@@ -62,6 +62,12 @@ class Shape:
                 f"label {self.label}, {self.voxels} voxels")
         return f"<mskit.Shape {self.name}: {what}>"
 
+    def __reduce__(self) -> Tuple[Any, ...]:
+        """For other processes: all but the voxels that were made of it."""
+        structs = [None if c is None else ffi.buffer(c)[:] for c in (self._report, self._solid, self._entry)]
+        labels = None if self._volume is None else self._labels()
+        return _restore, (self.name, self.vertices, self.faces, labels, self._place(), *structs)
+
     @property
     def is_mesh(self) -> bool:
         """False for a label of a volume."""
@@ -71,6 +77,11 @@ class Shape:
     def closed(self) -> bool:
         """The mesh bounds a body; True for a volume."""
         return self._report is None or bool(self._report.closed)
+
+    @property
+    def overlapping(self) -> bool:
+        """A closed mesh passes through itself, and its body is the union."""
+        return self._solid is not None and bool(self._solid.overlapping)
 
     @property
     def report(self) -> Dict[str, int]:
@@ -83,18 +94,12 @@ class Shape:
     @property
     def vertices(self) -> numpy.ndarray:
         """(n, 3) float64, in the unit of the mesh: a copy; empty for a volume."""
-        return self._copy("n_vertices", "vertex", numpy.float64)
+        return copy_mesh(self._mesh)[0]
 
     @property
     def faces(self) -> numpy.ndarray:
         """(m, 3) uint32, counter-clockwise seen from outside: a copy; empty for a volume."""
-        return self._copy("n_triangles", "triangle", numpy.uint32)
-
-    def _copy(self, count: str, field: str, kind: Any) -> numpy.ndarray:
-        if self._mesh is None:
-            return numpy.empty((0, 3), kind)
-        bytes_of_rows = getattr(self._mesh, count) * 3 * numpy.dtype(kind).itemsize
-        return numpy.frombuffer(ffi.buffer(getattr(self._mesh, field), bytes_of_rows), kind).reshape(-1, 3).copy()
+        return copy_mesh(self._mesh)[1]
 
     def surface(self) -> Tuple[numpy.ndarray, numpy.ndarray]:
         """Vertices (n, 3) and faces (m, 3) of the mesh; of a volume the sides of its voxels."""
@@ -102,9 +107,18 @@ class Shape:
             return self.vertices, self.faces
         from ._view import surface_of_voxels
         v = self._volume
-        labels = numpy.frombuffer(ffi.buffer(v.label, 4 * v.n[0] * v.n[1] * v.n[2]), numpy.uint32)
-        corners, faces = surface_of_voxels(labels.reshape(v.n[2], v.n[1], v.n[0]) == self.label)
+        corners, faces = surface_of_voxels(self._labels() == self.label)
         return corners * v.spacing + [v.origin[k] + v.spacing * v.first[k] for k in range(3)], faces
+
+    def _labels(self) -> numpy.ndarray:
+        """Of a volume, [z, y, x], in the box around the label: a copy."""
+        x, y, z = self._volume.n
+        return numpy.frombuffer(ffi.buffer(self._volume.label, 4 * x * y * z), numpy.uint32).reshape(z, y, x).copy()
+
+    def _place(self) -> Dict[str, Any]:
+        """Where those are; empty for a mesh."""
+        v = self._volume
+        return {} if v is None else {"spacing": v.spacing, "origin": list(v.origin), "first": list(v.first)}
 
     @property
     def label(self) -> int:
@@ -141,6 +155,10 @@ class Shape:
         if self._solid is not None:
             return self._solid.body
         return self.c_target(grid, ffi.new("ms_target_need *")[0]).body
+
+    def c_grid(self) -> Any:
+        """The ms_grid of a volume's own voxels; it is part of them."""
+        return ffi.addressof(self.c_target(Grid(), ffi.new("ms_target_need *")[0]), "grid")
 
     def c_target(self, grid: Grid, need: Any) -> Any:
         """The voxels with their distances, as generators take them; the last ones are kept."""
@@ -212,6 +230,51 @@ class Shape:
                 return float(h[0])
         call(lib.ms_voxelize_size_within, h, self._mesh, grid.max_voxels, name=self.name)
         return float(h[0])
+
+
+def copy_mesh(c: Any) -> Tuple[numpy.ndarray, numpy.ndarray]:
+    """Vertices (n, 3) float64 and faces (m, 3) uint32 of an ms_mesh; empty for None."""
+    def rows(count: str, field: str, kind: Any) -> numpy.ndarray:
+        if c is None:
+            return numpy.empty((0, 3), kind)
+        size = getattr(c, count) * 3 * numpy.dtype(kind).itemsize
+        return numpy.frombuffer(ffi.buffer(getattr(c, field), size), kind).reshape(-1, 3).copy()
+
+    return rows("n_vertices", "vertex", numpy.float64), rows("n_triangles", "triangle", numpy.uint32)
+
+
+def lend_mesh(vertices: numpy.ndarray, faces: numpy.ndarray) -> Any:
+    """An ms_mesh for functions that do not change it."""
+    corners, triangles = numpy.ascontiguousarray(vertices, numpy.float64), numpy.ascontiguousarray(faces, numpy.uint32)
+    return _lend("ms_mesh *", (corners, triangles), {
+        "n_vertices": len(corners), "vertex": ffi.cast("double (*)[3]", ffi.from_buffer(corners)),
+        "n_triangles": len(triangles), "triangle": ffi.cast("uint32_t (*)[3]", ffi.from_buffer(triangles))})
+
+
+def _restore(name: str, vertices: numpy.ndarray, faces: numpy.ndarray, labels: Optional[numpy.ndarray],
+             place: Dict[str, Any], report: Optional[bytes], solid: Optional[bytes], entry: Optional[bytes]) -> Shape:
+    """As it was, so that voxels and results are the same; its arrays are lent to the library."""
+    if labels is None:
+        shape = Shape(name, mesh=lend_mesh(vertices, faces))
+    else:
+        shape = Shape(name, entry=_struct("ms_label_entry *", entry), volume=_lend("ms_volume *", labels, {
+            "n": labels.shape[::-1], "label": ffi.from_buffer("uint32_t[]", labels), **place}))
+    shape._report, shape._solid = _struct("ms_mesh_report *", report), _struct("ms_solid *", solid)
+    return shape
+
+
+def _lend(kind: str, arrays: Any, fields: Dict[str, Any]) -> Any:
+    """A struct that keeps the arrays that it points into."""
+    return ffi.gc(ffi.new(kind, fields), lambda made, kept=arrays: None)
+
+
+def _struct(kind: str, data: Optional[bytes]) -> Any:
+    """As it was in another process."""
+    if data is None:
+        return None
+    made = ffi.new(kind)
+    ffi.buffer(made)[:] = data
+    return made
 
 
 class Bytes:

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any, Dict, Tuple
 
 import numpy
 
-from ._errors import ArgumentError, FileError
+from ._errors import ArgumentError, FileError, call
+from ._library import ffi, lib
 from ._measures import measures
+from ._shapes import copy_mesh, lend_mesh
 
 if TYPE_CHECKING:
     from ._clumps import Clump
@@ -47,17 +49,12 @@ def surface_of_voxels(inside: numpy.ndarray) -> Tuple[numpy.ndarray, numpy.ndarr
 
 
 def decimate(vertices: numpy.ndarray, faces: numpy.ndarray, most: int) -> Tuple[numpy.ndarray, numpy.ndarray]:
-    """Vertices of one cell of a lattice become one of them; cells grow until the triangles are few enough (Rossignac &
-    Borrel 1993)."""
-    low, side = vertices.min(axis=0), (vertices.max(axis=0) - vertices.min(axis=0)).max()
-    cells = 2 * math.sqrt(most)
-    while len(faces) > most:
-        _, kept, index = numpy.unique(numpy.floor((vertices - low) / (side / cells)).astype(int), axis=0,
-                                      return_index=True, return_inverse=True)
-        faces, vertices, cells = index.ravel()[faces], vertices[kept], cells / 1.2
-        a, b, c = faces.T
-        faces = faces[(a != b) & (b != c) & (c != a)]
-    return vertices, faces
+    """At most so many triangles, as in the program's pages."""
+    if len(faces) <= most:
+        return vertices, faces
+    few = ffi.gc(ffi.new("ms_mesh *"), lib.ms_mesh_free)
+    call(lib.ms_mesh_decimate, few, lend_mesh(vertices, faces), most)
+    return copy_mesh(few)
 
 
 def _mesh(vertices: numpy.ndarray, faces: numpy.ndarray, centre: numpy.ndarray, scale: float) -> Dict[str, Any]:

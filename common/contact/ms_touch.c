@@ -15,7 +15,7 @@ static void add_contact(ms_touch *touch, double ratio)
 }
 
 /* How far a sphere reaches along u. */
-static double find_reach(const ms_sphere *sphere, const double u[3])
+static double find_sphere_reach(const ms_sphere *sphere, const double u[3])
 {
     return ms_dot(sphere->centre, u) + sphere->radius;
 }
@@ -26,7 +26,7 @@ ms_touch ms_touch_plane(const ms_support *body, const double u[3], double r_eq, 
     const double plane = ms_support_height(body, u) - overlap;
     for (size_t i = 0; i < body->count; i++) {
         const ms_sphere *s = &body->sphere[i];
-        const double own = find_reach(s, u) - plane;
+        const double own = find_sphere_reach(s, u) - plane;
         if (own > 0) {
             add_contact(&touch, s->radius * own / (r_eq * overlap));
         }
@@ -60,11 +60,11 @@ static double find_distance(const ms_support *body, const ms_sphere *turned, con
 {
     size_t first = 0;
     for (size_t i = 1; i < body->count; i++) {
-        first = find_reach(&body->sphere[i], u) > find_reach(&body->sphere[first], u) ? i : first;
+        first = find_sphere_reach(&body->sphere[i], u) > find_sphere_reach(&body->sphere[first], u) ? i : first;
     }
     double distance = meet_sphere(&body->sphere[first], turned, body->count, u, overlap, -(double)INFINITY);
     for (size_t i = 0; i < body->count; i++) {
-        if (find_reach(&body->sphere[i], u) + reach - overlap > distance) {
+        if (find_sphere_reach(&body->sphere[i], u) + reach - overlap > distance) {
             distance = meet_sphere(&body->sphere[i], turned, body->count, u, overlap, distance);
         }
     }
@@ -72,7 +72,7 @@ static double find_distance(const ms_support *body, const ms_sphere *turned, con
 }
 
 /* The pair, if it touches. */
-static int take_pair(ms_touch_pair *pair, const ms_sphere *a, const ms_sphere *b, const double moved[3])
+static int take_touching(ms_touch_pair *pair, const ms_sphere *a, const ms_sphere *b, const double moved[3])
 {
     double square = 0;
     for (int k = 0; k < 3; k++) {
@@ -108,12 +108,12 @@ ms_touch ms_touch_second(ms_touch_pair *pair, size_t most, ms_sphere *turned, co
     const double distance = find_distance(body, turned, place->u, reach, overlap);
     const double moved[3] = {distance * place->u[0], distance * place->u[1], distance * place->u[2]};
     for (size_t i = 0; isfinite(distance) && i < body->count; i++) {
-        if (find_reach(&body->sphere[i], place->u) + reach <= distance) {
+        if (find_sphere_reach(&body->sphere[i], place->u) + reach <= distance) {
             continue;
         }
         for (size_t j = 0; j < body->count; j++) {
             ms_touch_pair one;
-            if (take_pair(&one, &body->sphere[i], &turned[j], moved)) {
+            if (take_touching(&one, &body->sphere[i], &turned[j], moved)) {
                 if (touch.count < most) {
                     pair[touch.count] = one;
                 }

@@ -1,4 +1,4 @@
-#include "ms_view_decimate.h"
+#include "ms_mesh_decimate.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/ms_vector.h"
-#include "mesh/ms_inertia.h"
+#include "ms_inertia.h"
 
 /* A vertex and its cell. */
 typedef struct member {
@@ -15,7 +15,7 @@ typedef struct member {
 } member;
 
 /* By cell, then by number, so that the order is one on every machine. */
-static int compare_members(const void *a, const void *b)
+static int compare_cell_members(const void *a, const void *b)
 {
     const member *first = a, *second = b;
     if (first->cell != second->cell) {
@@ -35,7 +35,7 @@ static void sort_members(member *members, const ms_mesh *mesh, double cell)
             members[v].cell = members[v].cell << 21 | (uint64_t)fmin(at, (1 << 21) - 1);
         }
     }
-    qsort(members, mesh->n_vertices, sizeof *members, compare_members);
+    qsort(members, mesh->n_vertices, sizeof *members, compare_cell_members);
 }
 
 /* The vertex of a cell nearest to the mean of its own. */
@@ -85,12 +85,12 @@ static size_t keep_triangles(uint32_t (*triangle)[3], const uint32_t *number, co
     return left;
 }
 
-ms_status ms_view_decimate(ms_mesh *out, const ms_mesh *mesh, size_t most_triangles, ms_error *err)
+ms_status ms_mesh_decimate(ms_mesh *out, const ms_mesh *mesh, size_t most_triangles, ms_error *err)
 {
     member *members = malloc(mesh->n_vertices * sizeof *members);
     uint32_t *number = malloc(mesh->n_vertices * sizeof *number);
     ms_status status = members && number ? ms_mesh_alloc(out, mesh->n_vertices, mesh->n_triangles, err)
-                                         : ms_fail(err, MS_ERR_NOMEM, "no memory to draw the shape");
+                                         : ms_fail(err, MS_ERR_NOMEM, "no memory for fewer triangles");
     if (status == MS_OK) {
         /* a plane of squares has two triangles in each */
         double cell = sqrt(2 * ms_mesh_area(mesh) / (double)most_triangles);

@@ -2,16 +2,8 @@
 #ifndef MS_POSES_H
 #define MS_POSES_H
 
+#include "ms_contact.h"
 #include "ms_directions.h"
-#include "ms_support.h"
-
-/** One of them. */
-typedef struct ms_pose {
-    double direction[3]; /* what points down, in the body's frame, of length 1 */
-    double height;       /* of the centre of mass over the plane */
-    double barrier;      /* how much higher the lowest way into another pose leads; INFINITY where there is no other */
-    double share;        /* of all directions: those that roll into this one */
-} ms_pose;
 
 /** h of each direction. @param[out] height one each; the caller allocates. Cost: O(directions count), all cores */
 void ms_poses_heights(double *height, const ms_support *body, const ms_directions *directions);

@@ -8,6 +8,7 @@
 #include "base/ms_random.h"
 #include "base/ms_vector.h"
 #include "ms_place.h"
+#include "ms_sled.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -83,7 +84,7 @@ static int compare_samples(const void *one, const void *other)
 }
 
 /* In the order of the samples, so that the sums are the same at any number of threads. */
-static void sum_up(ms_contact_row *row, double single)
+static void sum_up_row(ms_contact_row *row, double single)
 {
     double touching = 0, below = 0;
     row->least_restitution = (double)NAN; /* which fmin passes over */
@@ -120,8 +121,8 @@ static void sum_up(ms_contact_row *row, double single)
     }
 }
 
-static ms_status fill_row(ms_contact_row *row, const meetings *p, const ms_support *clump, double r_eq, double single,
-                          ms_error *err)
+static ms_status fill_contact_row(ms_contact_row *row, const meetings *p, const ms_support *clump, double r_eq,
+                                  double single, ms_error *err)
 {
     const size_t threads = (size_t)omp_get_max_threads();
     ms_sphere *turned = malloc(threads * clump->count * sizeof *turned);
@@ -141,7 +142,7 @@ static ms_status fill_row(ms_contact_row *row, const meetings *p, const ms_suppo
     }
     free(turned);
     qsort(row->sample, row->samples, sizeof *row->sample, compare_samples);
-    sum_up(row, single);
+    sum_up_row(row, single);
     return MS_OK;
 }
 
@@ -159,7 +160,7 @@ static ms_status fill_rows(ms_contact *c, const ms_support *clump, const ms_cont
         for (size_t o = 0; o < options->n_overlaps && status == MS_OK; o++) {
             ms_contact_row *row = &c->row[c->n_rows++];
             *row = (ms_contact_row){.against = against, .where = where, .overlap = options->overlap[o]};
-            status = fill_row(row, &p, clump, c->r_eq, options->restitution, err);
+            status = fill_contact_row(row, &p, clump, c->r_eq, options->restitution, err);
         }
         free_meetings(&p);
     }
@@ -215,17 +216,66 @@ static ms_status fill_forms(ms_contact *c, const ms_support *clump, const ms_sup
     return status;
 }
 
-ms_status ms_contact_study(ms_contact *contact, const ms_support *clump, const ms_support *shape, double r_eq,
+ms_contact_options ms_contact_defaults(void)
+{
+    return (ms_contact_options){
+        .orientations = 1000, .restitution = 0.5, .overlap = {0.0005, 0.002, 0.01}, .n_overlaps = 3, .seed = 1};
+}
+
+static ms_status check_study(const ms_contact_options *options, ms_error *err)
+{
+    int in_bounds = options->orientations > 0 && options->restitution > 0 && options->restitution <= 1 &&
+                    options->n_overlaps > 0 && options->n_overlaps <= MS_CONTACT_MAX_OVERLAPS;
+    for (size_t o = 0; in_bounds && o < options->n_overlaps; o++) {
+        in_bounds = options->overlap[o] > 0 && options->overlap[o] <= MS_CONTACT_MOST_OVERLAP;
+    }
+    return in_bounds ? MS_OK
+                     : ms_fail(err, MS_ERR_ARG,
+                               "a study of contacts takes one orientation at least, a restitution above 0 and at most "
+                               "1, and 1 to %d overlaps above 0 and at most %g of r_eq",
+                               MS_CONTACT_MAX_OVERLAPS, MS_CONTACT_MOST_OVERLAP);
+}
+
+/* Spheres in another unit than the body, or far off, would have poses and overlaps that mean nothing. */
+static ms_status check_reach(const ms_support *clump, double r_eq, ms_error *err)
+{
+    enum { FACTOR = 500 }; /* that of a cylinder 27000 times as long as its radius, and below the 1000 of mm for m */
+    double reach = 0;
+    for (int side = 0; side < 6; side++) {
+        double u[3] = {0};
+        u[side / 2] = side % 2 ? 1 : -1;
+        reach = fmax(reach, ms_support_height(clump, u));
+    }
+    return reach < FACTOR * r_eq && r_eq < FACTOR * reach
+               ? MS_OK
+               : ms_fail(err, MS_ERR_LIMIT,
+                         "the clump reaches %g from a centre of mass about which r_eq is %g; check units and frame of "
+                         "the spheres",
+                         reach, r_eq);
+}
+
+ms_status ms_contact_study(ms_contact *contact, const ms_clump *clump, const ms_body *body, const ms_support *shape,
                            const ms_contact_options *options, ms_error *err)
 {
-    *contact = (ms_contact){.r_eq = r_eq};
-    ms_status status = fill_forms(contact, clump, shape, err);
+    ms_support spheres = {0};
+    *contact = (ms_contact){.r_eq = cbrt(3 * body->volume / (4 * PI))};
+    ms_status status = check_study(options, err);
     if (status == MS_OK) {
-        status = fill_rows(contact, clump, options, err);
+        status = ms_support_from_clump(&spheres, clump, body->centroid, err);
     }
     if (status == MS_OK) {
-        status = fill_sleds(contact, clump, options, err);
+        status = check_reach(&spheres, contact->r_eq, err);
     }
+    if (status == MS_OK) {
+        status = fill_forms(contact, &spheres, shape, err);
+    }
+    if (status == MS_OK) {
+        status = fill_rows(contact, &spheres, options, err);
+    }
+    if (status == MS_OK) {
+        status = fill_sleds(contact, &spheres, options, err);
+    }
+    ms_support_free(&spheres);
     if (status != MS_OK) {
         ms_contact_free(contact);
     }

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "ms_touch.h"
+
 /* The price where the clump meets the same thing in the orientations of another row. */
 static void add_price(ms_factors *f, const ms_contact_row *row)
 {

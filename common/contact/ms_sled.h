@@ -4,15 +4,6 @@
 
 #include "ms_touch.h"
 
-/** Friction against normal force, over yaws and offsets. */
-typedef struct ms_sled {
-    double friction; /* mu of the spheres */
-    double mean, largest;
-    double slope_mean, slope_largest; /* (mu + tan t) / (1 - mu tan t); t: how steeply the upper one rises there */
-    double jammed;                    /* part that no force moves, which the rest leaves out */
-    double missed;                    /* part that passes without touching, likewise */
-} ms_sled;
-
 /** A place of two faces. */
 typedef struct ms_sled_place {
     ms_touch_place at;

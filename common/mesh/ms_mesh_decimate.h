@@ -1,10 +1,10 @@
 /** Fewer triangles, for show. */
-#ifndef MS_VIEW_DECIMATE_H
-#define MS_VIEW_DECIMATE_H
+#ifndef MS_MESH_DECIMATE_H
+#define MS_MESH_DECIMATE_H
 
-#include <stddef.h>
+#include "ms_mesh.h"
 
-#include "mesh/ms_mesh.h"
+MS_C_BEGIN
 
 /**
  * A mesh of at most so many triangles: vertices in one cell of a lattice become that of them nearest to their mean, so
@@ -16,6 +16,8 @@
  * Source: Rossignac & Borrel, in Modeling in Computer Graphics, Springer 1993, 455. Cost: O(vertices log vertices), a
  * few times.
  */
-ms_status ms_view_decimate(ms_mesh *out, const ms_mesh *mesh, size_t most_triangles, ms_error *err);
+MS_API ms_status ms_mesh_decimate(ms_mesh *out, const ms_mesh *mesh, size_t most_triangles, ms_error *err);
+
+MS_C_END
 
 #endif

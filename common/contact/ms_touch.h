@@ -2,16 +2,7 @@
 #ifndef MS_TOUCH_H
 #define MS_TOUCH_H
 
-#include "ms_support.h"
-
-/** A contact of two bodies, or of one with a plane, against a single one: of spheres of r_eq that have the body's mass,
- * by Hertz, at the same overlap. Both ratios are those of a small change of the overlap. */
-typedef struct ms_touch {
-    size_t count; /* of pairs that touch; 0 where the bodies pass each other */
-    double
-        stiffness;  /* sum of root(R_i d_i / (R d)); R: of curvature, d: overlap; N for N equal spheres side by side */
-    double damping; /* sum of (R_i d_i / (R d))^(1/4): an engine damps each contact by root(stiffness mass) */
-} ms_touch;
+#include "ms_contact.h"
 
 /** A pair that touches. */
 typedef struct ms_touch_pair {

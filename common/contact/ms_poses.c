@@ -225,7 +225,7 @@ static double find_pass(flooding *s, uint32_t v, uint32_t from, uint32_t to)
     return fmin(s->height[v], fmin(height[0], height[1]));
 }
 
-static uint32_t find_root(const flooding *s, uint32_t b)
+static uint32_t find_basin(const flooding *s, uint32_t b)
 {
     while (s->basins[b].into != b) {
         b = s->basins[b].into;
@@ -233,7 +233,7 @@ static uint32_t find_root(const flooding *s, uint32_t b)
     return b;
 }
 
-static uint32_t find_nearest(const flooding *s, const double u[3])
+static uint32_t find_nearest_direction(const flooding *s, const double u[3])
 {
     size_t nearest = 0;
     for (size_t i = 1; i < s->directions->count; i++) {
@@ -254,7 +254,7 @@ static uint32_t begin_basin(flooding *s, uint32_t v)
     const double same = s->directions->spacing * s->directions->spacing;
     memcpy(new.pose.direction, s->directions->u[v], sizeof new.pose.direction);
     if (!descend(&new.pose, s, s->height[v] - s->coarse)) {
-        return s->basin_of[find_nearest(s, new.pose.direction)];
+        return s->basin_of[find_nearest_direction(s, new.pose.direction)];
     }
     for (uint32_t b = 0; b < s->n_basins; b++) {
         if (ms_squared_distance(s->basins[b].pose.direction, new.pose.direction) < same) {
@@ -266,9 +266,9 @@ static uint32_t begin_basin(flooding *s, uint32_t v)
 }
 
 /* The basins of two directions meet at v. Far above the place where they first met there is nothing to be learnt. */
-static void meet(flooding *s, uint32_t v, uint32_t from, uint32_t to)
+static void join_basins(flooding *s, uint32_t v, uint32_t from, uint32_t to)
 {
-    basin *a = &s->basins[find_root(s, s->basin_of[from])], *b = &s->basins[find_root(s, s->basin_of[to])];
+    basin *a = &s->basins[find_basin(s, s->basin_of[from])], *b = &s->basins[find_basin(s, s->basin_of[to])];
     basin *higher = a->pose.height > b->pose.height ? a : b, *lower = higher == a ? b : a;
     if (a == b || (s->height[v] > fmax(a->met, b->met) + s->coarse &&
                    s->height[v] > higher->pose.height + s->depth + s->coarse)) {
@@ -305,17 +305,17 @@ static void flood(flooding *s)
         s->basin_of[v] = s->basin_of[lowest];
         for (uint32_t e = d->start[v]; e < d->start[v + 1]; e++) {
             if (s->basin_of[d->next[e]] != NOWHERE) {
-                meet(s, v, lowest, d->next[e]);
+                join_basins(s, v, lowest, d->next[e]);
             }
         }
     }
 }
 
 /* What the passes and the directions say of the minima that are left. */
-static void sum_up(flooding *s)
+static void sum_up_shares(flooding *s)
 {
     for (size_t p = 0; p < s->n_passes; p++) {
-        const uint32_t a = find_root(s, s->passes[p].a), b = find_root(s, s->passes[p].b);
+        const uint32_t a = find_basin(s, s->passes[p].a), b = find_basin(s, s->passes[p].b);
         if (a != b) {
             ms_pose *one = &s->basins[a].pose, *other = &s->basins[b].pose;
             one->barrier = fmin(one->barrier, s->passes[p].height - one->height);
@@ -323,7 +323,7 @@ static void sum_up(flooding *s)
         }
     }
     for (size_t i = 0; i < s->directions->count; i++) {
-        s->basins[find_root(s, s->basin_of[i])].pose.share += s->directions->weight[i];
+        s->basins[find_basin(s, s->basin_of[i])].pose.share += s->directions->weight[i];
     }
 }
 
@@ -389,7 +389,7 @@ static int sort_directions(flooding *s)
     return all != NULL;
 }
 
-static double find_reach(const ms_support *body)
+static double find_body_reach(const ms_support *body)
 {
     double reach = 0;
     for (size_t i = 0; i < body->count; i++) {
@@ -406,7 +406,7 @@ ms_status ms_poses_find(ms_pose **pose, size_t *count, const ms_support *body, c
                   .directions = directions,
                   .height = height,
                   .depth = depth,
-                  .reach = find_reach(body),
+                  .reach = find_body_reach(body),
                   .near = {0, malloc(body->count * sizeof *s.near.sphere)},
                   .plane = malloc(body->count * sizeof *s.plane),
                   .order = malloc(directions->count * sizeof *s.order),
@@ -421,7 +421,7 @@ ms_status ms_poses_find(ms_pose **pose, size_t *count, const ms_support *body, c
         status = ms_fail(err, MS_ERR_NOMEM, "no memory to order %zu directions", directions->count);
     } else {
         flood(&s);
-        sum_up(&s);
+        sum_up_shares(&s);
         status = list_poses(pose, count, &s, err);
     }
     ms_support_free(&s.near);

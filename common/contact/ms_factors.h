@@ -4,6 +4,8 @@
 
 #include "ms_contact.h"
 
+MS_C_BEGIN
+
 typedef struct ms_factors {
     double modulus;     /* times that of the material: the mean contact is as stiff as one of r_eq */
     double restitution; /* to ask for, that the contact of mean damping and stiffness has what one is to have; 0: none
@@ -16,6 +18,8 @@ typedef struct ms_factors {
  * @param row    of the contact's, in which something touches
  * @param single restitution of one contact that is wanted, above 0 and at most 1
  */
-ms_factors ms_factors_of(const ms_contact *contact, const ms_contact_row *row, double single);
+MS_API ms_factors ms_factors_of(const ms_contact *contact, const ms_contact_row *row, double single);
+
+MS_C_END
 
 #endif

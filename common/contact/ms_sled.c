@@ -67,7 +67,7 @@ typedef struct dragging {
 } dragging;
 
 /* Those that touch, for which room is made. @return how many, SIZE_MAX without memory */
-static size_t find_pairs(dragging *d, const ms_sled_place *place)
+static size_t find_dragged_pairs(dragging *d, const ms_sled_place *place)
 {
     if (!d->turned && !(d->turned = malloc(d->body->count * sizeof *d->turned))) {
         return SIZE_MAX;
@@ -142,7 +142,7 @@ static int drag_all(outcome *found, const ms_sled_place *place, size_t places, c
         dragging own = *how;
 #pragma omp for schedule(dynamic, 16)
         for (size_t i = 0; i < places; i++) {
-            const size_t count = find_pairs(&own, &place[i]);
+            const size_t count = find_dragged_pairs(&own, &place[i]);
             if (count == SIZE_MAX) {
 #pragma omp atomic write
                 failed = 1;

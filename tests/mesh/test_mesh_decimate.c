@@ -1,5 +1,5 @@
 /* Meshes of fewer triangles: how few, and that what is left lies on the mesh. */
-#include "view/ms_view_decimate.h"
+#include "mesh/ms_mesh_decimate.h"
 
 #include "mesh/ms_inertia.h"
 #include "support/test_support.h"
@@ -11,7 +11,7 @@ static void ball(void **state)
     ms_error err;
     make_shape(&mesh, "ball", "r=2.385");
     for (size_t most = mesh.n_triangles / 2; most > 200; most /= 3) {
-        assert_int_equal(ms_view_decimate(&few, &mesh, most, &err), MS_OK);
+        assert_int_equal(ms_mesh_decimate(&few, &mesh, most, &err), MS_OK);
         assert_true(few.n_triangles <= most && few.n_triangles > most / 4);
         for (size_t v = 0; v < few.n_vertices; v++) {
             const double *p = few.vertex[v];

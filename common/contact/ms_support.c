@@ -4,6 +4,8 @@
 #include <stdlib.h>
 
 #include "base/ms_vector.h"
+#include "mesh/ms_hull.h"
+#include "voxel/ms_grid_hull.h"
 
 static ms_status alloc_body(ms_support *body, size_t count, ms_error *err)
 {
@@ -36,12 +38,46 @@ ms_status ms_support_from_clump(ms_support *body, const ms_clump *clump, const d
     return status;
 }
 
-ms_status ms_support_from_mesh(ms_support *body, const ms_mesh *mesh, const double centre[3], ms_error *err)
+static ms_status take_vertices(ms_support *body, const ms_mesh *mesh, const double centre[3], ms_error *err)
 {
     const ms_status status = alloc_body(body, mesh->n_vertices, err);
     for (size_t i = 0; i < body->count; i++) {
         put_sphere(&body->sphere[i], mesh->vertex[i], centre, 0);
     }
+    return status;
+}
+
+ms_status ms_support_from_mesh(ms_support *body, const ms_mesh *mesh, const double centre[3], ms_error *err)
+{
+    ms_mesh hull;
+    *body = (ms_support){0};
+    if (!ms_hull_is_built() || mesh->n_vertices == 0) {
+        return take_vertices(body, mesh, centre, err);
+    }
+    ms_status status = ms_hull_build(&hull, (const double(*)[3])mesh->vertex, mesh->n_vertices, err);
+    if (status == MS_OK) {
+        status = take_vertices(body, &hull, centre, err);
+    }
+    ms_mesh_free(&hull);
+    return status;
+}
+
+ms_status ms_support_from_grid(ms_support *body, const ms_grid *grid, const double centre[3], ms_error *err)
+{
+    ms_mesh centres, faces;
+    ms_status status = ms_grid_hull_build(&centres, &faces, grid, err);
+    status = status == MS_ERR_SHAPE && faces.n_vertices ? MS_OK : status; /* flat: no hull of the centres */
+    for (size_t v = 0; status == MS_OK && v < faces.n_vertices; v++) {
+        for (int k = 0; k < 3; k++) {
+            faces.vertex[v][k] = grid->origin[k] + grid->h * faces.vertex[v][k];
+        }
+    }
+    *body = (ms_support){0};
+    if (status == MS_OK) {
+        status = take_vertices(body, &faces, centre, err);
+    }
+    ms_mesh_free(&centres);
+    ms_mesh_free(&faces);
     return status;
 }
 
