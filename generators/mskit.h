@@ -36,6 +36,7 @@
 #include "mesh/ms_inertia.h"
 #include "mesh/ms_mesh.h"
 #include "mesh/ms_mesh_decimate.h"
+#include "ms_allocate.h"
 #include "ms_curve.h"
 #include "ms_generate.h"
 #include "ms_generator.h"

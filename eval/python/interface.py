@@ -203,6 +203,17 @@ double ms_expect_spheres(const ms_expect *expect, ms_expect_kind kind, double di
 double ms_expect_least_spheres(const ms_expect *expect, ms_expect_kind kind);
 double ms_expect_round(double spheres);
 
+/* scenes */
+typedef struct { uint64_t particles; size_t most; const double *error; } ms_share;
+typedef struct { uint64_t particles, spheres; double error, slack; } ms_allocation;
+ms_allocation ms_allocate_sum(const ms_share *share, const size_t *n, size_t count);
+double ms_allocate_gain(const ms_share *share, const size_t *n, size_t count);
+ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count, uint64_t budget,
+                             ms_error *err);
+ms_status ms_allocate_error(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count, double error,
+                            ms_error *err);
+size_t ms_allocate_knee(const ms_share *share, double part);
+
 /* contacts */
 #define MS_CONTACT_MAX_OVERLAPS ...
 static const double MS_CONTACT_MOST_OVERLAP;

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "scene/ms_allocate.h"
+#include "ms_allocate.h"
 
 enum { MOST = 100, SCENES = 5, SPHERES_EACH = 20 };
 

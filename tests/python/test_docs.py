@@ -18,7 +18,7 @@ import numpy
 from support_python import PythonCase
 
 DOCS = os.environ["MSKIT_DOCS"]
-NAMES = ("_clumps", "_contact", "_errors", "_expect", "_generate", "_measures", "_meshes", "_methods", "_shapes",
+NAMES = ("_allocate", "_clumps", "_contact", "_errors", "_expect", "_generate", "_measures", "_meshes", "_methods", "_shapes",
          "_sources", "_view", "_volumes")
 
 

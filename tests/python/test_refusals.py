@@ -195,6 +195,19 @@ class Refusals(PythonCase):
         self.refused(mskit.ArgumentError, "dice=0 ", expected.spheres, 0)
         self.refused(mskit.ArgumentError, "inscribed=1", expected.dice, 5, inscribed=1)
 
+    def test_allocation(self):
+        curves = [[0.5, 0.2], [0.4, 0.3, 0.1]]
+        for arguments, options, words in [
+                ((curves,), {}, "one of budget, mean_dice and knee"), ((curves,), {"budget": 9, "knee": 0.1}, "one of budget"),
+                ((curves, [1]), {"budget": 9}, "not a number for each of 2"), ((curves, [1, 0]), {"budget": 9}, "particles=0"),
+                ((curves, [1, 2.5]), {"budget": 9}, "whole number"), (([],), {"budget": 9}, "no list of curves"),
+                ((3,), {"budget": 9}, "no list of curves"), (([[0.5], []],), {"budget": 9}, "curve 1 is no array"),
+                (([[0.5, float("nan")]],), {"budget": 9}, "curve 0 is no array"), ((curves,), {"budget": 1}, "budget"),
+                ((curves,), {"mean_dice": 0.01}, "the best templates reach a mean of 0.15"),
+                ((curves,), {"mean_dice": 2}, "mean_dice=2"), ((curves,), {"knee": 0}, "knee=0"),
+                ((curves,), {"knee": 0.01}, "curve 0: up to the last of 2 spheres")]:
+            self.refused(mskit.Error, words, mskit.allocate, *arguments, **options)
+
     def test_contact(self):
         clump = mskit.generate(self.path(self.grain), "mss", spheres=3, cells=12)
         for options, words in [({"poses": 0}, "poses=0"), ({"overlap": 0.5}, "overlap=0.5"), ({"overlap": []}, "overlap=[]"),

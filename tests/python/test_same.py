@@ -169,6 +169,21 @@ class Same(PythonCase):
             self.assertEqual(expected.dice(7.5), pickle.loads(pickle.dumps(expected)).dice(7.5))
             self.assertEqual(expected.dice(numpy.array([[2, 3]])).shape, (1, 2))
 
+    def test_allocation(self):
+        """By the program's curves, and by those of the module's own clumps, the numbers that scene chooses."""
+        self.shape("torus", "fineness=6", name="torus.ply")
+        self.write("scene.csv", f"shape,count\n{self.grain},300\ntorus.ply,20\n")
+        clumps = [mskit.generate(self.path(name), "mss", spheres=9, cells=15) for name in (self.grain, "torus.ply")]
+        for goal, flags in [({"budget": 2000}, ("--budget", 2000)), ({"mean_dice": 0.11}, ("--mean-tolerance", "dice=0.11")),
+                            ({"knee": 0.3}, ("--knee", 0.3))]:
+            told = self.mskit("scene", "scene.csv", *flags, "-g", "mss", "--cells", 15, "--max-spheres", 9, "--json").json
+            for curves in ([shape["curve"] for shape in told["shapes"]], [mskit.curve(clump)["dice"] for clump in clumps]):
+                found = mskit.allocate(curves, [300, 20], **goal)
+                self.assertEqual(found.spheres.tolist(), [shape["scores"]["spheres"] for shape in told["shapes"]])
+                self.assertEqual((found.total, found.mean_dice, found.least_gain),
+                                 (told["spheres"], told["mean_dice"], told["least_gain"]))
+                self.assertEqual(found.slack, told["slack"] or 0)
+
     def plain(self, value):
         """As JSON has it."""
         if isinstance(value, dict):

@@ -17,6 +17,7 @@ import os as _os
 if "OMP_WAIT_POLICY" not in _os.environ and "GOMP_SPINCOUNT" not in _os.environ:
     _os.environ["OMP_WAIT_POLICY"] = "passive"
 
+from ._allocate import Allocation, allocate
 from ._clumps import Clump, Particle, formats, read_clump, write
 from ._contact import contact
 from ._errors import (ArgumentError, Error, FileError, FormatError, LimitError, OutOfMemoryError, Remark, ShapeError)
@@ -33,10 +34,10 @@ from ._volumes import grains, volume
 
 __version__: str = _ffi.string(_lib.ms_version()).decode()
 __all__ = [
-    "ArgumentError", "Clump", "Error", "Expectation", "FileError", "FormatError", "Generator", "LimitError", "Measure",
-    "Option", "OutOfMemoryError", "Particle", "Progress", "Remark", "Shape", "ShapeError", "body", "contact", "correct",
-    "curve", "equal_volume", "expect", "formats", "generate", "generators", "grains", "measures", "mesh", "read",
-    "read_clump", "score", "volume", "write",
+    "Allocation", "ArgumentError", "Clump", "Error", "Expectation", "FileError", "FormatError", "Generator",
+    "LimitError", "Measure", "Option", "OutOfMemoryError", "Particle", "Progress", "Remark", "Shape", "ShapeError",
+    "allocate", "body", "contact", "correct", "curve", "equal_volume", "expect", "formats", "generate", "generators",
+    "grains", "measures", "mesh", "read", "read_clump", "score", "volume", "write",
 ]
 
 # Forked while OpenMP has threads, a child waits for them for ever: its runs take the one thread that it has.

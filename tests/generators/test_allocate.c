@@ -1,5 +1,5 @@
 /* The allocation of spheres over a scene, against all allocations there are. */
-#include "scene/ms_allocate.h"
+#include "ms_allocate.h"
 #include "support/test_support.h"
 
 enum { SHAPES = 3, MOST = 7, SCENES = 300 };

@@ -29,7 +29,7 @@ typedef struct knapsack_search {
     size_t *begin; /* where the layer of i kinds begins */
 } knapsack_search;
 
-static ms_status begin_search(knapsack_search *s, ms_error *err)
+static ms_status begin_knapsack(knapsack_search *s, ms_error *err)
 {
     s->rest = calloc(s->count + 1, sizeof *s->rest);
     s->begin = calloc(s->count + 2, sizeof *s->begin);
@@ -150,7 +150,7 @@ ms_status ms_knapsack_improve(size_t *choice, int *proven, const ms_kind *kind, 
         s.aim += kind[i].value[choice[i]];
     }
     *proven = 0;
-    ms_status status = begin_search(&s, err);
+    ms_status status = begin_knapsack(&s, err);
     if (status == MS_OK) {
         status = add_state(&s, &none, err);
     }

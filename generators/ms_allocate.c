@@ -70,7 +70,7 @@ static void free_table(error_table *t)
     free(t->spheres);
 }
 
-static ms_status make_table(error_table *t, const ms_share *share, size_t count, int by_error, ms_error *err)
+static ms_status make_error_table(error_table *t, const ms_share *share, size_t count, int by_error, ms_error *err)
 {
     size_t size = 0, at = 0;
     for (size_t s = 0; s < count; s++) {
@@ -106,7 +106,7 @@ static ms_status improve(size_t *n, ms_allocation *sum, const ms_share *share, s
     error_table t;
     int proven = 0;
     const double slack = sum->slack;
-    ms_status status = make_table(&t, share, count, wanted->by_error, err);
+    ms_status status = make_error_table(&t, share, count, wanted->by_error, err);
     for (size_t s = 0; s < count; s++) {
         n[s]--; /* places in the table */
     }

@@ -7,6 +7,8 @@
 
 #include "base/ms_error.h"
 
+MS_C_BEGIN
+
 /** One shape of a scene. Borrowed. */
 typedef struct ms_share {
     uint64_t particles;  /* of this shape, at least 1; over all shapes below 2^53 spheres at the most */
@@ -23,13 +25,13 @@ typedef struct ms_allocation {
 } ms_allocation;
 
 /** Sums over a scene whose shape i has templates of n[i] spheres; slack is 0. */
-ms_allocation ms_allocate_sum(const ms_share *share, const size_t *n, size_t count);
+MS_API ms_allocation ms_allocate_sum(const ms_share *share, const size_t *n, size_t count);
 
 /**
  * What the least useful spheres of an allocation bring: of all ways to make one template smaller, the least that each
  * sphere of the scene given back adds to the sum of errors over the scene. 0 with one sphere each.
  */
-double ms_allocate_gain(const ms_share *share, const size_t *n, size_t count);
+MS_API double ms_allocate_gain(const ms_share *share, const size_t *n, size_t count);
 
 /**
  * The least mean error for a number of spheres in the whole scene.
@@ -49,8 +51,8 @@ double ms_allocate_gain(const ms_share *share, const size_t *n, size_t count);
  * Source: Fox 1966, Discrete optimization via marginal analysis (Management Science 13, 210).
  * Cost: O(shapes) for each step, and one pass over the rest of a curve for each of its steps; the search.
  */
-ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count, uint64_t budget,
-                             ms_error *err);
+MS_API ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count,
+                                    uint64_t budget, ms_error *err);
 
 /**
  * The fewest spheres in the scene for a mean error: the same steps for budgets between what the hulls need at the least
@@ -59,8 +61,8 @@ ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share
  * @return MS_OK; MS_ERR_LIMIT if the largest templates do not reach it (the message gives what they reach);
  *         MS_ERR_NOMEM
  */
-ms_status ms_allocate_error(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count, double error,
-                            ms_error *err);
+MS_API ms_status ms_allocate_error(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count,
+                                   double error, ms_error *err);
 
 /**
  * The knee of a curve: the least number of spheres from which no larger template takes away as much as
@@ -68,6 +70,8 @@ ms_status ms_allocate_error(size_t *n, ms_allocation *allocated, const ms_share 
  *
  * @return 0 if there is none before the end of the curve
  */
-size_t ms_allocate_knee(const ms_share *share, double part);
+MS_API size_t ms_allocate_knee(const ms_share *share, double part);
+
+MS_C_END
 
 #endif
