@@ -78,7 +78,8 @@ def worst(rows, numbers):
                  for ratio, row in own[:3]]
         cells += ["-"] * (3 - len(cells))
         mean = f"{statistics.geometric_mean(ratio for ratio, _ in own):.2f}" if own else "-"
-        print(f"| {method} | {mean} | " + " | ".join(cells) + f" | {sum(ratio == 1 for ratio, _ in own)} of {len(own)} |")
+        print(f"| {method} | {mean} | " + " | ".join(cells) +
+              f" | {sum(ratio == 1 for ratio, _ in own)} of {len(own)} |")
 
 
 def faults(rows):

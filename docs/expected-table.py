@@ -32,16 +32,17 @@ ANALYTIC = {"torus": ("torus",), "prolate": ("ellipsoid", "a=2", "b=1", "c=1", "
             "cylinder": ("cylinder",), "oblate331": ("ellipsoid", "a=3", "b=3", "c=1", "fineness=100"),
             "oblate332": ("ellipsoid", "a=1.5", "b=1.5", "c=1", "fineness=100"),
             "triaxial": ("ellipsoid", "a=3", "b=2", "c=1.5", "fineness=100")}
-# Bodies, numbers of spheres, cells along the shortest side for the method and along the longest for the judge: more where
-# the body stands along the grid's own planes, so that 200 err by 15 %. The constants of the model (CHEAPER, TOLERANCE,
-# the points of a level) were chosen on the first list.
+# Bodies, numbers of spheres, cells along the shortest side for the method and along the longest for the judge: more
+# where the body stands along the grid's own planes, so that 200 err by 15 %. The constants of the model (CHEAPER,
+# TOLERANCE, the points of a level) were chosen on the first list.
 FITTED = [
     ("torus", (10, 15, 20, 30, 40, 60), 100, 600), ("prolate", (10, 15, 20, 30, 40, 60), 100, 500),
     ("needle", (10, 15, 20, 30, 40, 60), 100, 1600), ("oblate", (30, 60, 100, 200), 100, 400),
     *((name, (10, 30, 100, 300), 100, 200) for name in (
         "asteroid_castalia.obj", "boulder_SP2B.stl", "bunny.ply", "human_femur.stl", "lithic_flake2.ply",
         "octahedron.stl", "pear.stl", "powder_ma165_03636.stl", "sand_grain.stl")),
-    ("open-clumps/bowl.stl", (100, 200, 400, 600), 50, 200), ("open-clumps/mug.stl", (50, 100, 200, 400, 500), 100, 200),
+    ("open-clumps/bowl.stl", (100, 200, 400, 600), 50, 200),
+    ("open-clumps/mug.stl", (50, 100, 200, 400, 500), 100, 200),
     ("open-clumps/pitcher.stl", (30, 40, 50, 100, 200, 400), 100, 200),
 ]
 HELD_OUT = [

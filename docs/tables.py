@@ -1,4 +1,5 @@
-"""Tables in Markdown, and a document's parts between <!-- NAME --> and <!-- end -->, for the scripts beside this one."""
+"""Tables in Markdown, and a document's parts between <!-- NAME --> and <!-- end -->, for the scripts beside this
+one."""
 import csv
 import re
 import sys

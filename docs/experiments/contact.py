@@ -94,8 +94,8 @@ def make_clump(folder, shape, n):
         quiet = {"check": True, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         size = ["a=10"] if shape == "cube" else []
         subprocess.run([MSKIT, "shape", shape, *size, "-o", mesh], **quiet)
-        subprocess.run([MSKIT, "generate", mesh, "-g", "setcover", "-n", str(n), "--cells", "50", "--correct", "--density",
-                        str(dem.DENSITY), "--unit", "mm", "-o", path], **quiet)
+        subprocess.run([MSKIT, "generate", mesh, "-g", "setcover", "-n", str(n), "--cells", "50", "--correct",
+                        "--density", str(dem.DENSITY), "--unit", "mm", "-o", path], **quiet)
     return path
 
 
@@ -210,9 +210,9 @@ def stable(rows, energy):
 
 def largest_step(folder, engine, body, law, start, expected):
     """By three grids of steps, from 1/4 to 2 of what is expected down to 0.1 %: the last before the first that is
-    unstable. Each run has 500 steps; at 0.1 % above the limit an undamped amplitude grows by exp(0.09) in each. LIGGGHTS
-    and LAMMPS tell the velocity of a whole step, which is 0 in a motion of two steps that neither grows nor decays any
-    more: there each step is looked at. YADE tells that of half a step."""
+    unstable. Each run has 500 steps; at 0.1 % above the limit an undamped amplitude grows by exp(0.09) in each.
+    LIGGGHTS and LAMMPS tell the velocity of a whole step, which is 0 in a motion of two steps that neither grows nor
+    decays any more: there each step is looked at. YADE tells that of half a step."""
     low, factor = expected / 4, 8 ** (1 / 16)
     for _ in range(3):
         grid = [low * factor ** k for k in range(17)]
@@ -239,14 +239,16 @@ def measure_step(folder, engine, law, body, restitution):
         own = own._replace(restitution=restitution)
     theory = 2 / omega * (math.sqrt(1 + ratio ** 2) - ratio)
     small = 1e-6 * overlap * omega
-    start = dem.Start(R_EQ - overlap, (0.0, 0.0, -small), (0.0, 0.5 * small / R_EQ * (len(feet) > 1), 0.0), LOAD / body.mass)
+    start = dem.Start(R_EQ - overlap, (0.0, 0.0, -small), (0.0, 0.5 * small / R_EQ * (len(feet) > 1), 0.0),
+                      LOAD / body.mass)
     step = largest_step(folder, engine, body, own, start, theory)
     radius = feet[0][3]
     return step, theory, step / theory, step / rayleigh(radius), step / rayleigh(R_EQ)
 
 
 def run_steps(folder):
-    table = Table("contact-steps.csv", "engine case law restitution radius feet arm step theory over_theory over_rayleigh "
+    table = Table("contact-steps.csv",
+                  "engine case law restitution radius feet arm step theory over_theory over_rayleigh "
                   "over_rayleigh_eq cpu", 7)
     cases = [("radius", law, 1, radius, 1, 0.0) for law in ("hertz", "linear") for radius in (1.0, 0.5, 0.2, 0.1, 0.05)]
     cases += [("number", "hertz", e, 0.1, side, 0.2) for e in (1, 0.5) for side in (1, 2, 3, 4, 5)]
@@ -257,8 +259,8 @@ def run_steps(folder):
         body = make_feet(radius * R_EQ, places)
         body = locked(body) if len(places) == 1 else body  # on one foot it would fall over
         for engine in dem.ENGINES:
-            table.add(lambda: measure_step(folder, engine, law, body, restitution), engine, case, law, restitution, radius,
-                      len(places), arm)
+            table.add(lambda: measure_step(folder, engine, law, body, restitution), engine, case, law, restitution,
+                      radius, len(places), arm)
 
 
 def run_tables(_):

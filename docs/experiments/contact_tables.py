@@ -39,8 +39,8 @@ def table_impacts(rotation):
             out.append([shape, impact, n, ", ".join(speeds), span(same, "touching", 0), span(both, "number", 2),
                         span(both, "closed"), span(by["LIGGGHTS"], "e"), span(by["LAMMPS"], "e"),
                         span(by["YADE"], "closed"), span(by["YADE"], "e")])
-    return markdown(["body", "impact", "spheres", "speed, m/s", "touch", "N", "e(N)", "LIGGGHTS", "LAMMPS", "e(N), YADE's",
-                     "YADE"], out)
+    return markdown(["body", "impact", "spheres", "speed, m/s", "touch", "N", "e(N)", "LIGGGHTS", "LAMMPS",
+                     "e(N), YADE's", "YADE"], out)
 
 
 def find_locked(row):
@@ -68,7 +68,8 @@ def table_agreement():
         for rotation in ("locked", "free"):
             these = pick(rows, engine=engine, rotation=rotation)
             line.append(f"{max(abs(float(r['e']) - float(r['oracle'])) for r in these):.5f}")
-        level = [r for r in pick(rows, engine=engine, rotation="locked") if r["touching"] == "1" or r["shape"] == "cube"]
+        level = [r for r in pick(rows, engine=engine, rotation="locked") if r["touching"] == "1"
+                 or r["shape"] == "cube"]
         line.append(f"{max(abs(float(r['e']) - float(r['closed'])) for r in level):.5f}")
         out.append(line)
     return markdown(["engine", "oscillator, locked", "oscillator, free", "e(N), cube and single contacts, locked"], out)
@@ -77,7 +78,8 @@ def table_agreement():
 def table_masses():
     rows = read("masses")
     return markdown(["engine", "sphere over body", "contacts", "e", "if the body damps", "if the sphere does"],
-                    [[r["engine"], r["member"], r["feet"]] + [f"{float(r[k]):.3f}" for k in ("e", "by_body", "by_member")]
+                    [[r["engine"], r["member"], r["feet"]] +
+                     [f"{float(r[k]):.3f}" for k in ("e", "by_body", "by_member")]
                      for r in rows])
 
 
@@ -105,7 +107,8 @@ def table_step_radius():
 
 
 def table_step_number():
-    return markdown(["e of one contact", "contacts"] + TAIL, step_rows("number", lambda r: [r["restitution"], r["feet"]]))
+    return markdown(["e of one contact", "contacts"] + TAIL,
+                    step_rows("number", lambda r: [r["restitution"], r["feet"]]))
 
 
 def table_step_arm():
@@ -120,8 +123,8 @@ def table_cost():
     return markdown(["part", "rows", "CPU minutes"], out)
 
 
-TABLES = {"locked": lambda: table_impacts("locked"), "free": lambda: table_impacts("free"), "agreement": table_agreement,
-          "masses": table_masses, "walls": table_walls, "step-radius": table_step_radius,
+TABLES = {"locked": lambda: table_impacts("locked"), "free": lambda: table_impacts("free"),
+          "agreement": table_agreement, "masses": table_masses, "walls": table_walls, "step-radius": table_step_radius,
           "step-number": table_step_number, "step-arm": table_step_arm, "cost": table_cost}
 
 

@@ -177,8 +177,8 @@ def make_table():
             return f"{statistics.mean(values):.{digits}f}{deviation}"
         out.append([n, f"{float(these[0]['dice']):.4f}", step, str(len(these)), spread("height_envelope", 1),
                     spread("height_top", 1), spread("fraction", 4), spread("cpu_seconds", 0)])
-    return tables.markdown(["spheres", "D", "step, s", "packings", "mean of the upper envelope, mm", "highest point, mm",
-                            "packing fraction", "CPU s"], out)
+    return tables.markdown(["spheres", "D", "step, s", "packings", "mean of the upper envelope, mm",
+                            "highest point, mm", "packing fraction", "CPU s"], out)
 
 
 def main():

@@ -3,10 +3,10 @@
 
     MSKIT=build/eval/mskit docs/validation/bounds-table.py SHARED [N,N,...] [NAME,NAME,...]
 
-SHARED holds data/open-clumps/NAME.stl, data/human_femur.stl and data/bunny.ply. Each shape gets N spheres (60, 150) three
-times: free, with `gap` half the largest gap of the free ones, and `connected`. D, gap (voxels of 100 cells) and pieces
-are those of mskit's own measures, times are user times of one thread, reading and scoring included. How often both are
-held goes to standard error.
+SHARED holds data/open-clumps/NAME.stl, data/human_femur.stl and data/bunny.ply. Each shape gets N spheres (60, 150)
+three times: free, with `gap` half the largest gap of the free ones, and `connected`. D, gap (voxels of 100 cells) and
+pieces are those of mskit's own measures, times are user times of one thread, reading and scoring included. How often
+both are held goes to standard error.
 """
 import json
 import os

@@ -3,9 +3,9 @@
 
     MSKIT=build/eval/mskit docs/validation/carriers-table.py SHARED [METHOD...]
 
-Every body of `mskit shape` with its default parameters, and every mesh of SHARED/data, by 10, 30 and 100 spheres of each
-METHOD (setcover, mss, variational) at --cells 40. A cell is the number of carriers; - where the method gave fewer than
-10 spheres, ! where none do, with the cause on standard error, as the largest error of the ten
+Every body of `mskit shape` with its default parameters, and every mesh of SHARED/data, by 10, 30 and 100 spheres of
+each METHOD (setcover, mss, variational) at --cells 40. A cell is the number of carriers; - where the method gave fewer
+than 10 spheres, ! where none do, with the cause on standard error, as the largest error of the ten
 sums, which are made again here from the CSV.
 """
 import glob

@@ -3,11 +3,11 @@
 
     MSKIT=build/eval/mskit docs/validation/open-clumps.py [SHARED]
 
-SHARED (or MSKIT_SHARED) holds data/open-clumps with NAME.stl and NAME.spheres.csv, and tools/score.c, the judge, compiled
-here by cc. Each shape gets as many spheres as theirs four times: by default options, with `gap` set to the largest gap of
-theirs, `connected`, and no sphere below their least radius. D is the judge's, and lower only where that of
-`mskit score --cells 100` is, too; gap (in voxels of 100 cells) and pieces are those of mskit score. In how many it is held
-and lower goes to standard error.
+SHARED (or MSKIT_SHARED) holds data/open-clumps with NAME.stl and NAME.spheres.csv, and tools/score.c, the judge,
+compiled here by cc. Each shape gets as many spheres as theirs four times: by default options, with `gap` set to the
+largest gap of theirs, `connected`, and no sphere below their least radius. D is the judge's, and lower only where that
+of `mskit score --cells 100` is, too; gap (in voxels of 100 cells) and pieces are those of mskit score. In how many it
+is held and lower goes to standard error.
 """
 import json
 import os

@@ -44,12 +44,14 @@ def covered(rows, count, n):
 def main():
     first, *others = GOALS
     print(f"| choice | count | spheroid {first} | " + " | ".join(others) + f" | tablet by {NUMBERS[0]} | "
-          + " | ".join(f"by {n}" for n in NUMBERS[1:]) + " |\n" + "|---" * (2 + len(GOALS) + len(NUMBERS)) + f"|\n{PAPER}")
+          + " | ".join(f"by {n}" for n in NUMBERS[1:]) + " |\n" + "|---" * (2 + len(GOALS) + len(NUMBERS)) +
+          f"|\n{PAPER}")
     with tempfile.TemporaryDirectory() as folder:
         for body, kind in BODIES.items():
             run(MSKIT, "shape", *kind, "-o", os.path.join(folder, body + ".stl"))
         for name, deq, options in CHOICES:
-            spheroid, tablet = (curve(folder, body, n, deq, options) for body, n in (("spheroid", 900), ("tablet", 500)))
+            spheroid, tablet = (curve(folder, body, n, deq, options)
+                                for body, n in (("spheroid", 900), ("tablet", 500)))
             for count in COUNTS:
                 cells = [needed(spheroid, count, goal) for goal in GOALS.values()]
                 cells += [covered(tablet, count, n) for n in NUMBERS]

@@ -154,7 +154,8 @@ def main():
     sizes = [int(word) for word in sys.argv[2:]] or [96, 500]
     os.makedirs(folder, exist_ok=True)
     clumps = [make_clump(folder, n) for n in sizes]
-    head = ["angle"] + [f"{what} {who}" for who in ["e=0.6", "damping"] + [str(n) for n in sizes] for what in ("V", "w")]
+    head = ["angle"] + [f"{what} {who}" for who in ["e=0.6", "damping"] + [str(n) for n in sizes]
+                        for what in ("V", "w")]
     print("| " + " | ".join(head) + " |\n" + "|---" * len(head) + "|")
     with open(os.path.join(folder, "tablet-impact.csv"), "w", encoding="ascii", newline="") as f:
         table = csv.writer(f)

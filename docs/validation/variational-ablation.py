@@ -22,7 +22,8 @@ ROOM = "generators/variational/"
 SOLVE, FIT, SOLVER, PRUNE = (ROOM + f for f in ("ms_variational_solve.c", "ms_surface_fit.c", "ms_variational_solver.c",
                                                 "ms_prune.c"))
 # Name, file, what stands there, and what is put in its place.
-WITHOUT = [("more spheres at the start, and pruning", SOLVER, [("SURPLUS = 1.25", "SURPLUS = 1"), ("MORE = 12", "MORE = 0")]),
+WITHOUT = [("more spheres at the start, and pruning", SOLVER,
+            [("SURPLUS = 1.25", "SURPLUS = 1"), ("MORE = 12", "MORE = 0")]),
            ("the fit before pruning", SOLVE, [("START_STEPS = 40", "START_STEPS = 0")]),
            ("fits while pruning", SOLVE, [("DROP_STEPS = 15", "DROP_STEPS = 0")]),
            ("spheres that go at once are apart", PRUNE, [("CLOSE = 0.3", "CLOSE = 0")]),
@@ -36,7 +37,8 @@ WITHOUT = [("more spheres at the start, and pruning", SOLVER, [("SURPLUS = 1.25"
 MADE = {"oblate": ["ellipsoid", "a=2", "b=2", "c=1", "fineness=100"],
         "prolate": ["ellipsoid", "a=2", "b=1", "c=1", "fineness=100"],
         "torus": ["torus"]}
-SHAPES = [("oblate", 100), ("prolate", 30), ("prolate", 100), ("torus", 40), ("bunny.ply", 100), ("human_femur.stl", 70),
+SHAPES = [("oblate", 100), ("prolate", 30), ("prolate", 100), ("torus", 40), ("bunny.ply", 100),
+          ("human_femur.stl", 70),
           ("open-clumps/bowl.*", 20)]
 REPEATS = 2
 

@@ -29,9 +29,11 @@ def measure(builds, path, n, options, folder):
     score, least = [None] * len(builds), [float("inf")] * len(builds)
     for _ in range(REPEATS):
         for b, mskit in enumerate(builds):
-            least[b] = min(least[b], run(mskit, "generate", path, "-g", "variational", "-n", n, *options, "-o", clump)[1])
+            least[b] = min(least[b],
+                           run(mskit, "generate", path, "-g", "variational", "-n", n, *options, "-o", clump)[1])
             if score[b] is None:
-                score[b] = json.loads(run(builds[0], "score", clump, "--target", path, "--cells", 200, "--json")[0])["scores"]["dice"]
+                score[b] = json.loads(run(builds[0], "score", clump, "--target", path, "--cells", 200,
+                                          "--json")[0])["scores"]["dice"]
     return score, least
 
 

@@ -4,7 +4,8 @@
     MSKIT=build/eval/mskit tests/bench/large_volume.py [EXTENT=2048] [FOLDER=.]
 
 The volume, EXTENT^3 voxels of 16 bits without a header, is a sparse file with 400 balls of 28 voxels' radius, labels 1
-to 400: it reads like a full one and takes some 4 GB on the disk, since of each row that a ball touches a block is there.
+to 400: it reads like a full one and takes some 4 GB on the disk, since of each row that a ball touches a block is
+there.
 """
 import os
 import resource
@@ -46,7 +47,8 @@ def run(*args):
     subprocess.run(args, check=True, stdout=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     user = after.ru_utime - before.ru_utime
-    print(f"{args[1]}: peak {after.ru_maxrss / 1024:.0f} MB, {time.time() - start:.0f} s, user {user:.0f} s", flush=True)
+    print(f"{args[1]}: peak {after.ru_maxrss / 1024:.0f} MB, {time.time() - start:.0f} s, user {user:.0f} s",
+          flush=True)
 
 
 def main():

@@ -128,8 +128,8 @@ class Voxels(Case):
 
     def test_stability_says_it_once_for_each_resolution(self):
         self.write("bar.obj", box_obj((0, 0, 0), (4, 1, 1.25)))
-        result = self.mskit("stability", "bar.obj", "-g", "mss", "-g", "mss:variant=paper", "-n", 2, "--cells", 4, "--runs", 2,
-                            "--perturb", "resolution", "-o", "c.csv")
+        result = self.mskit("stability", "bar.obj", "-g", "mss", "-g", "mss:variant=paper", "-n", 2, "--cells", 4,
+                            "--runs", 2, "--perturb", "resolution", "-o", "c.csv")
         said = re.findall(r"bar.obj: the voxels hold .*now ([0-9.]+)", result.err)
         self.assertGreater(len(said), 0, str(result))
         self.assertEqual(len(said), len(set(said)), "each once")

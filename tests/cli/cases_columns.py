@@ -17,7 +17,8 @@ MASSES = ("epsilon products_epsilon centre_epsilon optimal least most error_mass
           "error_products seconds")
 PARTICLE = "scale density mass centre inertia principal_moments principal_axes"
 SECONDS = "read voxelize distance generate score cpu"
-RECORD = ("generator options.variant options.spacing options.boost options.polish options.radius-offset options.order options.confine options.plane "
+RECORD = ("generator options.variant options.spacing options.boost options.polish options.radius-offset options.order "
+          "options.confine options.plane "
           "seed until.spheres stopped_by")
 
 
@@ -64,20 +65,26 @@ class Columns(Case):
     def test_csv_of_compare(self):
         self.mskit("compare", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10)
         self.assertEqual(self.header("compare.csv"),
-                         "shape,checksum,label,generator,options,seed,cells,n_asked,flags,n,stopped_by,eta,dice,coverage,"
+                         "shape,checksum,label,generator,options,seed,cells,n_asked,flags,n,stopped_by,eta,dice,"
+                         "coverage,"
                          "overshoot,off_volume,protrusion_max,protrusion_rms,gap_max,gap_rms," +
                          NORMALS.replace(" ", ",") + ",smallest_radius_ratio,work,"
-                         "pieces,inertia_union,coverage_cut," + ",".join(DESCRIPTORS) + ",expected,inertia_corrected,epsilon,"
+                         "pieces,inertia_union,coverage_cut," + ",".join(DESCRIPTORS) +
+                         ",expected,inertia_corrected,epsilon,"
                          "products_epsilon,centre_epsilon,voxel_size,"
-                         "seconds_read,seconds_voxelize,seconds_distance,seconds_describe,seconds_generate,seconds_least,"
-                         "seconds_most,seconds_score,seconds_correct,repeats,peak_memory_kb,machine,threads,beside,version,cause")
+                         "seconds_read,seconds_voxelize,seconds_distance,seconds_describe,seconds_generate,"
+                         "seconds_least,"
+                         "seconds_most,seconds_score,seconds_correct,repeats,peak_memory_kb,machine,threads,beside,"
+                         "version,cause")
 
     def test_csv_of_stability(self):
         self.mskit("stability", "grain.stl", "-g", "mss", "-n", 2, "--cells", 10, "--runs", 1, "--perturb", "seed")
         self.assertEqual(self.header("stability.csv"),
-                         "shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,flags,status,"
+                         "shape,checksum,generator,options,perturbation,level,seed,voxel_size,threads,n_asked,flags,"
+                         "status,"
                          "n,stopped_by,eta,dice,coverage,overshoot,off_volume,inertia_error,coverage_cut," +
-                         NORMALS.replace(" ", ",") + ",smallest_radius_ratio,work,pieces," + ",".join(DESCRIPTORS) + ",n_until,seconds,beside,spheres_fnv1a,cause")
+                         NORMALS.replace(" ", ",") + ",smallest_radius_ratio,work,pieces," + ",".join(DESCRIPTORS) +
+                         ",n_until,seconds,beside,spheres_fnv1a,cause")
 
     def test_json_of_generate(self):
         run = self.generate("grain.stl", "-g", "mss", "-n", 5, "--cells", 15, "-o", "c.json")
@@ -109,7 +116,8 @@ class Columns(Case):
         run = self.mskit("info", "grain.stl", "--json").json
         body = "volume centroid inertia principal_moments principal_axes"
         self.assertEqual(keys(run), ("path box_lo box_hi " + " ".join(FORM) + " feret triangles vertices closed "
-                                     "open_edges nonmanifold_edges shells bodies cavities overlapping holes largest_hole " +
+                                     "open_edges nonmanifold_edges shells bodies cavities overlapping holes "
+                                     "largest_hole " +
                                      MENDED + " " + body).split())
 
     def test_json_of_generators(self):

@@ -17,8 +17,8 @@ import zlib
 
 from support import MSKIT, TIMEOUT, Case, box_obj, fnv1a, npy
 
-TIMES = ("seconds_read", "seconds_voxelize", "seconds_distance", "seconds_describe", "seconds_generate", "seconds_least",
-         "seconds_most", "seconds_score", "seconds_correct", "peak_memory_kb", "beside")
+TIMES = ("seconds_read", "seconds_voxelize", "seconds_distance", "seconds_describe", "seconds_generate",
+         "seconds_least", "seconds_most", "seconds_score", "seconds_correct", "peak_memory_kb", "beside")
 RUN = ("-g", "mss", "-g", "setcover", "-g", "variational", "-n", "3,6", "--cells", "12",
        "-j", "1")
 
@@ -90,8 +90,8 @@ class Rows(Compare):
         found = []
         self.write("cube.obj", box_obj((0, 0, 0), (1, 1, 1)))
         for threads in ("1", "3"):
-            self.mskit("compare", "box.obj", "cube.obj", "-g", "mss", "-g", "variational", "-n", "5,9", "--cells", "12,16",
-                       "-j", threads, "-o", threads + ".csv")
+            self.mskit("compare", "box.obj", "cube.obj", "-g", "mss", "-g", "variational", "-n", "5,9",
+                       "--cells", "12,16", "-j", threads, "-o", threads + ".csv")
             rows = self.rows(threads + ".csv")
             self.assertEqual({row["threads"] for row in rows}, {"1"}, "each run has one, side by side")
             self.assertEqual({row["beside"] for row in rows}, {str(int(threads) - 1)})
@@ -190,7 +190,8 @@ class Rows(Compare):
         self.write("box.obj", box_obj((0, 0, 0), (3, 2, 1)))
         self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))
         args = ("-g", "mss", "-n", "1,2", "--cells", "8", "--json")
-        says = "mskit compare: not one of 2 rows succeeded; the first failed because of this: open.obj: the mesh is open"
+        says = ("mskit compare: not one of 2 rows succeeded; the first failed because of this: "
+                "open.obj: the mesh is open")
         result = self.mskit("compare", "open.obj", *args, code=1)
         self.assert_says(result, says)
         self.assertEqual([row["dice"] for row in result.json], [None, None])
@@ -458,8 +459,8 @@ class Charts(Compare):
 
     @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed (package gnuplot-nox)")
     def test_a_point_is_no_chart(self):
-        """It is said in words; points of times have bars from the fastest run to the slowest, of which one is the median.
-        What a run before drew goes from folder and page."""
+        """It is said in words; points of times have bars from the fastest run to the slowest, of which one is the
+        median. What a run before drew goes from folder and page."""
         os.mkdir(self.path("charts"))
         before = [f"charts/{name}.svg" for name in ("box-dice", "box-resolution")]
         for name in before:
@@ -471,13 +472,16 @@ class Charts(Compare):
         self.assertIn(f"no chart charts/box-dice, but words: {said}\n", result.out)
         for name in before:
             self.assertFalse(os.path.exists(self.path(name)), name)
-        self.assertEqual(re.findall(r'class="chart" alt="([^"]*)"', self.read("r.html").decode()), ["box-time.svg", "box-work.svg"])
-        bars = [line.split(" ") for line in self.read("charts/box-time.dat").decode().splitlines() if line.count(" ") == 4]
+        self.assertEqual(re.findall(r'class="chart" alt="([^"]*)"', self.read("r.html").decode()),
+                         ["box-time.svg", "box-work.svg"])
+        bars = [line.split(" ") for line in self.read("charts/box-time.dat").decode().splitlines()
+                if line.count(" ") == 4]
         for bar, row in zip((bar for bar in bars if bar[0] != "#"), rows, strict=True):
             for value, column in zip((bar[0], bar[3], bar[4]), ("seconds_generate", "seconds_least", "seconds_most")):
                 self.assert_close(float(value), float(row[column]), 1e-8)
             self.assertTrue(float(row["seconds_least"]) <= float(row["seconds_generate"]) <= float(row["seconds_most"]))
-        self.assertIn("medians of 3 runs; bars: least to most, 75 % confidence", self.read("charts/box-time.svg").decode())
+        self.assertIn("medians of 3 runs; bars: least to most, 75 % confidence",
+                      self.read("charts/box-time.svg").decode())
 
     def test_same_names(self):
         os.mkdir(self.path("other"))

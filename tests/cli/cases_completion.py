@@ -1,4 +1,5 @@
-"""Completion of the command line: what the program answers, and what bash and zsh make of it, typed into them for real."""
+"""Completion of the command line: what the program answers, and what bash and zsh make of it, typed into them for
+real."""
 import os
 import pty
 import re

@@ -100,7 +100,8 @@ class Correct(Case):
         flags = ("--target", "box.obj", "--density", "1", "-o", "d.csv")
         self.assert_refused("correct", "two.csv", *flags, "--carriers", code=1, says=("no carriers do",))
         self.assert_refused("correct", "two.csv", *flags, "--carrier-depth", "0.1", code=2, says=("takes --carriers",))
-        self.assert_refused("correct", "two.csv", *flags, "--carriers", "--carrier-depth", "0", code=2, says=("carrier-depth",))
+        self.assert_refused("correct", "two.csv", *flags, "--carriers", "--carrier-depth", "0", code=2,
+                            says=("carrier-depth",))
         self.write("mixed.csv", "x,y,z,r,mass,density,carrier\n0,0,0,1,1,1,0\n0,0,0,0.1,1,1,1\n0,0,1,1,1,1,0\n")
         self.assert_refused("convert", "mixed.csv", "-o", "e.json", code=1, says=("behind all spheres",))
 
@@ -121,8 +122,8 @@ class Correct(Case):
         self.assertEqual(score["scores"]["dice"], run.json["scores"]["dice"])
 
     def test_equal_volume_refused(self):
-        self.assert_refused("correct", "c.csv", "--properties", "union", "--density", 1, "--equal-volume", "-o", "d.csv",
-                            code=2, says=("--equal-volume",))
+        self.assert_refused("correct", "c.csv", "--properties", "union", "--density", 1, "--equal-volume",
+                            "-o", "d.csv", code=2, says=("--equal-volume",))
         self.assert_refused("generate", "box.obj", "--equal-volume", "-n", 5, "--curve", "d.csv", code=2,
                             says=("--equal-volume",))
 
@@ -172,7 +173,8 @@ class Correct(Case):
         self.mskit("generate", "box.obj", *GRID, "-n", "30", "--correct", "--density", "1", "--format", "liggghts",
                    "--format", "csv")
         self.assertEqual([n for n in self.files() if n.startswith("box-variational")],
-                         ["box-variational" + ending for ending in (".csv", ".frame.json", ".liggghts", ".liggghts.in")])
+                         ["box-variational" + ending
+                          for ending in (".csv", ".frame.json", ".liggghts", ".liggghts.in")])
 
     def test_there_and_back(self):
         """A template with its frame gives the spheres of the shape again."""
@@ -239,7 +241,8 @@ class Correct(Case):
         """What MFiX would sum of them vanishes; the templates have the mass of the body all the same."""
         for r, says in (("1e-9", "MFiX sums the spheres"), ("1e-90", "no mass or inertia")):
             self.write("specks.csv", f"x,y,z,r\n2,2,1.5,{r}\n3,2,1.5,{r}\n")
-            run = self.mskit("correct", "specks.csv", "--target", "box.obj", "--density", "1000", "--all-formats", "out" + r)
+            run = self.mskit("correct", "specks.csv", "--target", "box.obj", "--density", "1000",
+                             "--all-formats", "out" + r)
             self.assert_says(run, says)
             self.assertIn(b" mass 6000 ", self.read(f"out{r}/specks.liggghts.in"))
 
@@ -306,7 +309,8 @@ class Correct(Case):
                 ((*whole, "--unit", "ft", "-o", "d.csv"), "'ft'"),
                 ((*whole, "--unit", "m", "--scale", "1", "-o", "d.csv"), "exclude"),
                 ((*whole, "--axes", "x", "-o", "d.csv"), "principal, input"),
-                ((*union, "--weld", "0.1"), "--weld is of a shape"), ((*union, "--label", "2"), "--label is of a shape"),
+                ((*union, "--weld", "0.1"), "--weld is of a shape"),
+                ((*union, "--label", "2"), "--label is of a shape"),
                 ((*union, "--cells", "20"), "--cells is of a shape"),
                 ((*whole, "--format", "csv", "--format", "csv"), "twice"),
                 (("convert", "c.csv"), "-o FILE"),

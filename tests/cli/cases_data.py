@@ -73,7 +73,8 @@ class Data(Case):
         self.assertRegex(self.mskit("info", path, "--label", "2").out, "pieces +2 ")
 
     def test_cases_that_are_mended(self):
-        """Corners that stand several times, up to 1e-7 of the length apart in each coordinate, and bytes behind the last."""
+        """Corners that stand several times, up to 1e-7 of the length apart in each coordinate, and bytes behind the
+        last."""
         for name, remark, joined in (("b01_seam_1e-7.stl", "joined 1318 corners", 1318),
                                      ("a11_tail_newline.stl", "2 bytes behind the last of its 528 triangles", 0)):
             result = self.mskit("info", shared_file("cases", name), "--json")

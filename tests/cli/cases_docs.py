@@ -30,8 +30,8 @@ def keys(value):
 
 class Documents(Case):
     def test_commands_of_the_guide(self):
-        """In order, in one folder, which holds an open mesh, a scan with two labels, the guide's manifest and two grains
-        with a coarse clump each."""
+        """In order, in one folder, which holds an open mesh, a scan with two labels, the guide's manifest and two
+        grains with a coarse clump each."""
         self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))
         self.write("scan.npy", npy([1] * 50 + [2] * 950, (10, 10, 10)))
         os.mkdir(self.path("grains"))
@@ -56,7 +56,8 @@ class Documents(Case):
     def readme(self):
         """The README's blocks of commands, without comments, in order."""
         text = document(os.path.join("..", "README.md"))
-        return text, [re.sub(r"  +#.*", "", line).strip() for line in re.findall(r"(?m)^ {4}(?!  | *\w+/ )(\S.+)$", text)
+        return text, [re.sub(r"  +#.*", "", line).strip()
+                      for line in re.findall(r"(?m)^ {4}(?!  | *\w+/ )(\S.+)$", text)
                       if re.match(r"sh |build/|export |mskit |printf |meson ", line)]
 
     def test_commands_of_the_readme(self):
@@ -108,7 +109,8 @@ class Documents(Case):
         overview = document("mskit.1")
         for command in re.findall(r"(?m)^  (\w+) +\w", self.mskit("--help").out):
             self.assertRegex(overview, rf"(?m)^\.B {command}$")
-            with open(os.path.join(os.path.dirname(MSKIT), "..", "docs", f"mskit-{command}.1"), encoding="utf-8") as stream:
+            with open(os.path.join(os.path.dirname(MSKIT), "..", "docs", f"mskit-{command}.1"),
+                      encoding="utf-8") as stream:
                 page = stream.read().replace("\\-", "-")
             said = self.mskit(command, "--help").out
             flags = re.findall(r"(?m)^ +(?:-\w, )?(--[a-z][a-z-]*)", said)

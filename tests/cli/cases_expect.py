@@ -55,7 +55,8 @@ class Expected(Case):
     def test_generate_warns_where_a_wall_is_too_thin(self):
         self.shape("plate", "c=0.2")
         run = self.mskit("generate", "plate.stl", "-g", "variational", "-n", 10, "--cells", 8, "-o", "p.csv")
-        self.assertRegex(run.err, r"for 10 spheres the least D to be expected is about 0\.\d+: most of the shape is too "
+        self.assertRegex(run.err,
+                         r"for 10 spheres the least D to be expected is about 0\.\d+: most of the shape is too "
                                   r"thin for so few; \d+ would")
 
     def test_generate_of_an_open_mesh_has_none(self):

@@ -97,7 +97,8 @@ class Default(Generate):
     def test_it_is_told(self):
         self.assertRegex(self.mskit("generate", "--help").out, r"--generator \S+ +[^-]*\(variational\)")
         self.assertRegex(self.mskit("scene", "--help").out, r"--generator \S+ +[^-]*\(variational\)")
-        self.assertEqual([line.split()[0] for line in self.mskit("generators").out.splitlines() if "the default" in line],
+        self.assertEqual([line.split()[0] for line in self.mskit("generators").out.splitlines()
+                          if "the default" in line],
                          ["variational"])
 
     def test_option_of_another_method(self):
@@ -109,7 +110,8 @@ class Default(Generate):
     def test_prefixes_are_no_clumps(self):
         """Where prefixes of the clump are scored, it is said that they are none of the method's."""
         for command in ("generate", "score"):
-            self.assertRegex(self.mskit(command, "--help").out, r"(?s)--curve.*variational.*no clumps|no clumps.*variational")
+            self.assertRegex(self.mskit(command, "--help").out,
+                             r"(?s)--curve.*variational.*no clumps|no clumps.*variational")
 
 
 class Stop(Generate):
@@ -192,11 +194,13 @@ class Stop(Generate):
 
     def test_least_radius(self):
         for least in (0.25, 0.4):
-            run = self.generate(self.grain, *MSS, *GRID, "--variant", "paper", "--until", f"radius={least}", "-o", "c.csv")
+            run = self.generate(self.grain, *MSS, *GRID, "--variant", "paper", "--until", f"radius={least}",
+                                "-o", "c.csv")
             radii = [r for *_, r in self.spheres("c.csv")]
             self.assertEqual(run["stopped_by"], "radius")
             self.assertGreaterEqual(min(radii), least)
-        self.assertGreater(len(self.clump("--variant", "paper", "-n", "30")), len(radii), "without the rule there are more")
+        self.assertGreater(len(self.clump("--variant", "paper", "-n", "30")), len(radii),
+                           "without the rule there are more")
 
     def test_least_radius_holds_beside_other_rules(self):
         spheres = self.clump("--until", "radius=0.3", "-n", "4", "--until", "coverage=0.99", "--confine")

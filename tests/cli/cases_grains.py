@@ -72,7 +72,8 @@ class Rows(Grains):
         rows = self.grains("scan.npy", "stones", "-g", "mss", "-n", "5", "--cells", "12", "-j", "2")
         self.assertEqual([(row["grain"], row["grains"], row["label"], row["file"]) for row in rows],
                          [("1", "5", "4", "0000/scan-4.csv"), ("2", "5", "7", "0000/scan-7.csv"),
-                          ("3", "5", "9", "0000/scan-9.csv"), ("4", "5", "", "0000/a.csv"), ("5", "5", "", "0000/b.csv")])
+                          ("3", "5", "9", "0000/scan-9.csv"), ("4", "5", "", "0000/a.csv"),
+                          ("5", "5", "", "0000/b.csv")])
         self.assertEqual([row["voxels"] for row in rows], [str(voxels(label)) for label in BOXES] + ["", ""])
         self.assertEqual([row["cut_by_border"] for row in rows], ["0", "1", "0", "", ""])
         for row in rows:
@@ -93,7 +94,8 @@ class Rows(Grains):
                            "--min-radius", "0.001")
         self.assertEqual([row["source"] for row in rows], ["stones/a.obj", "stones/b.obj"])
         for row in rows:
-            self.assertEqual((row["n_asked"], row["until"], row["stopped_by"]), ("", "coverage=0.6 radius=0.001", "coverage"))
+            self.assertEqual((row["n_asked"], row["until"], row["stopped_by"]),
+                             ("", "coverage=0.6 radius=0.001", "coverage"))
             self.assertGreaterEqual(float(row["coverage"]), 0.6)
 
     def test_templates_with_the_true_mass(self):
@@ -127,7 +129,8 @@ class Faults(Grains):
     def test_a_fault_is_a_row_and_not_the_end(self):
         self.write("stones/aa.obj", "v 0 0 nan\nf 1 1 1\n")
         self.write("bad.npy", self.read("scan.npy")[:200])
-        result = self.mskit("grains", "stones", "bad.npy", "scan.npy", "-g", "mss", "-n", "2", "--cells", "8", "-o", "out")
+        result = self.mskit("grains", "stones", "bad.npy", "scan.npy", "-g", "mss", "-n", "2", "--cells", "8",
+                            "-o", "out")
         rows = self.table()
         self.assertEqual([row["status"] for row in rows], ["ok", "failed", "ok", "failed", "ok", "ok", "ok"])
         self.assertIn("aa.obj", rows[1]["cause"])
@@ -136,15 +139,16 @@ class Faults(Grains):
 
     def test_remarks_of_the_method(self):
         """A bound that a clump cannot hold is in its row, with these commands, and how often is said."""
-        bound, says = ("variational:gap=0.1,protrusion=0", "-n", "1", "--cells", "6"), "gap=0.1 cannot be held by 1 sphere"
+        bound = ("variational:gap=0.1,protrusion=0", "-n", "1", "--cells", "6")
+        says = "gap=0.1 cannot be held by 1 sphere"
         self.grains("stones", "-g", "variational", "--gap", "0.1", "--protrusion", "0", *bound[1:])
-        again = self.mskit("grains", "stones", "-g", "variational", "--gap", "0.1", "--protrusion", "0", *bound[1:], "-o",
-                           "out", "--resume")
+        again = self.mskit("grains", "stones", "-g", "variational", "--gap", "0.1", "--protrusion", "0", *bound[1:],
+                           "-o", "out", "--resume")
         self.assertIn("0 failed, 2 with a remark of the method: see the column cause", again.out)
         compared = self.mskit("compare", "stones/a.obj", "-g", *bound, "-o", "compare.csv")
         self.assertIn("on 1 of them the method has a remark", compared.out)
-        changed = self.mskit("stability", "stones/a.obj", "-g", *bound, "--perturb", "seed", "--runs", "1", "-o", "s.csv",
-                             "--json").json
+        changed = self.mskit("stability", "stones/a.obj", "-g", *bound, "--perturb", "seed", "--runs", "1",
+                             "-o", "s.csv", "--json").json
         for group in changed:
             self.assertEqual((group["failed"], group["remarked"], group["cause"]), (0, 1, None))
             self.assertIn(says, group["remark"])
@@ -219,7 +223,8 @@ class Faults(Grains):
         self.assertEqual(self.known(), self.known("whole/grains.csv"))
 
     def test_a_full_disk(self):
-        """Files may not grow beyond the first row and a half: this row is whole and the run goes on when there is room."""
+        """Files may not grow beyond the first row and a half: this row is whole and the run goes on when there is
+        room."""
         args = ("grains", "stones", "scan.npy", "-g", "mss", "-n", "2", "--cells", "6")
         self.mskit(*args, "-o", "whole")
         ends = [at for at, byte in enumerate(self.read("whole/grains.csv")) if byte == ord("\n")]
@@ -370,8 +375,10 @@ class Parts(Grains):
         self.run_parts(1, 2, of=2)
         text = self.read("out/grains-2-of-2.csv").decode()
         head, rows = text.split("\n", 1)
-        for broken, says in ((text.replace("grain,", "Grain,", 1), "not the header"), ("", "no row"), (head[:30], "no row"),
-                             (head + "\nx" + rows, "number of a grain"), (head + "\n" + rows.replace(",", ";", 3), "fields"),
+        for broken, says in ((text.replace("grain,", "Grain,", 1), "not the header"), ("", "no row"),
+                             (head[:30], "no row"),
+                             (head + "\nx" + rows, "number of a grain"),
+                             (head + "\n" + rows.replace(",", ";", 3), "fields"),
                              (head + "\n9" + rows, "number of a grain")):
             self.write("out/grains-2-of-2.csv", broken)
             self.assert_says(self.mskit(*merge, code=1), "out/", says)
@@ -383,19 +390,22 @@ class Parts(Grains):
     def test_parts_by_other_flags(self):
         """Where the rows themselves do not show it: flags of grid, masses, formats and filters, and the list."""
         self.run_parts(1, of=2)
-        for flag in (("--cells", "13"), ("--density", "2000"), ("--format", "json"), ("--skip-border",), ("--weld", "0")):
+        for flag in (("--cells", "13"), ("--density", "2000"), ("--format", "json"), ("--skip-border",),
+                     ("--weld", "0")):
             self.mskit("grains", *self.ARGS, *flag, "-o", "other", "--part", "2/2")
             self.assert_says(self.mskit("grains", "--merge", "out", "other", "-o", "out", code=1), "another run")
             self.assert_says(self.mskit("grains", *self.ARGS, "-o", "other", "--part", "2/2", "--resume", code=1),
                              "another run")
             os.unlink(self.path("other/grains-2-of-2.csv"))
-        self.mskit("grains", "-j", "1", "--cells", "12", "--max-memory", "1G", *self.ARGS[:-2], "-o", "other", "--part", "2/2")
+        self.mskit("grains", "-j", "1", "--cells", "12", "--max-memory", "1G", *self.ARGS[:-2], "-o", "other",
+                   "--part", "2/2")
         self.mskit("grains", "--merge", "out", "other", "-o", "out")
 
     def test_rows_of_a_manifest_tell_runs_apart(self):
         self.write("a.csv", "shape,cells\nstones/a.obj,\nstones/b.obj,9\n")
         self.write("b.csv", "shape,cells\nstones/a.obj,9\nstones/b.obj,\n")
-        runs = [self.grains(name, "-g", "mss", "-n", "2", "--cells", "8", out=name[0])[0]["run"] for name in ("a.csv", "b.csv")]
+        runs = [self.grains(name, "-g", "mss", "-n", "2", "--cells", "8", out=name[0])[0]["run"]
+                for name in ("a.csv", "b.csv")]
         self.assertNotEqual(*runs)
 
     def test_parts_that_do_not_fit(self):

@@ -63,8 +63,8 @@ class Inputs(Lost):
     def test_refine(self):
         self.write("q.csv", "1.5 1 .5 .4\n")
         for name in ("-o", "--curve"):
-            self.assert_kept("generate", "g.obj", "-g", "variational", "--set", "refine=q.csv", *RUN, "-o", "a.csv", name,
-                             "./q.csv", says=self.INPUT)
+            self.assert_kept("generate", "g.obj", "-g", "variational", "--set", "refine=q.csv", *RUN, "-o", "a.csv",
+                             name, "./q.csv", says=self.INPUT)
 
     def test_data_file_of_a_header(self):
         self.write("x.raw", b"\1" * 64)
@@ -104,7 +104,8 @@ class Inputs(Lost):
             self.assert_kept("compare", "g.obj", *run, "--clump", "x=c.csv", "-o", output, "--resume", says=self.INPUT)
         os.mkdir(self.path("charts"))
         os.rename(self.path(clump), self.path("charts/g-mss-1.csv"))
-        self.assert_kept("compare", "g.obj", *run, "--clump", "x=charts/g-mss-1.csv", "--charts", "charts", says=self.INPUT)
+        self.assert_kept("compare", "g.obj", *run, "--clump", "x=charts/g-mss-1.csv", "--charts", "charts",
+                         says=self.INPUT)
 
     def test_stability(self):
         self.assert_kept("stability", "g.obj", "-g", "mss", "-n", "1", "--cells", "8", "--perturb", "seed", "-o",
@@ -113,14 +114,15 @@ class Inputs(Lost):
     def test_scene(self):
         self.mskit("shape", "cube", "-o", "s.stl")
         self.write("s.csv", "shape,count\ng.obj,1\ns.stl,2\n")
-        self.assert_kept("scene", "s.csv", "-g", "mss", "--knee", "0.3", "--max-spheres", "2", "--cells", "8", "-o", ".",
-                         says=self.INPUT)
+        self.assert_kept("scene", "s.csv", "-g", "mss", "--knee", "0.3", "--max-spheres", "2", "--cells", "8",
+                         "-o", ".", says=self.INPUT)
 
 
 class Outputs(Lost):
     def test_two_of_one_file(self):
         os.symlink(".", self.path("here"))
-        for flags in (("-o", "a.csv", "-o", "a.csv"), ("-o", "a.csv", "-o", "./a.csv"), ("-o", "a.csv", "-o", "here/a.csv"),
+        for flags in (("-o", "a.csv", "-o", "a.csv"), ("-o", "a.csv", "-o", "./a.csv"),
+                      ("-o", "a.csv", "-o", "here/a.csv"),
                       ("-o", "a.csv", "--curve", "a.csv"), ("-o", "a.vtk", "--target-grid", self.path("a.vtk")),
                       ("-o", "b.csv", "--curve", "a.csv", "--target-grid", "a.csv")):
             with self.subTest(flags=flags):
@@ -140,14 +142,14 @@ class Outputs(Lost):
         self.assertTrue({"a.deme", "a.pfc", "a.yade", "a.yade.py", "a.frame.json"} <= set(self.files()))
 
     def test_table_and_charts(self):
-        self.assert_kept("compare", "g.obj", "-g", "mss", "-n", "1", "--cells", "8", "--charts", ".", "-o", "g-mss-1.csv",
-                         says=("lost",))
-        self.assert_kept("stability", "g.obj", "-g", "mss", "-n", "1", "--cells", "8", "--perturb", "seed", "--charts", ".",
-                         "-o", "1-mss-all.dat", says=("lost",))
+        self.assert_kept("compare", "g.obj", "-g", "mss", "-n", "1", "--cells", "8", "--charts", ".",
+                         "-o", "g-mss-1.csv", says=("lost",))
+        self.assert_kept("stability", "g.obj", "-g", "mss", "-n", "1", "--cells", "8", "--perturb", "seed",
+                         "--charts", ".", "-o", "1-mss-all.dat", says=("lost",))
 
     def test_streams_may_be_named_twice(self):
-        self.mskit("generate", "g.obj", *RUN, "-o", "/dev/null", "--format", "csv", "--curve", "/dev/null", "--target-grid",
-                   "/dev/null")
+        self.mskit("generate", "g.obj", *RUN, "-o", "/dev/null", "--format", "csv", "--curve", "/dev/null",
+                   "--target-grid", "/dev/null")
 
     def test_links_that_lead_nowhere(self):
         os.symlink("nothing", self.path("a.csv"))
@@ -177,7 +179,8 @@ class Limits(Lost):
             with self.subTest(args=args):
                 before = self.files()
                 result = self.mskit(*args, code=1, preexec_fn=self.limit(1100))
-                self.assert_says(result, "a.", "could not be written", "is the disk full, or the size of files limited?")
+                self.assert_says(result, "a.", "could not be written",
+                                 "is the disk full, or the size of files limited?")
                 self.assertEqual(self.files(), before)
         for command in ("compare", "stability"):
             result = self.mskit(command, "g.obj", *run, "-o", "t.csv", code=1, preexec_fn=self.limit(20))
@@ -186,7 +189,8 @@ class Limits(Lost):
 
     def test_whole_rows(self):
         """What fits stands, to the last whole row."""
-        run = ("stability", "g.obj", "-g", "mss", "-n", "1", "--cells", "8", "--runs", "2", "--perturb", "noise", "-j", "1")
+        run = ("stability", "g.obj", "-g", "mss", "-n", "1", "--cells", "8", "--runs", "2", "--perturb", "noise",
+               "-j", "1")
         self.mskit(*run, "-o", "whole.csv")
         lines = self.read("whole.csv").splitlines(keepends=True)
         self.assertEqual(len(lines), 4)
@@ -209,8 +213,8 @@ class Tables(Lost):
     def test_two_runs_on_one_table(self):
         """The second is refused; the first goes on, and each row is there once."""
         self.shape("grain")
-        run = [MSKIT, "compare", "grain.stl", "-g", "variational", "-n", ",".join(map(str, range(1, 30))), "--cells", "40",
-               "-j", "1", "-o", "t.csv"]
+        run = [MSKIT, "compare", "grain.stl", "-g", "variational", "-n", ",".join(map(str, range(1, 30))),
+               "--cells", "40", "-j", "1", "-o", "t.csv"]
         with subprocess.Popen(run, cwd=self.dir, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as first:
             first.stdout.readline()  # it has written a row
             result = self.mskit(*run[1:], "--resume", code=1)
@@ -235,14 +239,15 @@ class Unfinished(Lost):
         self.mskit(*run, *hopeless, "-o", "p.liggghts", code=1)
         self.assertIn(b" mass 15900 ", self.read("p.liggghts.in"), "the body's own mass does not hang on the spheres'")
         self.mskit(*run, *hopeless, "-o", "b.lammps", code=1)
-        self.assertEqual(self.read("b.lammps.csv"), self.read("plain.csv"), "where no output takes it, behind the first")
+        self.assertEqual(self.read("b.lammps.csv"), self.read("plain.csv"),
+                         "where no output takes it, behind the first")
         self.assertEqual(self.mskit(*run, *hopeless, "--json", "-o", "c.csv", code=1).json["scores"]["spheres"], 2)
 
     def interrupt(self, generator, number, *more, seconds=0):
         """Starts a long run, sends the signal so long after it has begun, and returns it with its messages."""
         self.shape("grain")
-        run = [MSKIT, "generate", "grain.stl", "-g", generator, "-n", "60000", "--cells", "150", "-j", "1", "-o", "a.csv",
-               *more]
+        run = [MSKIT, "generate", "grain.stl", "-g", generator, "-n", "60000", "--cells", "150", "-j", "1",
+               "-o", "a.csv", *more]
         with subprocess.Popen(run, cwd=self.dir, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
             process.stderr.readline()  # the size of the grid
             self.wait_until_caught(process, number, generator != "variational")
@@ -253,7 +258,8 @@ class Unfinished(Lost):
 
     @staticmethod
     def wait_until_caught(process, number, is_caught):
-        """By Linux's list of signals caught; elsewhere, or where it is not to be, the method has begun after a while."""
+        """By Linux's list of signals caught; elsewhere, or where it is not to be, the method has begun after a
+        while."""
         status = f"/proc/{process.pid}/status"
         for _ in range(20 * TIMEOUT if is_caught and os.path.exists(status) else 20):
             time.sleep(0.05)

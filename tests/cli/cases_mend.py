@@ -1,4 +1,5 @@
-"""Meshes as they come: seams, holes, surfaces that stand twice, crumbs, lax files; and grids of so many voxels in all."""
+"""Meshes as they come: seams, holes, surfaces that stand twice, crumbs, lax files; and grids of so many voxels in
+all."""
 import csv
 import io
 import json
@@ -59,7 +60,8 @@ class Mending(Case):
     def test_holes(self):
         self.write("open.obj", box_obj(*BOX, skip=2))
         self.assert_refused("generate", "open.obj", code=1,
-                            says=("open.obj: the mesh is open: 4 edges", "(1, the largest of 4 edges)", "--fill-holes 4"))
+                            says=("open.obj: the mesh is open: 4 edges", "(1, the largest of 4 edges)",
+                                  "--fill-holes 4"))
         self.assertRegex(self.mskit("info", "open.obj").out, "holes +1, the largest of 4 edges")
         self.assertFalse(self.info("open.obj", "--fill-holes", 3)[0]["closed"])
         info, result = self.info("open.obj", "--fill-holes", 4)
@@ -105,8 +107,8 @@ class Mending(Case):
         result = self.mskit("score", "c.csv", "--target", "bad.obj", *mend, *grid, "--json")
         self.assert_says(result, *said)
         self.assertEqual(result.json["target"]["voxels"], 6000)
-        result = self.mskit("correct", "c.csv", "--target", "bad.obj", *mend, "--density", 1000, "--json", "-o", "d.csv",
-                            "--centre-tolerance", 0.5)
+        result = self.mskit("correct", "c.csv", "--target", "bad.obj", *mend, "--density", 1000, "--json",
+                            "-o", "d.csv", "--centre-tolerance", 0.5)
         self.assert_says(result, *said)
         self.assert_close(result.json["particle"]["mass"], 6000, 1e-6, "mass")
         self.mskit("compare", "bad.obj", *mend, *grid, "-g", "mss", "-n", 5, "-o", "compare.csv")
@@ -164,13 +166,15 @@ class MaxVoxels(Case):
     def test_a_plate(self):
         """At 40 cells of thickness it has 4004 x 4004 x 44 voxels; 3 cells make 304 x 304 x 7, 4 make 404 x 404 x 8."""
         self.write("plate.obj", box_obj(*self.PLATE))
-        self.assert_refused("generate", "plate.obj", "--cells", 40, "--max-memory", "1G", code=1, says=("--max-voxels",))
+        self.assert_refused("generate", "plate.obj", "--cells", 40, "--max-memory", "1G", code=1,
+                            says=("--max-voxels",))
         voxels, result = self.grid("plate.obj", "--max-voxels", "1M")
         self.assertEqual(voxels, 304 * 304 * 7)
         self.assertNotIn("leaves", result.err)
         voxels, result = self.grid("plate.obj", "--max-voxels", "1000k", "--cells", 40)
         self.assertEqual(voxels, 304 * 304 * 7)
-        self.assert_says(result, "plate.obj: --max-voxels 1e+06 leaves 3 cells along the shortest side, of 40 asked for")
+        self.assert_says(result,
+                         "plate.obj: --max-voxels 1e+06 leaves 3 cells along the shortest side, of 40 asked for")
         for finer in (("--deq", 2000), ("--voxel-size", "0.01")):
             self.assertEqual(self.grid("plate.obj", "--max-voxels", 1e6, *finer)[0], 304 * 304 * 7)
         voxels, result = self.grid("plate.obj", "--max-voxels", 1e9, "--cells", 2)

@@ -14,11 +14,13 @@ import xml.etree.ElementTree
 from support import Case, box_obj
 
 RUN = ("--cells", "12", "-n", "6", "-j", "1")
-NAMES = {"quote": "O'Brien", "double quote": 'say "no"', "backtick": "a'`touch PWNED`", "dollar": "$(touch PWNED)$x${y}",
-         "newline": "a\nshell touch PWNED\nsystem('touch PWNED')\n#", "blank": "a b", "percent": "100%s%n%d", "hash": "#a",
-         "formula": "=cmd|'touch PWNED'!A1", "plus": "+1", "minus": "-1", "at": "@SUM(1)", "backslash": "a\\n\\'b",
+NAMES = {"quote": "O'Brien", "double quote": 'say "no"', "backtick": "a'`touch PWNED`",
+         "dollar": "$(touch PWNED)$x${y}", "newline": "a\nshell touch PWNED\nsystem('touch PWNED')\n#", "blank": "a b",
+         "percent": "100%s%n%d", "hash": "#a", "formula": "=cmd|'touch PWNED'!A1", "plus": "+1",
+         "minus": "-1", "at": "@SUM(1)", "backslash": "a\\n\\'b",
          "python": "b');__import__('os').system('touch PWNED')#", "gnuplot": "a'; system('touch PWNED'); #",
-         "pipe": "< touch PWNED", "markup": "a_{b}^c&<d>", "continued": "a &", "latin": b"lat\xe9in", "letter": "\u00fc\u7c92"}
+         "pipe": "< touch PWNED", "markup": "a_{b}^c&<d>", "continued": "a &", "latin": b"lat\xe9in",
+         "letter": "\u00fc\u7c92"}
 
 
 
@@ -28,7 +30,8 @@ class Hostile(Case):
     def each(self, check):
         for what, name in NAMES.items():
             with self.subTest(what):
-                for old in glob.glob(os.path.join(glob.escape(self.dir), "*")) + glob.glob(os.path.join(self.dir, ".*")):
+                for old in [*glob.glob(os.path.join(glob.escape(self.dir), "*")),
+                            *glob.glob(os.path.join(self.dir, ".*"))]:
                     shutil.rmtree(old) if os.path.isdir(old) else os.unlink(old)
                 name = name if isinstance(name, bytes) else name.encode()
                 shape = name + b".obj"
@@ -77,7 +80,8 @@ class Templates(Hostile):
         tree = ast.parse(files["py"][1])
         imports = [n.names[0].name for n in ast.walk(tree) if isinstance(n, (ast.Import, ast.ImportFrom))]
         self.assertEqual(sorted(imports), ["math", "random", "sys", "ymport"])
-        read = [n.args[0].value for n in ast.walk(tree) if isinstance(n, ast.Call) and getattr(n.func, "attr", "") == "text"]
+        read = [n.args[0].value for n in ast.walk(tree) if isinstance(n, ast.Call)
+                and getattr(n.func, "attr", "") == "text"]
         self.assertEqual(read, [files["yade"][0]], "Python reads the name of the file")
         self.assertEqual([line for line in files["pfc"][1].splitlines() if line.count('"') not in (0, 2)], [])
         self.assertTrue(files["pfc"][1].startswith('clump template create name "'))
@@ -97,8 +101,8 @@ class Templates(Hostile):
 
     def test_scene(self):
         def check(shape):
-            self.mskit("scene", "-g", "mss", "--knee", "0.3", "--max-spheres", "3", "--cells", "10", "-o", "t", "--format",
-                       "json", "--", shape)
+            self.mskit("scene", "-g", "mss", "--knee", "0.3", "--max-spheres", "3", "--cells", "10", "-o", "t",
+                       "--format", "json", "--", shape)
             self.check_lines(self.texts("t"))
             for text in self.texts("t").values():
                 json.loads(text)
@@ -112,8 +116,8 @@ class Templates(Hostile):
             self.mskit("generate", *RUN, "-o", "c.csv", "--", shape)
             self.assertEqual(self.mskit("score", "--json", "--cells", "10", "--target", b"./" + shape,
                                         "c.csv").json["target"]["path"], "./" + wanted)
-            run = self.mskit("stability", "--json", "-g", "mss", "-n", "2", "--cells", "8", "--perturb", "seed", "--runs",
-                             "1", "--", shape).json
+            run = self.mskit("stability", "--json", "-g", "mss", "-n", "2", "--cells", "8", "--perturb", "seed",
+                             "--runs", "1", "--", shape).json
             self.assertEqual(run[0]["shape"], wanted)
             os.unlink(self.path("stability.csv"))
 
@@ -144,8 +148,8 @@ class Tables(Hostile):
             self.mskit("generate", "c.obj", *RUN, "-o", "c.csv")
             other = shape[:-4] + b".xyz"
             os.rename(self.path("c.csv"), os.path.join(os.fsencode(self.dir), other))
-            self.mskit("compare", "-g", "mss", "-n", "3", "--cells", "8", "--clump", b"+other=" + other, "--charts", "c",
-                       "-o", "t.csv", "-j", "1", "--", shape, code=0 if has_gnuplot else 1)
+            self.mskit("compare", "-g", "mss", "-n", "3", "--cells", "8", "--clump", b"+other=" + other,
+                       "--charts", "c", "-o", "t.csv", "-j", "1", "--", shape, code=0 if has_gnuplot else 1)
             self.check_csv("t.csv", shape)
             self.check_lines(self.texts("c"))
             if has_gnuplot:
@@ -191,6 +195,7 @@ class Charts(Case):
         self.mskit("compare", "O'Brien.stl", "-g", "mss", "-n", "1,3", "--cells", "8", "--charts", "c")
         for name in ("O'Brien-dice.svg", "O'Brien-dice.png", "O'Brien-sheet.png"):
             self.assertGreater(os.path.getsize(self.path("c/" + name)), 1000)
-        self.assertIn("O'Brien: ", self.read("c/O'Brien-dice.svg").decode().replace("&apos;", "'").replace("&#39;", "'"))
+        self.assertIn("O'Brien: ",
+                      self.read("c/O'Brien-dice.svg").decode().replace("&apos;", "'").replace("&#39;", "'"))
         done = subprocess.run(["gnuplot", "O'Brien-dice.gp"], cwd=self.path("c"), check=False)
         self.assertEqual(done.returncode, 0, "the script draws it again, by hand")

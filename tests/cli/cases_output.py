@@ -27,7 +27,8 @@ class Files(Output):
         self.write("shapes/my.box.obj", box_obj((0, 0, 0), (3, 2, 1)))
         result = self.mskit("generate", os.path.join("..", "shapes", "my.box.obj"), *RUN, code=None, preexec_fn=lambda:
                             os.chdir(self.path("work")))
-        self.assertEqual(sorted(os.listdir(self.path("work"))), ["my.box-variational" + ending for ending in (".csv", ".json", ".vtk")], str(result))
+        self.assertEqual(sorted(os.listdir(self.path("work"))),
+                         ["my.box-variational" + ending for ending in (".csv", ".json", ".vtk")], str(result))
         self.assertEqual(os.listdir(self.path("shapes")), ["my.box.obj"], "nothing beside the shape")
         for name in os.listdir(self.path("work")):
             self.assertIn(f"wrote {name}\n", result.out)
@@ -124,8 +125,8 @@ class Streams(Output):
             for args in (("--version",), ("--help",), ("info", "box.obj"), ("info", "box.obj", "--json"),
                          ("generators",), ("shape", "--list"), ("shape", "ball", "-o", "-"),
                          ("generate", "box.obj", *RUN, "-o", "-"), ("generate", "box.obj", *RUN, "-o", "a.csv")):
-                process = subprocess.run([MSKIT, *args], cwd=self.dir, stdout=full, stderr=subprocess.PIPE, timeout=TIMEOUT,
-                                         check=False)
+                process = subprocess.run([MSKIT, *args], cwd=self.dir, stdout=full, stderr=subprocess.PIPE,
+                                         timeout=TIMEOUT, check=False)
                 self.assertEqual(process.returncode, 1, f"{args}: {process.stderr}")
                 self.assertRegex(process.stderr, b"(can|could) ?not be written", str(args))
         result = self.run_box("--format", "csv", "-o", "/dev/full", code=1)
@@ -135,9 +136,9 @@ class Streams(Output):
         self.run_box("-o", "a.csv")
         for number, closed in enumerate((">&-", "2>&-", ">&- 2>&-", "<&- >&- 2>&-")):
             name = f"closed{number}.csv"
-            subprocess.run(["sh", "-c", f'exec "$0" generate box.obj "$@" -o {name} {closed}', MSKIT, *RUN], cwd=self.dir,
-                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=TIMEOUT,
-                           check=False)
+            subprocess.run(["sh", "-c", f'exec "$0" generate box.obj "$@" -o {name} {closed}', MSKIT, *RUN],
+                           cwd=self.dir, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                           timeout=TIMEOUT, check=False)
             self.assertEqual(self.read(name), self.read("a.csv"), f"with {closed}")
 
 
@@ -239,7 +240,8 @@ class Memory(Output):
         with open(self.path("err.txt"), "w+b") as err:
             process = subprocess.Popen([MSKIT, *args], cwd=self.dir, stdout=subprocess.DEVNULL, stderr=err)
             _, status, usage = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status) if hasattr(os, "waitstatus_to_exitcode") else status >> 8
+            has_code = hasattr(os, "waitstatus_to_exitcode")
+            process.returncode = os.waitstatus_to_exitcode(status) if has_code else status >> 8
             err.seek(0)
             return process.returncode, err.read().decode(), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1000
 
@@ -262,7 +264,8 @@ class Memory(Output):
         self.assertLess(peak, 200, "MB taken")
 
     def test_limit(self):
-        """304 x 204 x 104 voxels of 12 bytes, and 220,000 squares of the surface of 60, are 91 MB; mss takes 14 and 120."""
+        """304 x 204 x 104 voxels of 12 bytes, and 220,000 squares of the surface of 60, are 91 MB; mss takes 14 and
+        120."""
         self.assert_refused("generate", "box.obj", "--max-memory", "90M", "-n", "1", code=1,
                             says=("304x204x104", "0.0906 GB", "0.09 GB", "--max-memory"))
         for size in ("117M", "117000k", "117000000", "0.117G", "1T"):
@@ -273,7 +276,8 @@ class Memory(Output):
         with open(shutil.which(MSKIT), "rb") as program:
             if b"__asan_init" in program.read():
                 self.skipTest("the address sanitizer takes memory of its own")
-        for method, more in (("mss", 1.1), ("variational", 1.2)):  # which has distances at the surface, and scores beyond
+        for method, more in (("mss", 1.1),
+                             ("variational", 1.2)):  # which has distances at the surface, and scores beyond
             run = ("generate", "box.obj", "-g", method, "-o", "a.csv")
             _, _, _, small = self.peak(*run, "--cells", "4", "-n", "1")
             _, err, _, large = self.peak(*run, "--cells", "130", "-n", "20")

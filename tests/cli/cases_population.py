@@ -1,4 +1,5 @@
-"""mskit compare of many shapes: tables against the rows, the verdict, clumps of other tools that go with shapes by name."""
+"""mskit compare of many shapes: tables against the rows, the verdict, clumps of other tools that go with shapes by
+name."""
 import csv
 import json
 import os
@@ -67,7 +68,8 @@ class Tables(Population):
         for row in best:
             if row["by"] == "dice":
                 other = "mss" if row["generator"] == "variational" else "variational"
-                ratios = [max(dice[s, other, row["n_asked"]], 1e-6) / max(dice[s, row["generator"], row["n_asked"]], 1e-6)
+                ratios = [max(dice[s, other, row["n_asked"]], 1e-6) /
+                          max(dice[s, row["generator"], row["n_asked"]], 1e-6)
                           for s in shapes]
                 self.assertEqual((int(row["shapes"]), int(row["best"])), (6, sum(r >= 1 for r in ratios)))
                 self.assert_close(float(row["factor"]), statistics.geometric_mean(ratios), 1e-9)
@@ -89,7 +91,8 @@ class Tables(Population):
         self.assertEqual(re.findall(r'data-scene="(\d+)"', page), ["0", "1"])
 
     def test_no_clump_of_a_run_before(self):
-        """A run that fails in a folder of charts leaves its place empty: the clump that was kept there is not its own."""
+        """A run that fails in a folder of charts leaves its place empty: the clump that was kept there is not its
+        own."""
         run = ("compare", "shapes/box-0.obj", "-g", "mss", "-n", "2", "--cells", "8", "--charts", "out")
         self.mskit(*run, "-o", "a.csv")
         self.assertTrue(os.path.exists(self.path("out/box-0-mss-2.csv")))
@@ -113,8 +116,8 @@ class Tables(Population):
             self.assertEqual(text, self.read("pop/best.csv"))
 
     def test_the_verdict_does_not_pretend(self):
-        says = self.mskit("compare", "shapes/box-0.obj", "shapes/box-1.obj", "-g", "mss", "-g", "mss:boost=1", "-n", "1",
-                          "--cells", "8", "-j", "1").err
+        says = self.mskit("compare", "shapes/box-0.obj", "shapes/box-1.obj", "-g", "mss", "-g", "mss:boost=1",
+                          "-n", "1", "--cells", "8", "-j", "1").err
         self.assertIn("not to be told apart", says)
         says = self.mskit("compare", "shapes", "-g", "mss", "-n", "1", "--cells", "8", "-j", "1", "-o", "one.csv").err
         self.assertNotIn("n = 1", says, "of one method there is nothing to say")
@@ -129,8 +132,8 @@ class Clumps(Population):
         os.mkdir(self.path("pop"))
         self.write("pop/population-dice.svg", "of a run before")
         for word in ("clumps", "clumps/box-*.csv", "./clumps/*-tool.csv"):
-            self.mskit("compare", "shapes", "-g", "mss", "-n", "4", "--cells", "8", "-j", "1", "--clump", f"tool={word}",
-                       "-o", "c.csv", "--population", "pop")
+            self.mskit("compare", "shapes", "-g", "mss", "-n", "4", "--cells", "8", "-j", "1",
+                       "--clump", f"tool={word}", "-o", "c.csv", "--population", "pop")
             rows = [row for row in self.table("c.csv") if row["generator"] == "tool"]
             self.assertEqual([(r["shape"], r["options"], r["n"], r["seconds_generate"]) for r in rows],
                              [(f"shapes/box-{k}.obj", f"{word.split('clumps')[0]}clumps/box-{k}-tool.csv", "2", "")

@@ -22,7 +22,8 @@ def scenes_of(page):
 def rows_of(page):
     """The scene of each row ("" without) and its cells."""
     body = re.search(r"<tbody>(.*?)</tbody>", page, re.S).group(1)
-    return [(re.match(r"<tr(?: data-scene=\"(\d+)\")?>", row).group(1) or "", [unescape(cell) for cell in re.findall(r"<td[^>]*>([^<]*)", row)])
+    return [(re.match(r"<tr(?: data-scene=\"(\d+)\")?>", row).group(1) or "",
+             [unescape(cell) for cell in re.findall(r"<td[^>]*>([^<]*)", row)])
             for row in body.strip().split("\n")]
 
 
@@ -79,7 +80,8 @@ class Report(Case):
         """A chart for each shape: D of its templates with the chosen one marked, or the measure of the tolerance; where
         gnuplot is missing the page stands without them and says so."""
         self.write("scene.csv", "shape,count\na&<b>.obj,3\nc.obj,4\n")
-        common = ("scene", "scene.csv", *GRID, "--max-spheres", "6", "--charts", "charts", "--report", "r.html", "--json")
+        common = ("scene", "scene.csv", *GRID, "--max-spheres", "6", "--charts", "charts", "--report", "r.html",
+                  "--json")
         names = [f"charts/{stem}-dice" for stem in ("1-a&_b_", "2-c")]
         run = self.mskit(*common, "--budget", "20", code=1, env={**os.environ, "PATH": self.dir})
         self.assert_says(run, "gnuplot-nox", names[0] + ".gp")
@@ -104,7 +106,8 @@ class Report(Case):
 
     def test_grains(self):
         """Of a volume each label, of a mesh itself, as they lie there; a grain without a clump is a row alone."""
-        self.write("scan.npy", npy([1 if i < 5 else 3 if i > 7 else 0 for _ in range(36) for i in range(12)], (6, 6, 12)))
+        self.write("scan.npy",
+                   npy([1 if i < 5 else 3 if i > 7 else 0 for _ in range(36) for i in range(12)], (6, 6, 12)))
         self.write("bad.obj", "nothing\n")
         args = ("grains", "scan.npy", "a&<b>.obj", "bad.obj", *GRID, "-n", "4", "-o", "out", "--report", "out/r.html")
         self.assertIn("wrote out/r.html\n", self.mskit(*args, "--format", "json", "--format", "csv").out)
@@ -132,7 +135,8 @@ class Report(Case):
         label = [1 if i < 5 or i > 9 else 0 for _ in range(36) for i in range(12)]
         self.write("scan.npy", npy(label, (6, 6, 12)))
         for flag, least, most in ((("--largest-piece",), 4, 6), ((), 11, 13)):
-            self.mskit("grains", "scan.npy", *GRID[:2], "-n", "2", *flag, "-o", "out" + "".join(flag), "--report", "r.html")
+            self.mskit("grains", "scan.npy", *GRID[:2], "-n", "2", *flag, "-o", "out" + "".join(flag),
+                       "--report", "r.html")
             scene = scenes_of(self.page())[0]
             width = scene["scale"] * (scene["mesh"]["high"][0] - scene["mesh"]["low"][0])
             self.assertTrue(least < width < most, width)
@@ -152,4 +156,5 @@ class Report(Case):
         self.assert_refused(*grains, "out/grains-1-of-2.csv", "--part", "2/2", code=1, says=("out/grains-1-of-2.csv",))
         self.assert_refused(*grains, "r.html", "--format", "vtk", code=1, says=("vtk", "--format csv"))
         self.assert_refused(*grains, "r.html", "--dry-run", code=2, says=("--dry-run", "--report"))
-        self.assert_refused("grains", "--merge", "a", "-o", "out", "--report", "r.html", code=2, says=("--merge", "--report"))
+        self.assert_refused("grains", "--merge", "a", "-o", "out", "--report", "r.html", code=2,
+                            says=("--merge", "--report"))

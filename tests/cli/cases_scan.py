@@ -68,7 +68,8 @@ class Grey(Case):
         self.assertEqual(record["voxels"], 36)
         self.mskit("generate", "grey.npy", "--threshold", 57, "--connectivity", 6, "--label", 2, "-n", 3, "-o", "b.csv")
         self.assertEqual(self.read("a.csv"), self.read("b.csv"))
-        score = self.mskit("score", "a.csv", "--target", "grey.npy", "--otsu", "--connectivity", 6, "--label", 2, "--json")
+        score = self.mskit("score", "a.csv", "--target", "grey.npy", "--otsu", "--connectivity", 6, "--label", 2,
+                           "--json")
         self.assertEqual(score.json["target"]["segmentation"], "otsu")
 
     def test_labels_stay_without_a_flag(self):
@@ -79,13 +80,15 @@ class Grey(Case):
 
     def test_wrong_usage(self):
         for flags, says in ((("--threshold", 1, "--otsu"), "exclude"), (("--connectivity", 8), "none of 6, 18 and 26"),
-                            (("--voxel-spacing", "1,2"), "three numbers"), (("--voxel-spacing", "1,2,0"), "three numbers"),
+                            (("--voxel-spacing", "1,2"), "three numbers"),
+                            (("--voxel-spacing", "1,2,0"), "three numbers"),
                             (("--raw-size", "1,2,2.5"), "whole numbers"), (("--raw-type", "u12"), "no type of voxels"),
                             (("--threshold", "x"), "threshold")):
             self.assert_refused("generate", "grey.npy", *flags, code=2, says=(says,))
         self.mskit("shape", "ball", "-o", "ball.stl")
         self.assert_refused("generate", "ball.stl", "--otsu", code=1, says=("is a mesh", "--otsu"))
-        self.assert_refused("generate", "grey.npy", "--threshold", 1000, code=1, says=("no voxel is above 1000", "10 to 112"))
+        self.assert_refused("generate", "grey.npy", "--threshold", 1000, code=1,
+                            says=("no voxel is above 1000", "10 to 112"))
 
     def test_fractions_are_told_what_to_do(self):
         self.write("f.raw", struct.pack("<8f", *(0.5 * i for i in range(8))))
@@ -100,7 +103,8 @@ class Spacing(Case):
         self.write("v.raw", bytes([0, 1, 1, 0] * 3))
         flags = ("v.raw", "--raw-size", "4,3,1", "--raw-type", "u8", "--voxel-spacing", "1,2,3")
         result = self.mskit("info", *flags, "--json")
-        self.assert_says(result, "its voxels are 1 x 2 x 3; resampled to 4 x 6 x 3 cubes of 1 (the nearest voxel's label)")
+        self.assert_says(result,
+                         "its voxels are 1 x 2 x 3; resampled to 4 x 6 x 3 cubes of 1 (the nearest voxel's label)")
         self.assertEqual((result.json["voxels"], result.json["stored_spacing"], result.json["resampling"]),
                          (2 * 6 * 3, [1, 2, 3], "nearest"))
         self.assertEqual((result.json["box_lo"], result.json["box_hi"]), ([0.5, -1, -1.5], [2.5, 5, 1.5]))
@@ -174,7 +178,8 @@ class Tiff(Listed):
                     self.assert_same("v.tif")
 
     def test_spacings_of_imagej(self):
-        tifffile.imwrite(self.path("v.tif"), boxes(), imagej=True, resolution=(4, 4), metadata={"spacing": 0.25, "unit": "um"})
+        tifffile.imwrite(self.path("v.tif"), boxes(), imagej=True, resolution=(4, 4),
+                         metadata={"spacing": 0.25, "unit": "um"})
         self.assertEqual(self.assert_same("v.tif")["spacing"], 0.25)
 
     def test_a_folder_of_slices(self):

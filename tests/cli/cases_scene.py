@@ -109,7 +109,8 @@ class Choice(Scene):
     def test_tolerance_is_searched_where_each_number_is_a_run(self):
         """Few numbers are run; the one that is chosen reaches the tolerance, one sphere less was run and does not."""
         for value in (0.3, 0.12, 0.05):
-            scene = self.scene(*GRID, "-g", "variational", "--max-spheres", "60", "--tolerance", f"dice={value}", "-o", "out")
+            scene = self.scene(*GRID, "-g", "variational", "--max-spheres", "60", "--tolerance", f"dice={value}",
+                               "-o", "out")
             self.assertIsNone(scene["even"])
             for shape in scene["shapes"]:
                 run = [n for n, dice in enumerate(shape["curve"], 1) if dice is not None]
@@ -231,8 +232,8 @@ class Engines(Scene):
     SCENE = (*QUICK, "--budget", "250", "--max-spheres", "8", "--density", "2650", "--unit", "mm")
 
     def test_scripts_have_the_counts_of_the_manifest(self):
-        out = self.mskit("scene", "scene.csv", *self.SCENE, "--format", "liggghts", "--format", "lammps", "--format", "yade",
-                         "--format", "json", "-o", "out").out
+        out = self.mskit("scene", "scene.csv", *self.SCENE, "--format", "liggghts", "--format", "lammps",
+                         "--format", "yade", "--format", "json", "-o", "out").out
         for name in ("scene.liggghts.in", "scene.lammps.in", "scene.yade.py"):
             self.assertIn("wrote out/" + name, out)
         liggghts, lammps, yade = (self.read("out/" + name).decode() for name in ("scene.liggghts.in", "scene.lammps.in",
@@ -387,8 +388,8 @@ class Refused(Scene):
         os.rename(self.path("box.obj"), self.path("sub/grain.obj"))
         self.manifest(["grain.stl,1", "sub/grain.obj,2"])
         self.mskit("scene", "scene.csv", *QUICK, "--budget", "9", "-o", "out", code=1)
-        self.assert_says(self.mskit("scene", "scene.csv", *QUICK, "--budget", "9", "-o", "out", code=1), "sub/grain.obj",
-                         "out/grain.csv", "rename")
+        self.assert_says(self.mskit("scene", "scene.csv", *QUICK, "--budget", "9", "-o", "out", code=1),
+                         "sub/grain.obj", "out/grain.csv", "rename")
         before = self.write("grain.csv", "shape,count\ngrain.stl,1\n")
         self.assert_refused("scene", "grain.csv", *QUICK, "--budget", "9", "-o", ".", code=1, says=("input itself",))
         self.assertEqual(self.read(before), b"shape,count\ngrain.stl,1\n")

@@ -105,7 +105,8 @@ class Measures(Score):
         self.write("c.csv", "0.6,1,0.5,0.5\n2.4,1,0.5,0.5\n")
         scores = self.score("c.csv")
         table = self.mskit("score", "c.csv", "--target", "box.obj", *GRID).out
-        for label, value in (("eta, |S xor U| / |S|", f"{scores['eta']:.5f}"), ("coverage", f"{scores['coverage']:.5f}"),
+        for label, value in (("eta, |S xor U| / |S|", f"{scores['eta']:.5f}"),
+                             ("coverage", f"{scores['coverage']:.5f}"),
                              ("D, Dice mismatch", f"{scores['dice']:.5f}"), ("connected", "no, 2 pieces"),
                              ("overshoot", f"{scores['overshoot']:.5f}"), ("spheres", "2")):
             self.assertRegex(table, rf"(?m)^  {label.replace('|', '.')} +{value}$")
@@ -207,6 +208,7 @@ class Judge(Score):
                                      stdout=subprocess.PIPE).stdout
             theirs = json.loads(printed)
             self.assertEqual(theirs["n"], n)
-            self.assertGreater(theirs["overshoot"], 0.001, "the offset makes spheres reach out, so that all is compared")
+            self.assertGreater(theirs["overshoot"], 0.001,
+                               "the offset makes spheres reach out, so that all is compared")
             for measure, key in (("D", "dice"), ("eta", "eta"), ("coverage", "coverage"), ("overshoot", "overshoot")):
                 self.assertAlmostEqual(ours[key], theirs[measure], delta=5e-4, msg=f"{measure} of the {kind}")

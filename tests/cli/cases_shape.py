@@ -93,7 +93,8 @@ class Shapes(Case):
             (("ball", "fineness=2.5"), ("whole",)), (("torus", "R=1", "r=2"), ("r = 2", "R = 1")),
             (("hollow", "R=1", "r=1"), ("r",)), (("needle", "length=1", "r=1"), ("length",)),
             (("dumbbell", "neck=2"), ("neck",)), (("box", "a=1e6", "b=1e-3"), ("too unlike",)),
-            (("grain", "noise=2"), ("noise = 2",)), (("grain", "seed=-1"), ("seed",)), (("grain", "degree=2.5"), ("whole",)),
+            (("grain", "noise=2"), ("noise = 2",)), (("grain", "seed=-1"), ("seed",)),
+            (("grain", "degree=2.5"), ("whole",)),
         ):
             with self.subTest(args=args):
                 self.assert_refused("shape", *args, "-o", "x.stl", code=1, says=says)

@@ -10,7 +10,8 @@ import shutil
 
 from support import Case, box_obj, npy, read_obj
 
-KINDS = ("axes", "rotation", "shift", "lattice", "resolution", "noise", "refine", "decimate", "seed", "order", "threads")
+KINDS = ("axes", "rotation", "shift", "lattice", "resolution", "noise", "refine", "decimate", "seed", "order",
+         "threads")
 
 
 def rows_of(text):
@@ -82,9 +83,10 @@ class Stability(Case):
         self.assertEqual(len({row["spheres_fnv1a"] for row in rows}), 3)
 
     def test_threads_make_no_difference_and_a_killed_run_goes_on(self):
-        """Rows of one and of three threads, and of a table cut at any place and taken up, are the same but for times."""
-        args = ("stability", "cube", "speck", "-g", "mss", "-g", "fcm:tries=10", "-n", "4", "--cells", "12", "--runs", "2",
-                "--perturb", "rotation", "--perturb", "noise", "--json")
+        """Rows of one and of three threads, and of a table cut at any place and taken up, are the same but for
+        times."""
+        args = ("stability", "cube", "speck", "-g", "mss", "-g", "fcm:tries=10", "-n", "4", "--cells", "12",
+                "--runs", "2", "--perturb", "rotation", "--perturb", "noise", "--json")
         def known(name):
             return [{k: v for k, v in row.items() if k not in ("seconds", "beside")}
                     for row in rows_of(self.read(name).decode())]
@@ -97,7 +99,8 @@ class Stability(Case):
             self.write("cut.csv", text[:size])
             self.assertEqual(self.mskit(*args, "--resume", "-o", "cut.csv").json, one, f"cut after {size} bytes")
             self.assertEqual(known("cut.csv"), known("one.csv"))
-        for other in (("cube",), ("speck", "cube"), ("cube", "speck", "-n", "5"), ("cube", "speck", "--perturb", "seed"),
+        for other in (("cube",), ("speck", "cube"), ("cube", "speck", "-n", "5"),
+                      ("cube", "speck", "--perturb", "seed"),
                       ("cube", "speck", "--rule", "centre"), ("cube", "speck", "--weld", "1e-3"),
                       ("cube", "speck", "--seed", "7"), ("cube", "speck", "--until-dice", "0.2")):
             more = [word for word in args[1:] if word not in ("cube", "speck")]
@@ -240,8 +243,8 @@ class Stability(Case):
             self.skipTest("gnuplot is not installed here")
         os.mkdir(self.path("charts"))
         self.write("charts/1-mss-variant-paper-resolution.svg", "of a run before")
-        rows = self.rows("speck", "cube", "-g", "mss:variant=paper", "-n", "3", "--cells", "8", "--runs", "3", "--perturb",
-                         "noise", "--perturb", "seed", "--charts", "charts")
+        rows = self.rows("speck", "cube", "-g", "mss:variant=paper", "-n", "3", "--cells", "8", "--runs", "3",
+                         "--perturb", "noise", "--perturb", "seed", "--charts", "charts")
         stems = ("1-mss-variant-paper-all", "1-mss-variant-paper-noise")
         self.assertEqual(sorted(os.listdir(self.path("charts"))),
                          sorted(stem + ending for stem in stems for ending in (".dat", ".gp", ".png", ".svg")))
@@ -273,9 +276,10 @@ class Stability(Case):
         return found
 
     def test_report(self):
-        """All rows; of each shape and method two clumps, the unchanged one and the worst, with as many spheres as theirs."""
-        args = ("speck", "pair", "-g", "mss", "-n", "3", "--deq", "10", "--perturb", "noise", "--perturb", "seed", "--runs",
-                "2", "-o", "s.csv", "--report", "r.html")
+        """All rows; of each shape and method two clumps, the unchanged one and the worst, with as many spheres as
+        theirs."""
+        args = ("speck", "pair", "-g", "mss", "-n", "3", "--deq", "10", "--perturb", "noise", "--perturb", "seed",
+                "--runs", "2", "-o", "s.csv", "--report", "r.html")
         self.mskit("stability", *args)
         rows = rows_of(self.read("s.csv").decode())
         page = self.read("r.html").decode()

@@ -1,5 +1,5 @@
-"""Standard input, as -, where a mesh or a clump is read: the same as from a file, once a command, and never more than is
-allowed."""
+"""Standard input, as -, where a mesh or a clump is read: the same as from a file, once a command, and never more than
+is allowed."""
 import json
 import os
 import resource
@@ -79,7 +79,8 @@ class Input(Case):
             self.assert_refused("compare", "grain.stl", "--clump", "a=-", *more, code=2, stdin=self.read("c.csv"),
                                 says=("standard input: is empty", "- is given once"))
         for command in ("compare", "stability"):
-            self.assert_refused(command, "-", code=2, says=("and - once", "name the file"), stdin=self.read("grain.stl"))
+            self.assert_refused(command, "-", code=2, says=("and - once", "name the file"),
+                                stdin=self.read("grain.stl"))
 
     def test_where_it_is_not_read(self):
         self.assert_refused("convert", "c.csv", "--frame", "-", "-o", "x.json", code=1, stdin=self.read("c.json"),
@@ -92,8 +93,10 @@ class Input(Case):
             self.assert_refused("info", "-", code=1, stdin=data, says=("standard input: is a volume", "name the file"))
 
     def test_bad_bytes(self):
-        for data, says in ((b"", "is empty"), (b"\n\n", "STL, OBJ, PLY and OFF"), (b"x,y,z,r\n1,1,1,1\n", "does not begin"),
-                           (bytes(range(256)), "binary STL"), (b"\xff" * 200, "does not begin"), (b"ply\n", "end_header"),
+        for data, says in ((b"", "is empty"), (b"\n\n", "STL, OBJ, PLY and OFF"),
+                           (b"x,y,z,r\n1,1,1,1\n", "does not begin"),
+                           (bytes(range(256)), "binary STL"), (b"\xff" * 200, "does not begin"),
+                           (b"ply\n", "end_header"),
                            (b"OFF 99999999999 9 9\n", "line 1"), (b"solid\n", "endsolid")):
             with self.subTest(data=data[:20]):
                 self.assert_refused("info", "-", code=1, stdin=data, says=("standard input", says))
@@ -111,7 +114,8 @@ class Input(Case):
         def limit():
             resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
         with open("/dev/zero", "rb") as zeros:
-            for args, most in ((("info", "-", "--max-memory", "5M"), "5 MB"), (("convert", "-", "-o", "x.csv"), "268 MB"),
+            for args, most in ((("info", "-", "--max-memory", "5M"), "5 MB"),
+                               (("convert", "-", "-o", "x.csv"), "268 MB"),
                                (("score", "c.csv", "--target", "-", "--max-memory", "70M"), "70 MB")):
                 self.assert_refused(*args, code=1, stdin=zeros, preexec_fn=limit,
                                     says=("standard input: is longer than the " + most,))

@@ -56,7 +56,8 @@ class Surfaces(Case):
     def test_says_what_is_lost(self):
         """A neck of width 0.1 between spheres of diameter 2."""
         gap = 2 * math.sqrt(1 - 0.05 ** 2)
-        self.write("neck.csv", f"0.123,0.456,0.789,1\n{0.123 + gap * 2 / 7},{0.456 + gap * 3 / 7},{0.789 + gap * 6 / 7},1\n")
+        self.write("neck.csv",
+                   f"0.123,0.456,0.789,1\n{0.123 + gap * 2 / 7},{0.456 + gap * 3 / 7},{0.789 + gap * 6 / 7},1\n")
         coarse = self.mskit("convert", "neck.csv", "-o", "neck.stl", "--cells", 5)
         self.assert_says(coarse, "of the volume of the spheres", "--cells")
         fine = self.mskit("convert", "neck.csv", "-o", "neck.stl", "--cells", 80)
@@ -137,10 +138,12 @@ class Pages(Case):
     def test_refusals(self):
         self.write("two.csv", TWO)
         self.shape("ball", name="ball.stl")
-        self.assert_refused("convert", "two.csv", "-o", "a.html", "--rule", "centre", code=2, says=("--rule", "--target"))
+        self.assert_refused("convert", "two.csv", "-o", "a.html", "--rule", "centre", code=2,
+                            says=("--rule", "--target"))
         self.assert_refused("convert", "two.csv", "-o", "a.csv", "--target", "ball.stl", code=2, says=("--target",))
         self.assert_refused("convert", "two.csv", "-o", "a.csv", "--cells", 20, code=2, says=("--cells", "surfaces"))
-        self.assert_refused("score", "two.csv", "--target", "ball.stl", "--json", "-o", "-", code=2, says=("choose one",))
+        self.assert_refused("score", "two.csv", "--target", "ball.stl", "--json", "-o", "-", code=2,
+                            says=("choose one",))
         self.assert_refused("score", "two.csv", "--target", "ball.stl", "-o", "two.csv", code=1, says=("two.csv",))
         self.assert_refused("convert", "two.csv", "-o", "a.htm", code=2, says=("html", "stl"))
         self.write("apart.csv", "0,0,0,1\n1e200,0,0,1\n")

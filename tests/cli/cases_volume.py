@@ -39,7 +39,8 @@ class Volume(Case):
         self.assert_refused("generate", "two.npy", "--label", "3", code=1, says=("label 3",))
 
     def test_info(self):
-        for name, flags, label in (("one.npy", (), 2), ("two.npy", ("--label", "2"), 2), ("two.npy", ("--label", "1"), 1)):
+        for name, flags, label in (("one.npy", (), 2), ("two.npy", ("--label", "2"), 2),
+                                   ("two.npy", ("--label", "1"), 1)):
             info = self.mskit("info", name, *flags, "--json").json
             self.assertEqual((info["voxels"], info["volume"]), (VOXELS[label], VOXELS[label]))
             self.assertEqual(info["box_lo"], [lo - 0.5 for lo, _ in BOXES[label]])

@@ -12,8 +12,8 @@ class LeastWork(Case):
         self.grain = self.shape("grain", "fineness=8")
 
     def search(self, dice, *args, **more):
-        result = self.mskit("generate", self.grain, *GRID, "--least-work", f"dice={dice}", "-o", "c.csv", "--json", *args,
-                            **more)
+        result = self.mskit("generate", self.grain, *GRID, "--least-work", f"dice={dice}", "-o", "c.csv",
+                            "--json", *args, **more)
         return result.json, result.err
 
     def check(self, run, words, dice, power):
@@ -31,8 +31,10 @@ class LeastWork(Case):
         self.assert_close(kept["work"], scores["spheres"] / scores["smallest_radius_ratio"]**power, 1e-9, "work")
         self.assertEqual(min(s[3] for s in self.spheres("c.csv")), kept["smallest_radius"])
         for row in rows:
-            self.assertTrue(not row["n"] or row["least_radius"] is None or row["smallest_radius"] >= row["least_radius"])
-        lines = re.findall(r"(?m)^variational: n (\d+)(?:, no radius below ([\d.e-]+))?: (?:D ([\d.]+), (\d+) spheres|no clump)",
+            self.assertTrue(not row["n"] or row["least_radius"] is None
+                            or row["smallest_radius"] >= row["least_radius"])
+        lines = re.findall(r"(?m)^variational: n (\d+)(?:, no radius below ([\d.e-]+))?: (?:D ([\d.]+), (\d+) "
+                           r"spheres|no clump)",
                            words)
         self.assertEqual([(int(n), least == "", int(have or 0)) for n, least, _, have in lines],
                          [(r["n_asked"], r["least_radius"] is None, r["n"]) for r in rows])
@@ -70,9 +72,11 @@ class LeastWork(Case):
     def test_what_is_not_reached(self):
         for args, says in ((("-n", "3"), ("none of ", "D 0.05", "3 spheres")),
                            (("--until", "radius=50"), ("radius below 50: no clump: variational placed no sphere",
-                                                        "none of 1 runs gave a clump; the last: variational placed no sphere"))):
+                                                        "none of 1 runs gave a clump; the last: variational placed no "
+                                                        "sphere"))):
             with self.subTest(args=args):
-                result = self.mskit("generate", self.grain, *GRID, "--least-work", "dice=0.05", *args, "-o", "n.csv", code=1)
+                result = self.mskit("generate", self.grain, *GRID, "--least-work", "dice=0.05", *args, "-o", "n.csv",
+                                    code=1)
                 for word in says:
                     self.assertIn(word, result.err)
                 self.assertNotIn("n.csv", self.files())
@@ -82,7 +86,8 @@ class LeastWork(Case):
         run, words = self.search(0.5, "--gap", "0.5", "--protrusion", "0", "-n", "3")
         rows = run["least_work"]["tried"]
         self.assertGreater(len(rows), 1)
-        self.assertEqual(re.findall(r"gap=0.5 cannot be held by (\d+) spheres", words), [str(r["n"]) for r in rows if r["n"]])
+        self.assertEqual(re.findall(r"gap=0.5 cannot be held by (\d+) spheres", words),
+                         [str(r["n"]) for r in rows if r["n"]])
 
     def test_wrong_usage(self):
         for args, says in ((("--least-work", "eta=0.1"), "dice=VALUE alone"), (("--least-work", "dice"), "least-work"),

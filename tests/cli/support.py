@@ -189,7 +189,8 @@ def triangle_distance(p, a, b, c):
 
 
 def solid_angle(p, a, b, c):
-    """Of a triangle seen from p, signed; over a closed mesh the sum is 4 pi inside and 0 outside (van Oosterom 1983)."""
+    """Of a triangle seen from p, signed; over a closed mesh the sum is 4 pi inside and 0 outside (van Oosterom
+    1983)."""
     u, v, w = sub(a, p), sub(b, p), sub(c, p)
     lu, lv, lw = (math.sqrt(dot(q, q)) for q in (u, v, w))
     return 2 * math.atan2(dot(u, cross(v, w)), lu * lv * lw + dot(u, v) * lw + dot(v, w) * lu + dot(w, u) * lv)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Grains as a job array of a real Slurm, by the script of docs/cluster.md: tasks are killed and requeued, and the merged
-result is that of one run.
+"""Grains as a job array of a real Slurm, by the script of docs/cluster.md: tasks are killed and requeued, and the
+merged result is that of one run.
 
     MSKIT=build/eval/mskit MSKIT_DOCS=docs tests/cluster/test_cluster.py [-v]
 
-It starts munged, slurmctld and slurmd on this machine, on the loopback alone, and ends them; `meson test` leaves it out,
-`meson test --setup all --suite cluster` runs it.
+It starts munged, slurmctld and slurmd on this machine, on the loopback alone, and ends them; `meson test` leaves it
+out, `meson test --setup all --suite cluster` runs it.
 """
 import csv
 import os

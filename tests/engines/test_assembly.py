@@ -41,7 +41,8 @@ class Assembly(engines.Clump):
         self.folder = folder
         with open(self.path("scan.npy"), "wb") as f:
             f.write(volume())
-        self.mskit("grains", "scan.npy", "-g", "mss", "--variant", "paper", "-n", "12", "--density", str(engines.DENSITY), "--unit", "mm",
+        self.mskit("grains", "scan.npy", "-g", "mss", "--variant", "paper", "-n", "12",
+                   "--density", str(engines.DENSITY), "--unit", "mm",
                    "--format", "csv", "--format", "liggghts", "--format", "lammps", "--format", "yade", "--assembly",
                    "--most-overlap", "1", "-o", "out")
         self.folder = os.path.join(folder, "out")

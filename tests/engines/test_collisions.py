@@ -3,9 +3,10 @@
 
     MSKIT=build/eval/mskit tests/engines/test_collisions.py [-v]
 
-The clumps are made so that a contact is a single one and its line goes through the centres of mass: `rod` ends in a small
-sphere on its long axis; `ball` has all its spheres in one around its centre, so that every way it meets something is
-central. Mass and inertia are those of an ellipsoid and not of the spheres. Every engine that is not installed is skipped.
+The clumps are made so that a contact is a single one and its line goes through the centres of mass: `rod` ends in a
+small sphere on its long axis; `ball` has all its spheres in one around its centre, so that every way it meets something
+is central. Mass and inertia are those of an ellipsoid and not of the spheres. Every engine that is not installed is
+skipped.
 """
 import math
 import os
@@ -21,10 +22,12 @@ GAP = 1e-5
 STEPS = 500
 MILLIMETRE = 1e-3
 CLUMPS = {
-    "rod": [(-2.8, 0, 0, 0.8), (2.8, 0, 0, 0.8), (0, 0, 0, 1.1), (-1.4, 0.1, 0, 1), (-1.4, -0.1, 0, 1), (1.4, 0, 0.1, 1),
+    "rod": [(-2.8, 0, 0, 0.8), (2.8, 0, 0, 0.8), (0, 0, 0, 1.1), (-1.4, 0.1, 0, 1), (-1.4, -0.1, 0, 1),
+            (1.4, 0, 0.1, 1),
             (1.4, 0, -0.1, 1)],
     "ball": [(0, 0, 0, 2), (-0.5, 0, 0, 1), (0.5, 0, 0, 1), (0, 0.3, 0, 1), (0, -0.3, 0, 1)],
-    **{f"feet{n * n}": [((2 * i - n + 1) * 3 / n, (2 * j - n + 1) * 1.5 / n, 0, 1.1) for i in range(n) for j in range(n)]
+    **{f"feet{n * n}": [((2 * i - n + 1) * 3 / n, (2 * j - n + 1) * 1.5 / n, 0, 1.1) for i in range(n)
+                        for j in range(n)]
        for n in (2, 3, 4)},
 }
 
@@ -74,7 +77,8 @@ class Engine(unittest.TestCase):
         cls.clumps = {name: Clump(name, folder) for name in CLUMPS}
 
     def collide(self, clump, offset):
-        """One rod runs into the end of another, its line past the other's centre by the offset; the start and the end."""
+        """One rod runs into the end of another, its line past the other's centre by the offset; the start and the
+        end."""
         axis, side = self.axes(clump)
         end = clump.reach
         first = [0, 0, 3 * end]
@@ -194,7 +198,8 @@ class Liggghts(Engine):
             block = " ".join(f"{x - 1e-12!r} {x + 1e-12!r}" for x in place)
             inserts += f"region at{k} block {block} volume_limit 1e-300 units box\n"
             inserts += (insert.replace("fix insert", f"fix insert{k}").replace("region above", f"region at{k}")
-                        .replace("insert_every once", "vel constant {!r} {!r} {!r} insert_every once".format(*velocity)))
+                        .replace("insert_every once",
+                                 "vel constant {!r} {!r} {!r} insert_every once".format(*velocity)))
         script = re.sub(r"(?m)^fix insert .*\n", lambda _: inserts, script)
         clump.write("bodies.in", script + f"""
 run 1

@@ -75,7 +75,8 @@ def frame(three):
 def angle(a, b):
     """Between two orientations."""
     difference = times(a, transpose(b))
-    off = [difference[2][1] - difference[1][2], difference[0][2] - difference[2][0], difference[1][0] - difference[0][1]]
+    off = [difference[2][1] - difference[1][2], difference[0][2] - difference[2][0],
+           difference[1][0] - difference[0][1]]
     trace = difference[0][0] + difference[1][1] + difference[2][2]
     return math.atan2(math.sqrt(dot(off, off)), trace - 1)
 
@@ -180,7 +181,8 @@ def skip_without_engines():
 
 def without_fall(script):
     """A script of LIGGGHTS or LAMMPS without gravity and without its run."""
-    return re.sub(r"(?m)^fix gravity .*\n|^(run|thermo|variable steps) .*\n", "", script).replace(" gravity gravity", "")
+    script = re.sub(r"(?m)^fix gravity .*\n|^(run|thermo|variable steps) .*\n", "", script)
+    return script.replace(" gravity gravity", "")
 
 
 def alone(script):
@@ -246,7 +248,8 @@ class Engine(unittest.TestCase):
         printed = 2 * 3**0.5 * 5e-6 * max(abs(x) for s in spheres for x in s[:3])
         for a, b in ((i, j), (j, k), (k, i)):
             self.assertAlmostEqual(math.dist(spheres[a][:3], spheres[b][:3]),
-                                   math.dist(clump.spheres[a][:3], clump.spheres[b][:3]), delta=1e-5 * clump.reach + printed)
+                                   math.dist(clump.spheres[a][:3], clump.spheres[b][:3]),
+                                   delta=1e-5 * clump.reach + printed)
 
 
 class Liggghts(Engine):

@@ -23,9 +23,9 @@ class Mixture(engines.Clump):
         self.folder = folder
         with open(self.path("scan.npy"), "wb") as f:
             f.write(assembly.volume())
-        self.mskit("grains", "scan.npy", "-g", "mss", "--variant", "paper", "-n", "6", "--density", str(engines.DENSITY),
-                   "--unit", "mm", "--format", "csv", "--format", "liggghts", "--format", "lammps", "--format", "yade",
-                   "-o", "all")
+        self.mskit("grains", "scan.npy", "-g", "mss", "--variant", "paper", "-n", "6",
+                   "--density", str(engines.DENSITY), "--unit", "mm", "--format", "csv", "--format", "liggghts",
+                   "--format", "lammps", "--format", "yade", "-o", "all")
         self.mskit("grains", "--choose", "2", "--classes", "2", "all", "-o", "few")
         grains = {row["file"]: row for row in self.read("all/grains.csv")}
         self.kinds = []
@@ -101,7 +101,8 @@ class Yade(Engine):
 
     def test_bodies(self):
         script = re.sub(r"O\.run\(.*, True\)", "O.run(20, True)", self.mixture.script("library.yade.py"))
-        show = "for clump in clumps:\n    body = O.bodies[clump]\n    print('BODY', body.state.mass, *body.state.inertia)\n"
+        show = ("for clump in clumps:\n    body = O.bodies[clump]\n"
+                "    print('BODY', body.state.mass, *body.state.inertia)\n")
         self.mixture.write("short.py", script + show)
         out = self.mixture.run("yade", "-x", "-n", "short.py", str(PARTICLES))
         self.check_bodies([numbers(line) for line in re.findall(r"(?m)^BODY (.*)", out)])

@@ -14,8 +14,9 @@ import unittest
 MSKIT = os.environ.get("MSKIT", "mskit")
 TIMEOUT = 1200  # seconds
 # Of shapes: the names of their templates follow from them.
-SHAPES = ("a\nshell touch PWNED\n#", "b');__import__('os').system('touch PWNED')#", "c\" shell touch PWNED", "d & $x ${y}",
-          "`touch PWNED`$(touch PWNED)", "=1+1 %d", "O\u2019Brien \u201cx\u201d", "\u00fcmlaut", "\u7c92")
+SHAPES = ("a\nshell touch PWNED\n#", "b');__import__('os').system('touch PWNED')#", "c\" shell touch PWNED",
+          "d & $x ${y}", "`touch PWNED`$(touch PWNED)", "=1+1 %d", "O\u2019Brien \u201cx\u201d", "\u00fcmlaut",
+          "\u7c92")
 # Of templates, given by --output.
 TEMPLATES = ("it's", "with blank", "say \"no\"", "d & $x ${y} $(touch PWNED)", "`touch PWNED`", "# % = ' ; | \\n", "=1",
              "'; shell touch PWNED")

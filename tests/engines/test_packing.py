@@ -38,12 +38,14 @@ class Packing(unittest.TestCase):
         """spheres: x, y, z, r, vx, vy, vz, particle by particle."""
         clump, reach = self.clump, self.clump.reach
         self.assertEqual(len(spheres), COUNT * len(clump.spheres), "particles are missing")
-        lows = [min(s[2] - s[3] for s in spheres)] + [4 * reach - max(abs(s[k]) + s[3] for s in spheres) for k in (0, 1)]
+        lows = [min(s[2] - s[3] for s in spheres)] + [4 * reach - max(abs(s[k]) + s[3] for s in spheres)
+                                                      for k in (0, 1)]
         speeds = sorted(dot(s[4:], s[4:]) / (GRAVITY * reach) for s in spheres)
         depth = self.deepest(spheres)
         if os.environ.get("MSKIT_VERBOSE"):
             print(self.id(), "walls", [low / reach for low in lows], "between", depth / reach,
-                  "v2 over g reach: mean", sum(speeds) / len(speeds), "median", speeds[len(speeds) // 2], "most", speeds[-1])
+                  "v2 over g reach: mean", sum(speeds) / len(speeds), "median", speeds[len(speeds) // 2], "most",
+                  speeds[-1])
         for low in lows:
             self.assertGreater(low, -0.01 * reach, "through a wall")
         self.assertLess(depth, 0.01 * reach, "particles in each other")

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Scripts of a whole scene, in the engines: all particles of the manifest, with their masses, come to rest in the vessel.
+"""Scripts of a whole scene, in the engines: all particles of the manifest, with their masses, come to rest in the
+vessel.
 
     MSKIT=build/eval/mskit tests/engines/test_scene.py [-v]
 """
@@ -28,8 +29,8 @@ class Scene(engines.Clump):
             self.mskit("shape", *shape, "-o", name + ".stl")
         self.write("scene.csv", "shape,count\n" + "".join(f"{name}.stl,{n}\n" for name, n in COUNTS.items()))
         for vessel, flags in VESSELS.items():
-            self.mskit("scene", "scene.csv", "--tolerance", "dice=0.15", "-g", "variational", "--cells", "30", "--density",
-                       str(engines.DENSITY), "--unit", "mm", "--carriers", *flags, *FORMATS, "-o", vessel)
+            self.mskit("scene", "scene.csv", "--tolerance", "dice=0.15", "-g", "variational", "--cells", "30",
+                       "--density", str(engines.DENSITY), "--unit", "mm", "--carriers", *flags, *FORMATS, "-o", vessel)
         self.mass, self.spheres = 0, 0
         for name, count in COUNTS.items():
             script = self.script(f"box/{name}.liggghts.in")

@@ -47,7 +47,8 @@ def declared(preprocessed):
     for declaration in re.sub(r"static inline[^;]*?\)\s(?=\s*\S)", "", text).split(";"):
         if re.match(r"\s*(typedef|static)\b", declaration):
             continue
-        found = re.match(r"[\w\s*]*?\b(\w+)\s*\(", declaration) or re.match(r"\s*extern\b[^=]*?\b(\w+)\s*\[", declaration)
+        found = (re.match(r"[\w\s*]*?\b(\w+)\s*\(", declaration)
+                 or re.match(r"\s*extern\b[^=]*?\b(\w+)\s*\[", declaration))
         if found:
             names.add(found[1])
     return names

@@ -4,7 +4,8 @@
 A run without that memory either succeeds, with the very output and files of a run that has it, or says why not and
 ends with exit code 1; it never crashes and leaves neither a temporary file nor part of a file.
 
-    MSKIT=build/eval/mskit FAILING_MALLOC=build/tests/memory/libfailing_malloc.so tests/memory/test_memory.py all|MOST [COMMAND...]
+    MSKIT=build/eval/mskit FAILING_MALLOC=build/tests/memory/libfailing_malloc.so \\
+        tests/memory/test_memory.py all|MOST [COMMAND...]
 """
 import os
 import re
@@ -29,7 +30,8 @@ COMMANDS = {
     "variational": ["generate", "body.ply", "-g", "variational", "-n", "3", "--set", "effort=1", "--until", "dice=0.3",
                     "-o", "out.csv"] + SMALL,
     "inscribed": ["generate", "body.stl", "-g", "variational", "-n", "3", "--protrusion", "0", "-o", "out.csv"] + SMALL,
-    "cut cover": ["generate", "body.stl", "-g", "setcover", "-n", "3", "--count", "cut", "--equal-volume", "-o", "out.csv"]
+    "cut cover": ["generate", "body.stl", "-g", "setcover", "-n", "3", "--count", "cut", "--equal-volume",
+                  "-o", "out.csv"]
                  + SMALL,
     "least work": ["generate", "body.stl", "-n", "3", "--least-work", "dice=0.5", "--json", "-o", "out.csv"] + SMALL,
     "masses": ["generate", "body.stl", "-n", "4", "--correct", "--density", "2000", "-o", "out.lammps"] + SMALL,
@@ -40,16 +42,19 @@ COMMANDS = {
     "score --cut": ["score", "clump.csv", "--target", "body.stl", "--cut", "--json"] + SMALL,
     "score --curve": ["score", "clump.json", "--target", "body.stl", "--curve"] + SMALL,
     "contact": ["contact", "clump.csv", "--target", "body.stl", "--poses", "3", "-j", "1", "--json"],
-    "correct": ["correct", "clump.csv", "--target", "body.stl", "--density", "2000", "-o", "out.json", "--json"] + SMALL,
+    "correct": ["correct", "clump.csv", "--target", "body.stl", "--density", "2000", "-o", "out.json",
+                "--json"] + SMALL,
     "convert": ["convert", "clump.csv", "-o", "out.json", "-o", "out.vtk"],
-    "compare": ["compare", "body.stl", "-n", "2,3", "-g", "mss", "-g", "setcover", "--charts", "charts", "-o", "out.csv"] + SMALL,
+    "compare": ["compare", "body.stl", "-n", "2,3", "-g", "mss", "-g", "setcover", "--charts", "charts",
+                "-o", "out.csv"] + SMALL,
     "stability": ["stability", "body.stl", "-g", "mss", "-n", "2", "--json"] + SMALL,
     "scene": ["scene", "scene.csv", "--budget", "8", "--max-spheres", "4", "-o", "templates", "--json"] + SMALL,
     "generators": ["generators", "--json"],
 }
 
 # What differs from run to run.
-TIMES = [(re.compile(rb'"seconds": ?\{[^}]*\}'), b'"seconds"'), (re.compile(rb'"(?:peak_memory_kb|[a-z_]*seconds)": ?[-+.e0-9]+'), b""),
+TIMES = [(re.compile(rb'"seconds": ?\{[^}]*\}'), b'"seconds"'),
+         (re.compile(rb'"(?:peak_memory_kb|[a-z_]*seconds)": ?[-+.e0-9]+'), b""),
          (re.compile(rb"\b[-+.e0-9]+ s\b"), b"")]
 TIMED_CHARTS = re.compile(r"charts/.*-time\.")
 

@@ -18,8 +18,8 @@ import numpy
 from support_python import PythonCase
 
 DOCS = os.environ["MSKIT_DOCS"]
-NAMES = ("_allocate", "_clumps", "_contact", "_errors", "_expect", "_generate", "_measures", "_meshes", "_methods", "_shapes",
-         "_sources", "_view", "_volumes")
+NAMES = ("_allocate", "_clumps", "_contact", "_errors", "_expect", "_generate", "_measures", "_meshes", "_methods",
+         "_shapes", "_sources", "_view", "_volumes")
 
 
 def document(name):
@@ -78,7 +78,8 @@ class Docs(PythonCase):
                     self.expect_hints(method)
 
     def expect_hints(self, function):
-        hints = typing.get_type_hints(function, {"Shape": mskit.Shape, "Run": object, **vars(sys.modules[function.__module__])})
+        hints = typing.get_type_hints(function,
+                                      {"Shape": mskit.Shape, "Run": object, **vars(sys.modules[function.__module__])})
         for parameter in inspect.signature(function).parameters:
             if parameter != "self":
                 self.assertIn(parameter, hints, function.__qualname__)
@@ -100,7 +101,8 @@ class Docs(PythonCase):
         """What the table says as default gives the same as nothing."""
         for name, generator in mskit.generators.items():
             options = {k: o.default for k, o in generator.options.items() if o.type not in ("plane", "clump")}
-            made = [mskit.generate(self.path(self.grain), name, spheres=3, cells=16, **given) for given in ({}, options)]
+            made = [mskit.generate(self.path(self.grain), name, spheres=3, cells=16, **given)
+                    for given in ({}, options)]
             self.assertTrue((made[0].spheres == made[1].spheres).all(), name)
             self.assertIsInstance(made[0].spheres, numpy.ndarray)
 

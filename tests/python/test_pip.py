@@ -1,4 +1,5 @@
-"""`pip install .` into a virtual environment, as docs/python.md has it, from a copy of the tree: minutes of compiling."""
+"""`pip install .` into a virtual environment, as docs/python.md has it, from a copy of the tree: minutes of
+compiling."""
 import os
 import shutil
 import subprocess
@@ -25,11 +26,13 @@ class Pip(unittest.TestCase):
             pip = (python, "-m", "pip")
             self.run_in(tree, *pip, "install", "--no-build-isolation", "--no-index", ".")
             said = self.run_in(folder, python, "-c", "import mskit; print(mskit.__file__)\nclump = mskit.generate("
-                               "mskit.body('grain', fineness=8), 'mss', spheres=9, cells=20)\nclump.write('module.csv')\n"
+                               "mskit.body('grain', fineness=8), 'mss', spheres=9, "
+                               "cells=20)\nclump.write('module.csv')\n"
                                "print(len(clump._repr_html_()))")
             self.assertIn("site-packages", said)
             self.run_in(folder, MSKIT, "shape", "grain", "fineness=8", "-o", "grain.ply")
-            self.run_in(folder, MSKIT, "generate", "grain.ply", "-g", "mss", "-n", "9", "--cells", "20", "-o", "program.csv")
+            self.run_in(folder, MSKIT, "generate", "grain.ply", "-g", "mss", "-n", "9", "--cells", "20",
+                        "-o", "program.csv")
             with open(os.path.join(folder, "module.csv"), "rb") as one, \
                     open(os.path.join(folder, "program.csv"), "rb") as two:
                 self.assertEqual(one.read(), two.read())

@@ -87,7 +87,8 @@ class Runs(PythonCase):
 
     def test_interrupt(self):
         """A run that would take long ends soon, and the next one is whole."""
-        for generator, options in [("mss", {"spheres": 3000, "cells": 60, "spacing": 1}), ("variational", {"spheres": 250})]:
+        for generator, options in [("mss", {"spheres": 3000, "cells": 60, "spacing": 1}),
+                                   ("variational", {"spheres": 250})]:
             with self.subTest(generator=generator):
                 self.assertLess(self.interrupt_after(0.3, generator, **options), 3)
                 self.assertEqual(len(mskit.generate(self.path(self.grain), generator, spheres=3, cells=12)), 3)
@@ -150,7 +151,8 @@ class Runs(PythonCase):
         self.assertTrue((mskit.generate(shape, "mss", spheres=5, cells=20).spheres == alone.spheres).all())
 
     def test_to_another_process(self):
-        clump = mskit.correct(mskit.generate(self.path(self.grain), "mss", spheres=5, cells=20), density=7, carriers=True)
+        clump = mskit.correct(mskit.generate(self.path(self.grain), "mss", spheres=5, cells=20), density=7,
+                              carriers=True)
         again = pickle.loads(pickle.dumps(clump))
         for name in ("spheres", "masses"):
             self.assertTrue((getattr(again, name) == getattr(clump, name)).all())
@@ -186,7 +188,8 @@ class Runs(PythonCase):
     def test_forked_child(self):
         said = self.script(
             "import multiprocessing, mskit\n"
-            "run = lambda _=0: mskit.generate(mskit.body('ball', fineness=8), 'mss', spheres=3, cells=50).spheres.tobytes()\n"
+            "run = lambda _=0: mskit.generate(mskit.body('ball', fineness=8), 'mss', spheres=3, "
+            "cells=50).spheres.tobytes()\n"
             "def child(k): return run()\n"
             "before = run()\n"
             "with multiprocessing.get_context('fork').Pool(2) as pool:\n"
@@ -227,7 +230,8 @@ class Runs(PythonCase):
             self.assertEqual(array.tobytes(), copy.tobytes())
 
     def test_target_outlives_a_shape_in_use(self):
-        clump = mskit.generate(mskit.mesh(mskit.body("torus").vertices, mskit.body("torus").faces), "mss", spheres=4, cells=12)
+        clump = mskit.generate(mskit.mesh(mskit.body("torus").vertices, mskit.body("torus").faces), "mss", spheres=4,
+                               cells=12)
         gc.collect()
         self.assertEqual(clump.scores["spheres"], 4)
 

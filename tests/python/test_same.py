@@ -33,7 +33,8 @@ class Same(PythonCase):
                 ({"until": {"dice": 0.08}, "max_voxels": 20000}, "--until dice=0.08 --max-voxels 20000"),
                 ({"confine": True, "min_radius": 0.2, "rule": "centre", "cells": 25, "max_voxels": 1e6},
                  "--confine --min-radius 0.2 --rule centre --cells 25 --max-voxels 1M")]:
-            self.expect_same(mskit.generate(path, "mss", **options), "generate", self.grain, "-g", "mss", *flags.split())
+            self.expect_same(mskit.generate(path, "mss", **options), "generate", self.grain, "-g", "mss",
+                             *flags.split())
 
     def test_cut_cells(self):
         clump = mskit.generate(self.path(self.grain), "setcover", until={"coverage_cut": 0.8}, cells=20)
@@ -82,8 +83,8 @@ class Same(PythonCase):
         grey = labelled() * 0.5
         numpy.save(self.path("g.npy"), grey)
         shape = mskit.volume(grey, spacing=(3, 1.5, 1), threshold=2, label=1)
-        self.expect_same(mskit.generate(shape, "mss", spheres=3), "generate", "g.npy", "-g", "mss", "-n", 3, "--label", 1,
-                         "--threshold", 2, "--voxel-spacing", "1,1.5,3")
+        self.expect_same(mskit.generate(shape, "mss", spheres=3), "generate", "g.npy", "-g", "mss", "-n", 3,
+                         "--label", 1, "--threshold", 2, "--voxel-spacing", "1,1.5,3")
 
     def test_grains(self):
         labels = labelled()
@@ -92,8 +93,8 @@ class Same(PythonCase):
         self.assertEqual([(g.label, g.voxels, g.cut) for g in found],
                          [(k, int((labels == k).sum()), k == 8) for k in (3, 8)])
         for grain in found:
-            self.expect_same(mskit.generate(grain, "mss", spheres=3), "generate", "v.npy", "-g", "mss", "-n", 3, "--label",
-                             grain.label, "--voxel-spacing", "0.5,0.5,0.5")
+            self.expect_same(mskit.generate(grain, "mss", spheres=3), "generate", "v.npy", "-g", "mss", "-n", 3,
+                             "--label", grain.label, "--voxel-spacing", "0.5,0.5,0.5")
         self.assertEqual([g.label for g in mskit.grains(self.path("v.npy"), border=False)], [3])
         self.assertEqual(list(mskit.grains(labels, min_voxels=10**6)), [])
 
@@ -115,12 +116,14 @@ class Same(PythonCase):
     def test_curves(self):
         for name in ("mss", "variational"):
             clump = mskit.generate(self.path(self.grain), name, spheres=4, cells=20)
-            self.mskit("generate", self.grain, "-g", name, "-n", 4, "--cells", 20, "--curve", "curve.csv", "-o", "c.csv")
+            self.mskit("generate", self.grain, "-g", name, "-n", 4, "--cells", 20, "--curve", "curve.csv",
+                       "-o", "c.csv")
             rows = self.rows_of_curve(self.read("curve.csv").decode())
             curve = mskit.curve(clump)
             self.assertEqual(curve["spheres"].tolist(), [1, 2, 3, 4])
             for column in set(rows[0]) - {"n"}:
-                self.assertEqual([float(f"{value:.8g}") for value in curve[column]], [row[column] for row in rows], column)
+                self.assertEqual([float(f"{value:.8g}") for value in curve[column]], [row[column] for row in rows],
+                                 column)
 
     def test_masses(self):
         clump = mskit.generate(self.path(self.grain), "mss", spheres=12, cells=20)
@@ -174,10 +177,13 @@ class Same(PythonCase):
         self.shape("torus", "fineness=6", name="torus.ply")
         self.write("scene.csv", f"shape,count\n{self.grain},300\ntorus.ply,20\n")
         clumps = [mskit.generate(self.path(name), "mss", spheres=9, cells=15) for name in (self.grain, "torus.ply")]
-        for goal, flags in [({"budget": 2000}, ("--budget", 2000)), ({"mean_dice": 0.11}, ("--mean-tolerance", "dice=0.11")),
+        for goal, flags in [({"budget": 2000}, ("--budget", 2000)),
+                            ({"mean_dice": 0.11}, ("--mean-tolerance", "dice=0.11")),
                             ({"knee": 0.3}, ("--knee", 0.3))]:
-            told = self.mskit("scene", "scene.csv", *flags, "-g", "mss", "--cells", 15, "--max-spheres", 9, "--json").json
-            for curves in ([shape["curve"] for shape in told["shapes"]], [mskit.curve(clump)["dice"] for clump in clumps]):
+            told = self.mskit("scene", "scene.csv", *flags, "-g", "mss", "--cells", 15, "--max-spheres", 9,
+                              "--json").json
+            for curves in ([shape["curve"] for shape in told["shapes"]],
+                           [mskit.curve(clump)["dice"] for clump in clumps]):
                 found = mskit.allocate(curves, [300, 20], **goal)
                 self.assertEqual(found.spheres.tolist(), [shape["scores"]["spheres"] for shape in told["shapes"]])
                 self.assertEqual((found.total, found.mean_dice, found.least_gain),

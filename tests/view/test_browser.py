@@ -48,7 +48,8 @@ def count_pixels(spheres, w, h):
     lo, hi = ([pick(p[k] + sign * p[3] for p in spheres) for k in range(3)] for pick, sign in ((min, -1), (max, 1)))
     centre = [(a + b) / 2 for a, b in zip(lo, hi)]
     scale = max(math.dist(p[:3], centre) + p[3] for p in spheres)
-    placed = [[sum(row[k] * (p[k] - centre[k]) for k in range(3)) / scale for row in turn] + [p[3] / scale] for p in spheres]
+    placed = [[sum(row[k] * (p[k] - centre[k]) for k in range(3)) / scale for row in turn] + [p[3] / scale]
+              for p in spheres]
     seen = [0] * len(spheres)
     for j in range(h):
         for i in range(w):
@@ -68,7 +69,8 @@ class Browser(unittest.TestCase):
         self.dir = folder.name
 
     def mskit(self, *args):
-        return subprocess.run([MSKIT] + [str(a) for a in args], cwd=self.dir, check=True, capture_output=True, text=True)
+        return subprocess.run([MSKIT] + [str(a) for a in args], cwd=self.dir, check=True, capture_output=True,
+                              text=True)
 
     def open(self, name, *flags):
         self.browser = chromium.start(self, *flags)
@@ -195,7 +197,8 @@ class Browser(unittest.TestCase):
             self.mskit("shape", words, "-o", name)
         with open(os.path.join(self.dir, "b.stl"), "w", encoding="utf-8") as stream:
             stream.write("nothing")
-        self.mskit("grains", "a.stl", "b.stl", "c.stl", "-g", "mss", "-n", 2, "--cells", 10, "-o", "out", "--report", "r.html")
+        self.mskit("grains", "a.stl", "b.stl", "c.stl", "-g", "mss", "-n", 2, "--cells", 10, "-o", "out",
+                   "--report", "r.html")
         self.open("r.html")
         rows = self.browser.find_elements("css selector", "#rows tbody tr")
         self.assertEqual([row.get_attribute("data-scene") for row in rows], ["0", None, "1"])

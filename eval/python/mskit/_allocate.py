@@ -41,7 +41,8 @@ def _find_knees(n: Any, shares: Any, count: int, part: float) -> None:
     for s in range(count):
         n[s] = lib.ms_allocate_knee(ffi.addressof(shares, s), part)
         if n[s] == 0:
-            raise LimitError(f"curve {s}: up to the last of {shares[s].most} spheres each takes away {part:.6g} of D or "
+            raise LimitError(f"curve {s}: up to the last of {shares[s].most} spheres each takes away {part:.6g} of D "
+                             f"or "
                              "more; give a longer curve, or raise the part")
 
 
@@ -60,7 +61,8 @@ def allocate(curves: Sequence[Any], particles: Optional[Sequence[int]] = None, *
     >>> [len(clump[:n]) for clump, n in zip(clumps, found.spheres)], found.total
     ([4, 8], 4080)
     """
-    given = [name for name, value in (("budget", budget), ("mean_dice", mean_dice), ("knee", knee)) if value is not None]
+    given = [name for name, value in (("budget", budget), ("mean_dice", mean_dice), ("knee", knee))
+             if value is not None]
     if len(given) != 1:
         raise ArgumentError("one of budget, mean_dice and knee is to be given")
     shares, kept = _read_curves(curves, particles)
