@@ -71,7 +71,7 @@ ms_status ms_scene_engines_correct(ms_scene *scene, const ms_scene_engines *e, s
     for (size_t s = 0; s < scene->count && e->mass.density > 0 && status == MS_OK; s++) {
         ms_scene_shape *shape = &scene->shape[s];
         ms_error cause;
-        status = ms_mass_correct(&shape->mass, &shape->clump[shape->chosen - 1], &e->mass, &shape->body, max_voxels, &cause);
+        status = ms_mass_correct(&shape->mass, &shape->sized, &e->mass, &shape->body, max_voxels, &cause);
         if (status != MS_OK) {
             status = ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
         }
