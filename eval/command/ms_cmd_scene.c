@@ -1,10 +1,10 @@
 /* mskit scene MANIFEST|SHAPE */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "cli/ms_json_object.h"
 #include "cli/ms_record.h"
@@ -15,7 +15,9 @@
 #include "scene/ms_scene_charts.h"
 #include "scene/ms_scene_choose.h"
 #include "scene/ms_scene_engines.h"
+#include "scene/ms_scene_files.h"
 #include "scene/ms_scene_page.h"
+#include "scene/ms_sieve.h"
 
 enum { DEFAULT_MAX_SPHERES = 100 };
 
@@ -26,6 +28,8 @@ static const ms_flag FLAGS[] = {
     {"budget", 0, "SPHERES", "spheres in the whole scene: the least mean D that they pay for"},
     {"tolerance", 0, "MEASURE=VALUE",
      MS_MEASURE_GOAL_NAMES "one of them, of each shape; the column tolerance of the manifest goes before it"},
+    {"tolerance-length", 0, "L",
+     "mean distance of the surfaces of template and particle, in the unit of the shapes: of each the fewest spheres"},
     {"mean-tolerance", 0, "dice=VALUE", "mean D over all particles: the fewest spheres in the whole scene"},
     {"knee", 0, "PART", "each shape's number of spheres from which a further one takes away less than this part of D"},
     {"max-spheres", 0, "N", "spheres of the largest template (100)"},
@@ -34,6 +38,8 @@ static const ms_flag FLAGS[] = {
     {"output", 'o', "DIR", "write the templates into this folder, each by the name of its shape"},
     {"format", 0, "F", "format of the templates (csv); repeated: of each; liggghts, lammps, yade bring a script, too"},
     {"particles", 0, "N", "how many there are of a shape that is given without a manifest (1)"},
+    {"sieve", 0, "FILE", "give the particles sizes by a sieve curve by mass (.csv: size,passing)"},
+    {"classes", 0, "K", "cut the sieve curve into so many classes of equal mass (one between each row and the next)"},
     {"equal-volume", 0, NULL,
      "scale each template about the centroid of its shape until its union has the shape's volume"},
     MS_SCENE_ENGINE_FLAGS,
@@ -45,7 +51,10 @@ static const ms_flag FLAGS[] = {
 };
 
 typedef struct scene_arguments {
-    const char *source; /* manifest or shape */
+    const char *source;     /* manifest or shape */
+    const char *sieve_file; /* NULL: none */
+    double classes;         /* of it; 0: not given */
+    ms_sieve sieve;
     ms_goal goal;
     double max_spheres, min_radius, particles; /* particles 0: not given */
     ms_recipe recipe;
@@ -63,7 +72,8 @@ static ms_status set_goal(ms_goal *goal, ms_goal_kind kind, double value, ms_err
 {
     if (goal->kind != MS_GOAL_NONE) {
         return ms_fail(err, MS_ERR_ARG,
-                       "--budget, --tolerance, --mean-tolerance and --knee exclude one another; give one, once");
+                       "--budget, --tolerance, --tolerance-length, --mean-tolerance and --knee exclude one another; "
+                       "give one, once");
     }
     goal->kind = kind;
     goal->value = value;
@@ -108,6 +118,15 @@ static ms_status take_goal(int *taken, ms_goal *goal, const char *name, const ch
     if (strcmp(name, "tolerance") == 0 || strcmp(name, "mean-tolerance") == 0) {
         return take_tolerance(goal, name, value, err);
     }
+    if (strcmp(name, "tolerance-length") == 0) {
+        status = ms_flags_number(&number, name, value, DBL_MIN, DBL_MAX, err);
+        status = status == MS_OK ? set_goal(goal, MS_GOAL_TOLERANCE, (double)NAN, err) : status;
+        if (status == MS_OK) {
+            goal->length = number;
+            goal->measure = &ms_measures[MS_MEASURE_DICE];
+        }
+        return status;
+    }
     *taken = 0;
     return MS_OK;
 }
@@ -144,6 +163,13 @@ static ms_status take_scene_flag(void *context, const char *name, const char *va
     if (strcmp(name, "particles") == 0) {
         return ms_flags_whole(&a->particles, name, value, 1, MS_MANIFEST_MAX_PARTICLES, err);
     }
+    if (strcmp(name, "sieve") == 0) {
+        a->sieve_file = value;
+        return MS_OK;
+    }
+    if (strcmp(name, "classes") == 0) {
+        return ms_flags_whole(&a->classes, name, value, 1, MS_SIEVE_MAX_CLASSES, err);
+    }
     if (strcmp(name, "max-spheres") == 0) {
         return ms_flags_whole(&a->max_spheres, name, value, 1, MS_SCENE_MAX_SPHERES, err);
     }
@@ -178,16 +204,18 @@ static ms_status resolve_goal(ms_goal *goal, const ms_manifest *manifest, const 
         particles += (double)manifest->row[r].particles;
     }
     if (goal->kind == MS_GOAL_NONE && tolerances == manifest->count) {
-        *goal = (ms_goal){MS_GOAL_TOLERANCE, (double)NAN, &ms_measures[MS_MEASURE_DICE]};
+        *goal = (ms_goal){.kind = MS_GOAL_TOLERANCE, .value = (double)NAN, .measure = &ms_measures[MS_MEASURE_DICE]};
     }
     if (goal->kind == MS_GOAL_NONE) {
         return ms_fail(err, MS_ERR_ARG,
-                       "no goal; give --budget, --tolerance, --mean-tolerance or --knee, or a tolerance for each shape "
-                       "of %s",
+                       "no goal; give --budget, --tolerance, --tolerance-length, --mean-tolerance or --knee, or a "
+                       "tolerance for each shape of %s",
                        source);
     }
     if (goal->kind != MS_GOAL_TOLERANCE && tolerances > 0) {
-        return ms_fail(err, MS_ERR_ARG, "the tolerances in %s go with --tolerance or alone; drop that column", source);
+        return ms_fail(err, MS_ERR_ARG,
+                       "the tolerances in %s go with --tolerance, --tolerance-length or alone; drop that column",
+                       source);
     }
     if (goal->kind == MS_GOAL_BUDGET && goal->value < particles) {
         return ms_fail(err, MS_ERR_LIMIT,
@@ -197,112 +225,15 @@ static ms_status resolve_goal(ms_goal *goal, const ms_manifest *manifest, const 
     return MS_OK;
 }
 
-/* FOLDER/NAME.ENDING, where NAME is that of the shape without folder and ending. The caller frees it; NULL without
- * memory. */
-static char *template_path(const char *folder, const char *shape, const ms_format *format)
-{
-    size_t length;
-    const char *stem = ms_files_stem(&length, shape);
-    const size_t room = strlen(folder) + length + strlen(format->ending) + 3;
-    char *path = malloc(room);
-    if (path) {
-        const int start = snprintf(path, room, "%s/", folder);
-        snprintf(path + start, room - (size_t)start, "%.*s.%s", (int)length, stem, format->ending);
-        ms_escape_file_name(path + start);
-        if (ms_write_check_path(path, format, NULL) != MS_OK) {
-            ms_escape_script_name(path + start);
-        }
-    }
-    return path;
-}
-
-/* The shape before, if there is one, whose template would be the same file. */
-static ms_status check_template(const ms_outputs *outputs, const ms_manifest *manifest, size_t r, size_t f,
-                                ms_error *err)
-{
-    const char *path = outputs[r].file[f].path;
-    for (size_t before = 0; before < r; before++) {
-        if (strcmp(outputs[before].file[f].path, path) == 0) {
-            return ms_fail(err, MS_ERR_ARG, "the templates of %s and %s would both be %s; rename one of the shapes",
-                           manifest->row[before].path, manifest->row[r].path, path);
-        }
-    }
-    return MS_OK;
-}
-
-/* Names the files of each template. Without a folder there are none. */
-static ms_status plan_outputs(ms_outputs *outputs, const scene_arguments *a, const ms_manifest *manifest, ms_error *err)
-{
-    ms_status status = MS_OK;
-    for (size_t r = 0; a->folder && r < manifest->count && status == MS_OK; r++) {
-        outputs[r].folder = a->folder;
-        for (size_t f = 0; f < a->n_formats && status == MS_OK; f++) {
-            char *path = template_path(a->folder, manifest->row[r].path, a->format[f]);
-            if (!path) {
-                return ms_fail(err, MS_ERR_NOMEM, "no memory for the names of %zu templates", manifest->count);
-            }
-            outputs[r].file[outputs[r].n_files++] = (ms_output_file){path, path, a->format[f]};
-            status = check_template(outputs, manifest, r, f, err);
-        }
-    }
-    return status;
-}
-
-/* The scripts of the engines. */
-static ms_status list_scripts(ms_files *files, const scene_arguments *a, ms_error *err)
-{
-    ms_status status = MS_OK;
-    for (size_t f = 0; f < a->n_formats && status == MS_OK; f++) {
-        if (a->format[f]->scene.suffix) {
-            char *path = ms_scene_engines_path(a->folder, a->format[f], 1);
-            status = path ? ms_files_add(files, path, MS_FILE_WRITTEN, err)
-                          : ms_fail(err, MS_ERR_NOMEM, "no memory for the names of the scripts");
-            free(path);
-        }
-    }
-    return status;
-}
-
-static ms_status check_scene_files(const ms_outputs *outputs, const scene_arguments *a, const ms_manifest *manifest,
-                                   ms_error *err)
-{
-    const char *refined = a->recipe.settings.clump_file;
-    ms_files files = {0};
-    ms_status status = ms_files_add(&files, a->source, MS_FILE_READ, err);
-    if (status == MS_OK && a->charts) {
-        status = ms_files_add_folder(&files, a->charts, err);
-    }
-    if (status == MS_OK && refined) {
-        status = ms_files_add(&files, refined, MS_FILE_READ, err);
-    }
-    for (size_t r = 0; r < manifest->count && status == MS_OK; r++) {
-        status = ms_files_add_shape(&files, manifest->row[r].path, err);
-        if (status == MS_OK) {
-            status = ms_outputs_list(&files, &outputs[r], err);
-        }
-        if (status == MS_OK && a->charts) {
-            status = ms_scene_charts_list(&files, a->charts, &manifest->row[r], r + 1, &a->goal, err);
-        }
-    }
-    if (status == MS_OK) {
-        status = list_scripts(&files, a, err);
-    }
-    if (status == MS_OK && a->report) {
-        status = ms_files_add(&files, a->report, MS_FILE_WRITTEN, err);
-    }
-    if (status == MS_OK) {
-        status = ms_files_check(&files, err);
-    }
-    ms_files_free(&files);
-    return status;
-}
-
 /* How a template came about, for its JSON file. */
 static char *record_of(const scene_arguments *a, const ms_scene_shape *shape)
 {
     json_t *json = ms_scene_record_json(&a->recipe, (size_t)a->max_spheres, a->min_radius);
     ms_json_object_set(&json, "scores", ms_scene_scores_json(shape));
     ms_json_object_set(&json, "input", json_incref(shape->input));
+    if (!isnan(shape->row->size)) {
+        ms_json_object_set(&json, "size", json_real(shape->row->size));
+    }
     if (shape->mass.corrected) {
         ms_json_object_set(&json, "particle", ms_json_from_particle(&shape->mass.particle));
         ms_json_object_set(&json, "masses", ms_mass_json(&shape->mass));
@@ -373,9 +304,16 @@ static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, 
 {
     ms_scene scene;
     const ms_scene_run run = {&a->recipe, &a->input, (size_t)a->max_spheres, a->min_radius, a->equal_volume};
-    ms_status status = plan_outputs(outputs, a, manifest, err);
+    const ms_scene_files files = {.read = {a->source, a->recipe.settings.clump_file, a->sieve_file},
+                                  .folder = a->folder,
+                                  .format = a->format,
+                                  .n_formats = a->n_formats,
+                                  .charts = a->charts,
+                                  .report = a->report,
+                                  .goal = &a->goal};
+    ms_status status = ms_scene_files_plan(outputs, &files, manifest, err);
     if (status == MS_OK && (a->folder || a->charts || a->report)) {
-        status = check_scene_files(outputs, a, manifest, err);
+        status = ms_scene_files_check(outputs, &files, manifest, err);
     }
     if (status == MS_OK) {
         status = ms_scene_make(&scene, manifest, &run, &a->goal, err);
@@ -383,6 +321,7 @@ static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, 
     if (status != MS_OK) {
         return status;
     }
+    scene.sieve = a->sieve.count > 0 ? &a->sieve : NULL;
     status = choose_and_correct(&scene, a, outputs, err);
     if (status == MS_OK) {
         ms_scene_say_remarks(&scene);
@@ -434,6 +373,24 @@ static int resolve_and_work(const ms_command *command, scene_arguments *a, const
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
+/* Sizes by the sieve curve. */
+static ms_status read_sizes(ms_manifest *manifest, scene_arguments *a, ms_error *err)
+{
+    ms_status status = a->sieve_file ? ms_sieve_read(&a->sieve, a->sieve_file, (size_t)a->classes, err) : MS_OK;
+    if (status == MS_OK && a->sieve_file && ms_manifest_has_sizes(manifest)) {
+        status =
+            ms_fail(err, MS_ERR_ARG, "%s has sizes, and so has --sieve %s; drop one of them", a->source, a->sieve_file);
+    } else if (status == MS_OK && a->sieve_file) {
+        status = ms_sieve_apply(&a->sieve, manifest, err);
+    }
+    if (status == MS_OK && a->min_radius > 0 && ms_manifest_has_sizes(manifest)) {
+        status = ms_fail(err, MS_ERR_ARG,
+                         "--min-radius is of shapes in their own size, since all sizes of a shape share its templates; "
+                         "drop it or the sizes");
+    }
+    return status;
+}
+
 static int read_and_work(const ms_command *command, scene_arguments *a)
 {
     ms_manifest manifest;
@@ -441,8 +398,12 @@ static int read_and_work(const ms_command *command, scene_arguments *a)
     if (read_manifest(&manifest, a, &err) != MS_OK) {
         return ms_flags_fail(command, &err);
     }
-    const int code = resolve_and_work(command, a, &manifest);
+    const ms_status status = read_sizes(&manifest, a, &err);
+    const int code = status == MS_ERR_ARG ? ms_flags_wrong_usage(command, err.text)
+                     : status != MS_OK    ? ms_flags_fail(command, &err)
+                                          : resolve_and_work(command, a, &manifest);
     ms_manifest_free(&manifest);
+    ms_sieve_free(&a->sieve);
     return code;
 }
 
@@ -469,6 +430,9 @@ static int run_scene(const ms_command *command, int argc, char **argv)
     if (a.particles > 0 && is_manifest(a.source)) {
         return ms_flags_wrong_usage(command, "--particles is of a shape; a manifest has its own counts");
     }
+    if (a.classes > 0 && !a.sieve_file) {
+        return ms_flags_wrong_usage(command, "--classes are those of a sieve curve; give --sieve FILE beside it");
+    }
     if (a.n_formats == 0) {
         a.format[a.n_formats++] = ms_write_format_find("csv", &err);
     }
@@ -479,8 +443,8 @@ static int run_scene(const ms_command *command, int argc, char **argv)
     if (status == MS_OK) {
         a.input.cut |= a.goal.measure == &ms_measures[MS_MEASURE_COVERAGE_CUT];
         a.input.need = ms_generator_need(a.recipe.generator, &a.recipe.settings, a.input.cut);
-        const char *const inputs[] = {a.source, a.recipe.settings.clump_file};
-        status = ms_files_check_standard(inputs, 2, &err);
+        const char *const inputs[] = {a.source, a.recipe.settings.clump_file, a.sieve_file};
+        status = ms_files_check_standard(inputs, 3, &err);
     }
     code = status == MS_OK ? read_and_work(command, &a) : ms_flags_refuse(command, status, &err);
     ms_recipe_free(&a.recipe);
@@ -490,8 +454,8 @@ static int run_scene(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_scene = {
     .name = "scene",
     .summary = "how many spheres each shape of a scene needs, and its templates",
-    .usage = "MANIFEST|SHAPE --budget N|--tolerance MEASURE=V|--mean-tolerance dice=V|--knee PART [-o DIR [--density "
-             "RHO --format F]...]",
+    .usage = "MANIFEST|SHAPE --budget N|--tolerance MEASURE=V|--tolerance-length L|--mean-tolerance dice=V|--knee PART "
+             "[--sieve FILE] [-o DIR [--density RHO --format F]...]",
     .example = "mskit scene grain.stl --knee 0.1 --max-spheres 20 --cells 50 -o templates",
     .flags = FLAGS,
     .run = run_scene,

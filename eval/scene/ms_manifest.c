@@ -9,7 +9,15 @@
 #include "base/ms_choice.h"
 #include "base/ms_text.h"
 
-enum { SHAPE, COUNT, TOLERANCE, COLUMNS };
+enum { SHAPE, COUNT, TOLERANCE, SIZE, COLUMNS };
+
+/* Of a size, so that its fifth power is a number. */
+static const double LARGEST = 1e50, SMALLEST = 1e-50;
+
+/* Which column stands where. */
+typedef struct manifest_header {
+    int count, column[COLUMNS];
+} manifest_header;
 
 /* Takes the blanks off both ends. */
 static ms_word trim(const char *start, const char *stop)
@@ -39,30 +47,52 @@ static int split(ms_word field[COLUMNS], const ms_word *line)
     }
 }
 
-/* Returns the number of columns. */
-static ms_status read_header(int *columns, ms_text *text, ms_error *err)
+/* Shape and count, then what is asked for of the rest, each once, in any order. */
+static int know_header(manifest_header *header, const ms_word field[COLUMNS])
 {
-    static const char *const NAMES[COLUMNS] = {"shape", "count", "tolerance"};
+    static const char *const NAMES[COLUMNS] = {"shape", "count", "tolerance", "size"};
+    int seen[COLUMNS] = {0};
+    for (int c = 0; c < header->count; c++) {
+        int name = 0;
+        while (name < COLUMNS && !ms_text_word_is(&field[c], NAMES[name])) {
+            name++;
+        }
+        if (name == COLUMNS || seen[name] || (c <= COUNT && name != c)) {
+            return 0;
+        }
+        seen[name] = 1;
+        header->column[c] = name;
+    }
+    return 1;
+}
+
+static ms_status read_header(manifest_header *header, ms_text *text, ms_error *err)
+{
     ms_word field[COLUMNS] = {{0}};
     if (!ms_text_seek(text)) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: the manifest is empty; its first line is shape,count", text->name);
     }
     const ms_word line = ms_text_rest(text);
-    *columns = split(field, &line);
-    int known = *columns >= 2 && *columns <= COLUMNS;
-    for (int c = 0; c < *columns && known; c++) {
-        known = ms_text_word_is(&field[c], NAMES[c]);
-    }
-    return known ? MS_OK
-                 : ms_text_fail(err, text, "the header is '%s', not shape,count or shape,count,tolerance",
-                                ms_text_quote(&line).text);
+    header->count = split(field, &line);
+    return header->count >= 2 && header->count <= COLUMNS && know_header(header, field)
+               ? MS_OK
+               : ms_text_fail(err, text, "the header is '%s', not shape,count with tolerance, size or both behind it",
+                              ms_text_quote(&line).text);
 }
 
-static ms_status check_shape(const ms_manifest *manifest, const char *path, const ms_text *text, ms_error *err)
+/* Sizes are alike, or there is none. */
+static int is_same_size(double a, double b)
 {
-    for (size_t r = 0; r < manifest->count; r++) {
-        if (strcmp(manifest->row[r].path, path) == 0) {
-            return ms_text_fail(err, text, "%.180s stands twice; add up the counts", path);
+    return isnan(a) ? isnan(b) : !(a < b || a > b || isnan(b));
+}
+
+static ms_status check_row(const ms_manifest *manifest, const ms_manifest_row *row, const ms_text *text, ms_error *err)
+{
+    const char *path = row->path;
+    for (const ms_manifest_row *before = manifest->row; before < row; before++) {
+        if (strcmp(before->path, path) == 0 && is_same_size(before->size, row->size)) {
+            return ms_text_fail(err, text, "%.180s stands twice%s; add up the counts", path,
+                                isnan(row->size) ? "" : " in this size");
         }
     }
     if (ms_file_is_standard(path)) {
@@ -96,12 +126,32 @@ static ms_status read_tolerance(double *tolerance, const ms_word *word, const ms
     return MS_OK;
 }
 
-/* Adds a row; on failure what it holds is freed with the manifest. */
-static ms_status read_row(ms_manifest *manifest, int columns, ms_text *text, ms_error *err)
+static ms_status read_size(double *size, const ms_word *word, const ms_text *text, ms_error *err)
 {
-    ms_word field[COLUMNS] = {{0}};
+    *size = (double)NAN;
+    if (word->length > 0 && (!ms_text_to_double(size, word) || !(*size >= SMALLEST && *size <= LARGEST))) {
+        return ms_text_fail(err, text, "the size '%s' is not a number from %g to %g", ms_text_quote(word).text,
+                            SMALLEST, LARGEST);
+    }
+    return MS_OK;
+}
+
+/* What stands behind the shape. */
+static ms_status read_numbers(ms_manifest_row *row, const ms_word field[COLUMNS], const ms_text *text, ms_error *err)
+{
+    ms_status status = read_count(&row->particles, &field[COUNT], text, err);
+    if (status == MS_OK) {
+        status = read_tolerance(&row->tolerance, &field[TOLERANCE], text, err);
+    }
+    return status == MS_OK ? read_size(&row->size, &field[SIZE], text, err) : status;
+}
+
+/* Adds a row; on failure what it holds is freed with the manifest. */
+static ms_status read_row(ms_manifest *manifest, const manifest_header *header, ms_text *text, ms_error *err)
+{
+    ms_word field[COLUMNS] = {{0}}, by_name[COLUMNS] = {{0}};
     const ms_word line = ms_text_rest(text);
-    const int fields = split(field, &line);
+    const int fields = split(field, &line), columns = header->count;
     if (memchr(line.start, '"', line.length)) {
         return ms_text_fail(err, text, "a quotation mark; names with commas or quotation marks are not taken");
     }
@@ -112,34 +162,31 @@ static ms_status read_row(ms_manifest *manifest, int columns, ms_text *text, ms_
     if (manifest->count == MS_MANIFEST_MAX_SHAPES) {
         return ms_text_fail(err, text, "more than %d shapes", MS_MANIFEST_MAX_SHAPES);
     }
-    ms_manifest_row row = {.path = ms_file_beside(text->name, field[SHAPE].start, field[SHAPE].length),
-                           .tolerance = (double)NAN};
-    if (!row.path) {
+    for (int c = 0; c < columns; c++) {
+        by_name[header->column[c]] = field[c];
+    }
+    ms_manifest_row *row = &manifest->row[manifest->count];
+    row->path = ms_file_beside(text->name, field[SHAPE].start, field[SHAPE].length);
+    if (!row->path) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu shapes", manifest->count + 1);
     }
-    ms_status status = check_shape(manifest, row.path, text, err);
-    manifest->row[manifest->count++] = row;
-    if (status == MS_OK) {
-        status = read_count(&manifest->row[manifest->count - 1].particles, &field[COUNT], text, err);
-    }
-    if (status == MS_OK) {
-        status = read_tolerance(&manifest->row[manifest->count - 1].tolerance, &field[TOLERANCE], text, err);
-    }
-    return status;
+    manifest->count++;
+    const ms_status status = read_numbers(row, by_name, text, err);
+    return status == MS_OK ? check_row(manifest, row, text, err) : status;
 }
 
 static ms_status parse(ms_manifest *manifest, const ms_bytes *bytes, const char *path, ms_error *err)
 {
     ms_text text;
-    int columns = 0;
+    manifest_header header = {0};
     if (memchr(bytes->data, 0, bytes->size)) {
         return ms_fail(err, MS_ERR_FORMAT, "%s: this is not a text file shape,count", path);
     }
     ms_text_start(&text, bytes, path);
     text.comment = '#';
-    ms_status status = read_header(&columns, &text, err);
+    ms_status status = read_header(&header, &text, err);
     while (status == MS_OK && ms_text_seek(&text)) {
-        status = read_row(manifest, columns, &text, err);
+        status = read_row(manifest, &header, &text, err);
     }
     if (status == MS_OK && manifest->count == 0) {
         status = ms_fail(err, MS_ERR_FORMAT, "%s: no shape stands below the header", path);
@@ -173,8 +220,26 @@ ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, uint64_
         *manifest = (ms_manifest){0};
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the shape %s", shape);
     }
-    manifest->row[0] = (ms_manifest_row){path, particles, (double)NAN};
+    manifest->row[0] = (ms_manifest_row){path, particles, (double)NAN, (double)NAN};
     return MS_OK;
+}
+
+size_t ms_manifest_first(const ms_manifest *manifest, size_t row)
+{
+    size_t first = 0;
+    while (first < row && strcmp(manifest->row[first].path, manifest->row[row].path) != 0) {
+        first++;
+    }
+    return first;
+}
+
+int ms_manifest_has_sizes(const ms_manifest *manifest)
+{
+    int has = 0;
+    for (size_t r = 0; r < manifest->count; r++) {
+        has |= !isnan(manifest->row[r].size);
+    }
+    return has;
 }
 
 void ms_manifest_free(ms_manifest *manifest)

@@ -1,4 +1,4 @@
-/** What a scene is made of: a CSV file of shapes and how many there are of each. */
+/** What a scene is made of: a CSV file of shapes, how many there are of each, and in which size. */
 #ifndef MS_MANIFEST_H
 #define MS_MANIFEST_H
 
@@ -14,27 +14,34 @@ typedef struct ms_manifest_row {
     char *path; /* of the shape, as it can be opened */
     uint64_t particles;
     double tolerance; /* NAN: none is given */
+    double size; /* diameter of the ball of equal volume to which the shape is scaled, in its unit; NAN: as it is */
 } ms_manifest_row;
 
-/** A zeroed struct is empty. */
+/** A zeroed struct is empty. A shape stands in it once in each of its sizes. */
 typedef struct ms_manifest {
     ms_manifest_row *row;
     size_t count;
 } ms_manifest;
 
 /**
- * Reads a manifest: the header `shape,count` or `shape,count,tolerance`, then a line for each shape. Paths are relative
- * to the folder of the manifest. Empty lines and lines that begin with '#' are skipped.
+ * Reads a manifest: the header `shape,count`, behind it `tolerance`, `size` or both, then a line for each shape. Paths
+ * are relative to the folder of the manifest. Empty lines and lines that begin with '#' are skipped.
  *
  * @param[out] manifest the caller frees it; empty on failure
- * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line: another header, a shape that cannot be read or stands twice,
- *         a count that is no whole number from 1 to MS_MANIFEST_MAX_PARTICLES, a tolerance that is none from 0 to 1, no
- *         shape or too many; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line: another header, a shape that cannot be read or stands twice in
+ *         one size, a count that is no whole number from 1 to MS_MANIFEST_MAX_PARTICLES, a tolerance that is none from
+ *         0 to 1, a size that is none above 0, no shape or too many; MS_ERR_NOMEM
  */
 ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *err);
 
 /** Particles of one shape. @return MS_OK; MS_ERR_NOMEM */
 ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, uint64_t particles, ms_error *err);
+
+/** Index of the first row of the same shape; its own for the first. */
+size_t ms_manifest_first(const ms_manifest *manifest, size_t row);
+
+/** Nonzero if a row has a size. */
+int ms_manifest_has_sizes(const ms_manifest *manifest);
 
 void ms_manifest_free(ms_manifest *manifest);
 

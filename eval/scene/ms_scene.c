@@ -6,16 +6,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/ms_expectation.h"
 #include "cli/ms_progress.h"
 #include "cli/ms_report.h"
 #include "clump/ms_equal_volume.h"
+#include "measure/ms_descriptors.h"
 #include "ms_curve.h"
+#include "ms_scene_search.h"
 #include "queue/ms_queue.h"
 
 const ms_clump *ms_scene_clump(const ms_scene_shape *shape)
 {
-    return &shape->clump[shape->chosen - 1];
+    return &shape->sized;
 }
 
 const ms_score *ms_scene_score(const ms_scene_shape *shape)
@@ -26,6 +27,11 @@ const ms_score *ms_scene_score(const ms_scene_shape *shape)
 double ms_scene_gain(const ms_scene_shape *shape)
 {
     return shape->chosen > 1 ? shape->dice[shape->chosen - 2] - shape->dice[shape->chosen - 1] : (double)NAN;
+}
+
+double ms_scene_distance(const ms_scene_shape *shape)
+{
+    return 2 * shape->dice[shape->chosen - 1] * shape->factor / shape->surface;
 }
 
 ms_share ms_scene_share(const ms_scene_shape *shape)
@@ -45,15 +51,10 @@ const ms_scene_shape *ms_scene_smallest(const ms_scene *scene)
     return smallest;
 }
 
-static double tolerance_of(const ms_scene_shape *shape, const ms_goal *goal)
-{
-    return isnan(shape->row->tolerance) ? goal->value : shape->row->tolerance;
-}
-
 /* The least number of spheres that reaches a tolerance. */
 static ms_status choose_by_tolerance(ms_scene_shape *shape, const ms_goal *goal, ms_error *err)
 {
-    const double value = tolerance_of(shape, goal);
+    const double value = shape->tolerance;
     double best = (double)NAN;
     for (size_t n = 1; n <= shape->most; n++) {
         if (shape->clump[n - 1].n_spheres == 0) { /* not run */
@@ -135,7 +136,7 @@ static ms_status scale_templates(ms_scene_shape *shape, const ms_target *target,
     for (size_t n = 0; n < shape->most && status == MS_OK; n++) {
         ms_equal_volume ignored;
         ms_metrics metrics;
-        status = ms_equal_volume_scale(&shape->clump[n], &ignored, &shape->body, err);
+        status = ms_equal_volume_scale(&shape->clump[n], &ignored, &target->body, err);
         if (status == MS_OK) {
             status = ms_metrics_compute_kinds(&metrics, NULL, 0, target, &shape->clump[n], max_voxels, err);
         }
@@ -169,113 +170,6 @@ static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const 
     return status;
 }
 
-/* A search for the least number of spheres that reaches a tolerance, by runs of their own. */
-typedef struct scene_search {
-    ms_scene_shape *shape;
-    const ms_goal *goal;
-    const ms_generator *generator;
-    ms_run run;
-    size_t max_voxels;
-    double value; /* to be reached */
-    int equal_volume;
-} scene_search;
-
-/* The template of n spheres. @param[out] reached does it reach the tolerance? */
-static ms_status try_number(int *reached, scene_search *s, size_t n, ms_error *err)
-{
-    ms_scene_shape *shape = s->shape;
-    ms_metrics metrics;
-    ms_stop_reason reason;
-    ms_equal_volume ignored;
-    s->run.stop.spheres = n;
-    ms_generator_keep_remarks(&s->run, &shape->remarks[n - 1]);
-    ms_status status = ms_generator_run(&shape->clump[n - 1], &reason, s->generator, &s->run, err);
-    if (status == MS_OK && s->equal_volume) {
-        status = ms_equal_volume_scale(&shape->clump[n - 1], &ignored, &shape->body, err);
-    }
-    if (status == MS_OK) {
-        status = ms_metrics_compute_kinds(&metrics, NULL, 0, s->run.target, &shape->clump[n - 1], s->max_voxels, err);
-    }
-    if (status == MS_OK) {
-        const double have = s->goal->measure->of_score(&metrics.score);
-        shape->score[n - 1] = metrics.score;
-        shape->dice[n - 1] = metrics.score.dice;
-        *reached = ms_measure_is_reached(s->goal->measure, have, s->value);
-    }
-    return status;
-}
-
-/* Numbers of which the lower one does not reach the tolerance (0: none is known) and the higher one does, in steps of a
- * fifth from the one that is expected. */
-static ms_status bracket_number(size_t *lo, size_t *hi, scene_search *s, size_t first, ms_error *err)
-{
-    size_t n = first;
-    int reached = 0;
-    *lo = *hi = 0;
-    ms_status status = try_number(&reached, s, n, err);
-    const int begins_above = reached;
-    while (status == MS_OK && reached == begins_above) {
-        *(reached ? hi : lo) = n;
-        if (reached ? n == 1 : n == s->shape->most) {
-            break;
-        }
-        const size_t step = 1 + n / 5;
-        n = !reached ? n + step : n > step ? n - step : 1;
-        n = n < s->shape->most ? n : s->shape->most;
-        status = try_number(&reached, s, n, err);
-    }
-    *(reached ? hi : lo) = n;
-    *lo = reached && n == 1 ? 0 : *lo;
-    return status;
-}
-
-/* Where each number is a run of its own, few are run: those from the expected one on that enclose the tolerance, and
- * halves of what lies between. */
-static ms_status search_number(ms_scene_shape *shape, scene_search *s, size_t expected, ms_error *err)
-{
-    size_t lo, hi;
-    const size_t first = expected < 1 ? 1 : expected < shape->most ? expected : shape->most;
-    ms_status status = bracket_number(&lo, &hi, s, first, err);
-    while (status == MS_OK && hi > 0 && hi - lo > 1) { /* without one that reaches it, choose_alone says so */
-        int reached;
-        const size_t middle = lo + (hi - lo) / 2;
-        status = try_number(&reached, s, middle, err);
-        *(status == MS_OK && reached ? &hi : &lo) = middle;
-    }
-    shape->chosen = hi;
-    return status;
-}
-
-/* The number of spheres that the tolerance is expected to take; where nothing is expected, a quarter of the most. */
-static size_t expect_number(const ms_input *input, const ms_goal *goal, double value, size_t most)
-{
-    ms_expect expect;
-    ms_error ignored;
-    double n = (double)most / 4;
-    if (goal->measure == &ms_measures[MS_MEASURE_DICE] && value > 0 &&
-        ms_expectation_find(&expect, input, &ignored) == MS_OK) {
-        n = ceil(ms_expect_spheres(&expect, MS_EXPECT_FREE, value));
-    }
-    return n < (double)most ? (size_t)n : most;
-}
-
-static ms_status search_template(ms_scene_shape *shape, const ms_input *input, const ms_run *run,
-                                 const ms_scene_run *how, const ms_goal *goal, ms_error *err)
-{
-    scene_search s = {.shape = shape,
-                      .goal = goal,
-                      .generator = how->recipe->generator,
-                      .run = *run,
-                      .max_voxels = ms_input_max_voxels(how->input),
-                      .value = tolerance_of(shape, goal),
-                      .equal_volume = how->equal_volume};
-    const ms_status status = make_room(shape, how->max_spheres, err);
-    for (size_t n = 0; status == MS_OK && n < shape->most; n++) {
-        shape->dice[n] = (double)NAN;
-    }
-    return status == MS_OK ? search_number(shape, &s, expect_number(input, goal, s.value, shape->most), err) : status;
-}
-
 int ms_scene_is_searched(const ms_goal *goal, const ms_recipe *recipe)
 {
     return goal->kind == MS_GOAL_TOLERANCE && !ms_generator_is_nested(recipe->generator, &recipe->settings);
@@ -301,9 +195,76 @@ static ms_status make_all_templates(ms_scene_shape *shape, ms_run *run, const ms
     return status;
 }
 
-static ms_status make_templates(ms_scene_shape *shape, const char *title, const ms_input *input,
+/* D that surfaces at a mean distance L make of a shape of volume V and area A: the volume between them, some A L, is
+ * that of S xor U, and D = |S xor U| / (|S| + |U|), where the latter is some 2 V. */
+static double dice_of_length(const ms_scene_shape *shape, double length)
+{
+    return length * shape->surface / (2 * shape->factor);
+}
+
+static ms_status find_surface(double *surface, const ms_target *target, ms_error *err)
+{
+    ms_descriptors of_shape;
+    const ms_status status = ms_descriptors_of_target(&of_shape, target, err);
+    *surface = of_shape.area / of_shape.volume;
+    return status == MS_OK && isnan(*surface)
+               ? ms_fail(err, MS_ERR_SHAPE,
+                         "the area of its surface is not known, so that no length can be tolerated; use more cells, or "
+                         "--tolerance")
+               : status;
+}
+
+/* The shape of a row in its size, with the templates of the first row of that shape. */
+static void take_row(ms_scene_shape *shape, const ms_scene_shape *first, const ms_target *target, const ms_goal *goal)
+{
+    const ms_manifest_row *row = shape->row;
+    const double own = cbrt(6 * target->body.volume / acos(-1.0)), f = isnan(row->size) ? 1 : row->size / own;
+    if (shape != first) {
+        *shape = *first;
+        shape->row = row;
+        json_incref(shape->input);
+    }
+    shape->factor = f;
+    shape->body.volume = f * f * f * target->body.volume;
+    for (int k = 0; k < 3; k++) {
+        shape->body.centroid[k] = f * target->body.centroid[k];
+        for (int l = 0; l < 3; l++) {
+            shape->body.inertia[k][l] = f * f * f * f * f * target->body.inertia[k][l];
+        }
+    }
+    const double asked = goal->length > 0 ? dice_of_length(shape, goal->length) : goal->value;
+    shape->tolerance = isnan(row->tolerance) ? asked : row->tolerance;
+    shape->chosen = 0;
+}
+
+/* What the goal says of each row of the shape alone. */
+static ms_status choose_rows(ms_scene *scene, size_t first, const ms_input *input, const ms_run *run,
+                             const ms_scene_run *how, const ms_goal *goal, ms_error *err)
+{
+    ms_status status = MS_OK;
+    ms_error cause;
+    for (size_t s = first; s < scene->count && status == MS_OK; s++) {
+        ms_scene_shape *shape = &scene->shape[s];
+        if (shape->first != first) {
+            continue;
+        }
+        take_row(shape, &scene->shape[first], &input->target, goal);
+        if (scene->is_searched) {
+            status = ms_scene_search(shape, input, run, how, goal, &cause);
+        }
+        if (status != MS_OK) {
+            status = ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
+        } else if (shape->chosen == 0) {
+            status = choose_alone(shape, goal, err);
+        }
+    }
+    return status;
+}
+
+static ms_status make_templates(ms_scene *scene, size_t first, const char *title, const ms_input *input,
                                 const ms_scene_run *how, const ms_goal *goal, int beside, ms_error *err)
 {
+    ms_scene_shape *shape = &scene->shape[first];
     const ms_recipe *recipe = how->recipe;
     ms_progress_line line = {.name = title, .goal = how->recipe->generator->nested ? how->max_spheres : 0};
     ms_error cause;
@@ -316,21 +277,25 @@ static ms_status make_templates(ms_scene_shape *shape, const char *title, const 
         run.stage = NULL; /* of all runs the first is a small part */
     }
     shape->input = ms_report_input_json(input);
-    shape->body = input->target.body;
-    ms_status status;
-    if (ms_scene_is_searched(goal, recipe)) {
-        status = search_template(shape, input, &run, how, goal, &cause);
-    } else {
-        status = make_all_templates(shape, &run, how, beside, &cause);
+    ms_status status = goal->length > 0 ? find_surface(&shape->surface, &input->target, &cause) : MS_OK;
+    if (status == MS_OK) {
+        status = scene->is_searched ? make_room(shape, how->max_spheres, &cause)
+                                    : make_all_templates(shape, &run, how, beside, &cause);
     }
+    for (size_t n = 0; scene->is_searched && n < shape->most; n++) {
+        shape->dice[n] = (double)NAN; /* not run */
+    }
+    status = status == MS_OK ? choose_rows(scene, first, input, &run, how, goal, err)
+                             : ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
     if (!beside) {
         ms_progress_close();
     }
-    return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
+    return status;
 }
 
-/* How the making of a shape ended. */
+/* The making of a shape. */
 typedef struct scene_outcome {
+    size_t first; /* row of it */
     ms_status status;
     ms_error cause;
 } scene_outcome;
@@ -338,32 +303,32 @@ typedef struct scene_outcome {
 /* The shapes in the making. */
 typedef struct scene_work {
     ms_scene *scene;
-    const ms_manifest *manifest;
     const ms_scene_run *run;
     const ms_goal *goal;
-    scene_outcome *outcome; /* of each shape */
+    size_t count; /* of shapes: rows may be sizes of one */
+    scene_outcome *outcome;
 } scene_work;
 
 static ms_status make_shape(const scene_work *w, size_t at, ms_queue_place *place, ms_error *err)
 {
     ms_input input;
     ms_input_flags flags = *w->run->input;
-    ms_scene_shape *shape = &w->scene->shape[at];
+    const size_t first = w->outcome[at].first;
+    const char *path = w->scene->shape[first].row->path;
     char title[80];
-    shape->row = &w->manifest->row[at];
-    snprintf(title, sizeof title, "%.40s (%zu of %zu)", shape->row->path, at + 1, w->scene->count);
+    snprintf(title, sizeof title, "%.40s (%zu of %zu)", path, at + 1, w->count);
     flags.threads = 0; /* those of the queue */
-    ms_status status = ms_input_read(&input, shape->row->path, &flags, err);
+    ms_status status = ms_input_read(&input, path, &flags, err);
     if (status != MS_OK) {
         return status;
     }
     ms_queue_need_memory(place, ms_input_bytes(&input, &flags), flags.max_memory);
     status = ms_input_target(&input, &flags, err);
     if (status == MS_OK) {
-        status = make_templates(shape, title, &input, w->run, w->goal, ms_queue_beside(place), err);
+        status = make_templates(w->scene, first, title, &input, w->run, w->goal, ms_queue_beside(place), err);
     }
     ms_input_free(&input);
-    return status == MS_OK && shape->chosen == 0 ? choose_alone(shape, w->goal, err) : status;
+    return status;
 }
 
 static void work_shape(void *context, size_t at, ms_queue_place *place)
@@ -381,20 +346,38 @@ static ms_status take_shape(void *context, size_t at, size_t *failed, ms_error *
     return w->outcome[at].status;
 }
 
+/* A shape for each row; those to be made are the first of their path. */
+static void list_shapes(scene_work *w, const ms_manifest *manifest)
+{
+    for (size_t s = 0; s < manifest->count; s++) {
+        ms_scene_shape *shape = &w->scene->shape[s];
+        shape->row = &manifest->row[s];
+        shape->first = ms_manifest_first(manifest, s);
+        if (shape->first == s) {
+            w->outcome[w->count++].first = s;
+        }
+    }
+}
+
 ms_status ms_scene_make(ms_scene *scene, const ms_manifest *manifest, const ms_scene_run *run, const ms_goal *goal,
                         ms_error *err)
 {
-    *scene = (ms_scene){.count = manifest->count, .shape = calloc(manifest->count, sizeof *scene->shape)};
-    scene->is_searched = ms_scene_is_searched(goal, run->recipe);
-    scene_work work = {scene, manifest, run, goal, calloc(manifest->count, sizeof *work.outcome)};
-    const ms_queue queue = {.count = manifest->count,
-                            .threads = run->input->threads ? run->input->threads : omp_get_max_threads(),
-                            .context = &work,
-                            .work = work_shape,
-                            .take = take_shape};
-    ms_status status = scene->shape && work.outcome
-                           ? ms_queue_run(&queue, err)
-                           : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu shapes", manifest->count);
+    *scene = (ms_scene){.count = manifest->count,
+                        .shape = calloc(manifest->count, sizeof *scene->shape),
+                        .is_searched = ms_scene_is_searched(goal, run->recipe),
+                        .has_sizes = ms_manifest_has_sizes(manifest)};
+    scene_work work = {scene, run, goal, 0, calloc(manifest->count, sizeof *work.outcome)};
+    ms_status status =
+        scene->shape && work.outcome ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu shapes", manifest->count);
+    if (status == MS_OK) {
+        list_shapes(&work, manifest);
+        const ms_queue queue = {.count = work.count,
+                                .threads = run->input->threads ? run->input->threads : omp_get_max_threads(),
+                                .context = &work,
+                                .work = work_shape,
+                                .take = take_shape};
+        status = ms_queue_run(&queue, err);
+    }
     free(work.outcome);
     if (status != MS_OK) {
         scene->count = scene->shape ? scene->count : 0;
@@ -413,18 +396,26 @@ void ms_scene_say_remarks(const ms_scene *scene)
     }
 }
 
+static void free_templates(ms_scene_shape *shape)
+{
+    for (size_t n = 0; shape->clump && n < shape->most; n++) {
+        ms_clump_free(&shape->clump[n]);
+    }
+    free(shape->clump);
+    free(shape->score);
+    free(shape->dice);
+    free(shape->remarks);
+}
+
 void ms_scene_free(ms_scene *scene)
 {
     for (size_t s = 0; s < scene->count; s++) {
         ms_scene_shape *shape = &scene->shape[s];
-        for (size_t n = 0; shape->clump && n < shape->most; n++) {
-            ms_clump_free(&shape->clump[n]);
-        }
-        free(shape->clump);
-        free(shape->score);
-        free(shape->dice);
-        free(shape->remarks);
+        ms_clump_free(&shape->sized);
         json_decref(shape->input);
+        if (shape->first == s) {
+            free_templates(shape);
+        }
     }
     free(scene->shape);
     *scene = (ms_scene){0};

@@ -25,30 +25,40 @@ typedef enum ms_goal_kind {
 /** What the templates have to reach, or may cost. */
 typedef struct ms_goal {
     ms_goal_kind kind;
-    double value;              /* NAN: the tolerance of each row */
+    double value;  /* NAN: the tolerance of each row, or the length */
+    double length; /* of MS_GOAL_TOLERANCE, mean distance of the surfaces in the unit of the shapes; 0: none */
     const ms_measure *measure; /* of MS_GOAL_TOLERANCE */
 } ms_goal;
 
-/** The templates of a shape. */
+/** A row of the manifest: a shape in a size. All rows of a shape share its templates, which have its own size. */
 typedef struct ms_scene_shape {
     const ms_manifest_row *row; /* borrowed */
+    size_t first;               /* row of the same shape, which owns the templates */
     size_t most;                /* spheres of the largest template */
     ms_clump *clump;            /* templates of 1 .. most spheres; empty where a search has not run them */
     ms_score *score;
     double *dice;      /* D alone; NAN likewise */
     ms_error *remarks; /* what the method remarks on each; "" without */
     json_t *input;     /* as ms_report_input_json */
-    ms_body body;      /* of the shape */
-    ms_mass mass;      /* of the template chosen, where masses were asked for (ms_scene_engines.h) */
+    double surface;    /* area / volume of the shape in its own size, where a length is tolerated */
+    double factor;     /* from its own size to that of the row; 1 without */
+    ms_body body;      /* of the shape, in the size of the row */
+    double tolerance;  /* to be reached: of the row, of the length, or of the goal */
     size_t chosen;     /* number of spheres, after ms_scene_choose */
+    ms_clump sized;    /* the template chosen, in the size of the row; likewise */
+    ms_mass mass;      /* of it, where masses were asked for (ms_scene_engines.h) */
 } ms_scene_shape;
+
+struct ms_sieve;
 
 /** A zeroed struct is empty. */
 typedef struct ms_scene {
     size_t count;
     ms_scene_shape *shape;
-    ms_allocation sum;  /* of the templates chosen; slack of MS_GOAL_MEAN and MS_GOAL_BUDGET */
-    double least_gain;  /* ms_allocate_gain */
+    ms_allocation sum;            /* of the templates chosen; slack of MS_GOAL_MEAN and MS_GOAL_BUDGET */
+    double least_gain;            /* ms_allocate_gain */
+    int has_sizes;                /* some rows have one */
+    const struct ms_sieve *sieve; /* that they are of, for the report; borrowed; NULL: none */
     int is_searched;    /* ms_scene_is_searched: most numbers of spheres were not run, and nothing is spread evenly */
     double even_each;   /* as many spheres, the same number for each particle: one more for a part of each shape's */
     ms_allocation even; /* what that comes to */
@@ -79,6 +89,7 @@ ms_status ms_scene_make(ms_scene *scene, const ms_manifest *manifest, const ms_s
  * whose numbers are runs of their own. Then one sphere less was run, too, and did not reach it. */
 int ms_scene_is_searched(const ms_goal *goal, const ms_recipe *recipe);
 
+/** The template chosen, in its size. */
 const ms_clump *ms_scene_clump(const ms_scene_shape *shape);
 const ms_score *ms_scene_score(const ms_scene_shape *shape);
 
@@ -105,6 +116,9 @@ json_t *ms_scene_record_json(const ms_recipe *recipe, size_t max_spheres, double
 
 /** Scores of the template of a shape; the caller owns it. */
 json_t *ms_scene_scores_json(const ms_scene_shape *shape);
+
+/** Mean distance of the surfaces of template and shape in its size, 2 V D / A, where a length is tolerated. */
+double ms_scene_distance(const ms_scene_shape *shape);
 
 /** Adds what ms_scene_print says, and the curves, to an object. */
 void ms_scene_add_json(json_t **json, const ms_scene *scene, const ms_goal *goal);

@@ -32,11 +32,11 @@ static ms_chart_point make_point(const ms_scene_shape *shape, size_t n, const ms
 static ms_status draw_shape(const ms_scene_shape *shape, const ms_goal *goal, const char *stem, ms_chart_point *point,
                             FILE *words, ms_error *err)
 {
-    char title[NAME_SIZE];
+    char title[NAME_SIZE], size[32] = "";
     const ms_measure *measure = find_measure(goal);
     const char *label = measure->axis ? measure->axis : measure->label;
     ms_chart_point chosen = make_point(shape, shape->chosen, measure);
-    const ms_chart_point tolerance = {.y = isnan(shape->row->tolerance) ? goal->value : shape->row->tolerance};
+    const ms_chart_point tolerance = {.y = shape->tolerance};
     size_t count = 0;
     for (size_t n = 1; n <= shape->most; n++) {
         if (shape->clump[n - 1].n_spheres > 0) { /* else it was not run */
@@ -47,7 +47,10 @@ static ms_status draw_shape(const ms_scene_shape *shape, const ms_goal *goal, co
     const ms_chart_series series[] = {{.name = "templates", .style = MS_CHART_CURVE, .count = count, .point = point},
                                       {.name = "chosen", .style = MS_CHART_CURVE, .count = 1, .point = &chosen},
                                       {.name = "tolerance", .style = MS_CHART_LEVEL, .count = 1, .point = &tolerance}};
-    snprintf(title, sizeof title, "%.200s: %.60s by number of spheres", shape->row->path, label);
+    if (!isnan(shape->row->size)) {
+        snprintf(size, sizeof size, ", size %g", shape->row->size);
+    }
+    snprintf(title, sizeof title, "%.200s%s: %.60s by number of spheres", shape->row->path, size, label);
     const ms_chart chart = {.title = title,
                             .x_label = "number of spheres",
                             .y_label = label,

@@ -61,6 +61,25 @@ static ms_status choose_together(ms_scene *scene, const ms_share *share, size_t 
     return status;
 }
 
+/* The template chosen of each row in its size. */
+static ms_status size_templates(ms_scene *scene, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t s = 0; s < scene->count; s++) {
+        ms_scene_shape *shape = &scene->shape[s];
+        const ms_clump *own = &shape->clump[shape->chosen - 1];
+        for (size_t b = 0; b < own->n_spheres && status == MS_OK; b++) {
+            ms_sphere sphere = own->sphere[b];
+            for (int k = 0; k < 3; k++) {
+                sphere.centre[k] *= shape->factor;
+            }
+            sphere.radius *= shape->factor;
+            status = ms_clump_add(&shape->sized, &sphere, err);
+        }
+    }
+    return status;
+}
+
 ms_status ms_scene_choose(ms_scene *scene, const ms_goal *goal, ms_error *err)
 {
     size_t *n = malloc(scene->count * sizeof *n);
@@ -71,6 +90,9 @@ ms_status ms_scene_choose(ms_scene *scene, const ms_goal *goal, ms_error *err)
     }
     if (status == MS_OK) {
         status = choose_together(scene, share, n, goal, err);
+    }
+    if (status == MS_OK) {
+        status = size_templates(scene, err);
     }
     if (status == MS_OK) {
         scene->sum.spheres = 0; /* a clump may have fewer than were asked for */

@@ -71,8 +71,7 @@ ms_status ms_scene_engines_correct(ms_scene *scene, const ms_scene_engines *e, s
     for (size_t s = 0; s < scene->count && e->mass.density > 0 && status == MS_OK; s++) {
         ms_scene_shape *shape = &scene->shape[s];
         ms_error cause;
-        status =
-            ms_mass_correct(&shape->mass, &shape->clump[shape->chosen - 1], &e->mass, &shape->body, max_voxels, &cause);
+        status = ms_mass_correct(&shape->mass, &shape->sized, &e->mass, &shape->body, max_voxels, &cause);
         if (status != MS_OK) {
             status = ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
         }
@@ -96,13 +95,23 @@ static ms_status add_kind(ms_packing *packing, const ms_scene_shape *shape, cons
 {
     ms_template made;
     ms_status status = ms_template_make(&made, ms_scene_clump(shape), &shape->mass.particle, err);
-    ms_placed *kind = &packing->placed[packing->count++];
-    *kind = (ms_placed){.name = name_of(file), .scale = 1, .count = (size_t)shape->row->particles};
+    ms_placed *kind = &packing->placed[packing->count];
+    *kind = (ms_placed){
+        .number = packing->count, .name = name_of(file), .scale = 1, .count = (size_t)shape->row->particles};
+    packing->count++;
     if (status == MS_OK) { /* handed on */
         kind->clump = made.clump;
         kind->particle = made.particle;
     }
     return status == MS_OK && !kind->name ? ms_fail(err, MS_ERR_NOMEM, "no memory for the kinds of particles") : status;
+}
+
+/* The largest first, which find no room among small ones; what is alike stays in its order. */
+static int order_of_kinds(const void *a, const void *b)
+{
+    const ms_placed *x = a, *y = b;
+    const double of_x = ms_template_reach(&x->clump), of_y = ms_template_reach(&y->clump);
+    return of_x > of_y ? -1 : of_x < of_y ? 1 : (x->number > y->number) - (x->number < y->number);
 }
 
 /* @param f number of the format among the files of each shape */
@@ -200,6 +209,7 @@ ms_status ms_scene_engines_write(const ms_scene *scene, const ms_scene_engines *
         }
         status = fill_packing(&packing, scene, e, outputs, f, err);
         if (status == MS_OK) {
+            qsort(packing.placed, packing.count, sizeof *packing.placed, order_of_kinds);
             status = write_script(&packing, folder, format, words, err);
         }
         ms_packing_free(&packing);

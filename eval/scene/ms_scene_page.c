@@ -1,5 +1,6 @@
 #include "ms_scene_page.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/ms_escape.h"
@@ -9,8 +10,8 @@
 #include "view/ms_view_report.h"
 #include "view/ms_view_scene.h"
 
-static const char *const COLUMNS[] = {"shape",       "particles",    "n",    "dice", "coverage", "inertia",
-                                      "last_sphere", "least_radius", "cause"};
+static const char *const COLUMNS[] = {"shape",       "particles",    "n",     "dice", "coverage", "inertia",
+                                      "last_sphere", "least_radius", "cause", "size"};
 
 enum { N_COLUMNS = sizeof COLUMNS / sizeof *COLUMNS };
 
@@ -27,6 +28,7 @@ static void print_row(FILE *stream, const ms_scene_shape *shape)
     ms_csv_put_number(stream, ms_clump_smallest_radius(ms_scene_clump(shape)));
     fputc(',', stream);
     ms_escape_csv(stream, shape->remarks[shape->chosen - 1].text);
+    ms_csv_put_number(stream, shape->row->size);
 }
 
 /* The caller frees it; NULL without memory. @param shape NULL: the sums */
@@ -69,7 +71,7 @@ static ms_status begin_page(FILE *stream, const ms_scene_page *page, char **row,
                              .column = COLUMNS,
                              .shown = shown,
                              .n_columns = N_COLUMNS,
-                             .n_shown = N_COLUMNS,
+                             .n_shown = page->scene->has_sizes ? N_COLUMNS : N_COLUMNS - 1,
                              .csv = &csv,
                              .scene = number};
     for (size_t c = 0; c < N_COLUMNS; c++) {
@@ -97,6 +99,20 @@ static ms_status begin_page(FILE *stream, const ms_scene_page *page, char **row,
     return status;
 }
 
+/* The shape in the size of its clump. */
+static void size_shown(ms_target *shown, ms_input *input, double factor)
+{
+    for (size_t v = 0; v < input->mesh.n_vertices; v++) {
+        for (int k = 0; k < 3; k++) {
+            input->mesh.vertex[v][k] *= factor;
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        shown->grid.origin[k] *= factor;
+    }
+    shown->grid.h *= factor;
+}
+
 static ms_status put_shape(FILE *stream, const ms_scene_page *page, const ms_scene_shape *shape, ms_error *err)
 {
     char name[512];
@@ -109,8 +125,12 @@ static ms_status put_shape(FILE *stream, const ms_scene_page *page, const ms_sce
     }
     status = ms_input_show(&target, &input, page->run->input->label, err);
     if (status == MS_OK) {
-        snprintf(name, sizeof name, "%.400s, %.40s, %zu spheres", shape->row->path, recipe->generator->name,
-                 ms_scene_clump(shape)->n_spheres);
+        const int length = snprintf(name, sizeof name, "%.400s, %.40s, %zu spheres", shape->row->path,
+                                    recipe->generator->name, ms_scene_clump(shape)->n_spheres);
+        if (!isnan(shape->row->size)) {
+            snprintf(name + length, sizeof name - (size_t)length, ", size %g", shape->row->size);
+            size_shown(&target, &input, shape->factor);
+        }
         const ms_view_scene scene = {.name = name,
                                      .clump = ms_scene_clump(shape),
                                      .target = &target,

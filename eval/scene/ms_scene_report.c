@@ -5,6 +5,7 @@
 #include "cli/ms_record.h"
 #include "cli/ms_report.h"
 #include "ms_scene.h"
+#include "ms_sieve.h"
 
 static void print_goal(FILE *stream, const ms_goal *goal)
 {
@@ -14,6 +15,8 @@ static void print_goal(FILE *stream, const ms_goal *goal)
         fprintf(stream, "a mean D of %g\n", goal->value);
     } else if (goal->kind == MS_GOAL_KNEE) {
         fprintf(stream, "the knee where a sphere takes away less than %g of D\n", goal->value);
+    } else if (goal->length > 0) {
+        fprintf(stream, "a mean distance of %g between the surfaces of template and particle\n", goal->length);
     } else if (isnan(goal->value)) {
         fprintf(stream, "D as tolerated of each shape\n");
     } else {
@@ -21,16 +24,35 @@ static void print_goal(FILE *stream, const ms_goal *goal)
     }
 }
 
+/* What is there of some scenes alone. */
+static void print_more(FILE *stream, const ms_scene *scene, const ms_goal *goal, const ms_scene_shape *shape)
+{
+    if (scene->has_sizes && !shape) {
+        fprintf(stream, " %9s", "size");
+    } else if (scene->has_sizes && isnan(shape->row->size)) {
+        fprintf(stream, " %9s", "its own");
+    } else if (scene->has_sizes) {
+        fprintf(stream, " %9.4g", shape->row->size);
+    }
+    if (goal->length > 0 && !shape) {
+        fprintf(stream, " %9s", "distance");
+    } else if (goal->length > 0) {
+        fprintf(stream, " %9.4g", ms_scene_distance(shape));
+    }
+    fputc('\n', stream);
+}
+
 /* A line for each shape. */
-static void print_shapes(FILE *stream, const ms_scene *scene)
+static void print_shapes(FILE *stream, const ms_scene *scene, const ms_goal *goal)
 {
     int width = 5;
     for (size_t s = 0; s < scene->count; s++) {
         const int length = (int)strlen(scene->shape[s].row->path);
         width = length > width ? length : width;
     }
-    fprintf(stream, "  %-*s %11s %8s %8s %9s %8s %11s %9s\n", width, "shape", "particles", "spheres", "D", "coverage",
+    fprintf(stream, "  %-*s %11s %8s %8s %9s %8s %11s %9s", width, "shape", "particles", "spheres", "D", "coverage",
             "inertia", "last sphere", "least r");
+    print_more(stream, scene, goal, NULL);
     for (size_t s = 0; s < scene->count; s++) {
         const ms_scene_shape *shape = &scene->shape[s];
         const ms_score *score = ms_scene_score(shape);
@@ -43,7 +65,20 @@ static void print_shapes(FILE *stream, const ms_scene *scene)
         } else {
             fprintf(stream, "%+11.5f", -gain);
         }
-        fprintf(stream, " %9.4g\n", ms_clump_smallest_radius(ms_scene_clump(shape)));
+        fprintf(stream, " %9.4g", ms_clump_smallest_radius(ms_scene_clump(shape)));
+        print_more(stream, scene, goal, shape);
+    }
+}
+
+/* How well whole numbers follow the curve. */
+static void print_sieve(FILE *stream, const ms_sieve *sieve)
+{
+    fprintf(stream, "  %-26s %9s %11s %8s %8s %10s\n", "sieve curve, by mass", "size", "particles", "asked", "have",
+            "deviation");
+    for (size_t c = 0; c < sieve->count; c++) {
+        const ms_sieve_class *of = &sieve->of[c];
+        fprintf(stream, "  %-26s %9.4g %11llu %7.3f%% %7.3f%% %+9.3f%%\n", "", of->size, (unsigned long long)of->count,
+                100 * of->share, 100 * of->mass, 100 * (of->mass - of->share));
     }
 }
 
@@ -73,12 +108,15 @@ void ms_scene_print_sums(FILE *stream, const ms_scene *scene, const ms_goal *goa
     print_slack(stream, sum, goal->kind);
     fprintf(stream, "  %-26s %.4g in %s; by convention it limits the time step\n", "smallest radius",
             ms_clump_smallest_radius(ms_scene_clump(smallest)), smallest->row->path);
+    if (scene->sieve) {
+        print_sieve(stream, scene->sieve);
+    }
 }
 
 void ms_scene_print(FILE *stream, const ms_scene *scene, const ms_goal *goal)
 {
     print_goal(stream, goal);
-    print_shapes(stream, scene);
+    print_shapes(stream, scene, goal);
     ms_scene_print_sums(stream, scene, goal);
 }
 
@@ -100,23 +138,43 @@ static json_t *goal_json(const ms_goal *goal)
                                         [MS_GOAL_MEAN] = "mean_dice",
                                         [MS_GOAL_KNEE] = "knee",
                                         [MS_GOAL_TOLERANCE] = "tolerance"};
-    json_t *json = json_pack("{s:o}", NAMES[goal->kind], ms_report_number(goal->value));
+    json_t *json = goal->length > 0 ? json_pack("{s:f}", "tolerance_length", goal->length)
+                                    : json_pack("{s:o}", NAMES[goal->kind], ms_report_number(goal->value));
     if (goal->kind == MS_GOAL_TOLERANCE) {
         ms_json_object_set(&json, "measure", json_string(goal->measure->name));
     }
     return json;
 }
 
-static json_t *shape_json(const ms_scene_shape *shape)
+static json_t *shape_json(const ms_scene *scene, const ms_goal *goal, const ms_scene_shape *shape)
 {
     json_t *curve = json_array();
     for (size_t n = 0; n < shape->most; n++) {
         ms_json_object_append(&curve, ms_report_number(shape->dice[n]));
     }
-    return json_pack("{s:I,s:o,s:o,s:f,s:o,s:O,s:o}", "particles", (json_int_t)shape->row->particles, "tolerance",
-                     ms_report_number(shape->row->tolerance), "gain", ms_report_number(ms_scene_gain(shape)),
-                     "smallest_radius", ms_clump_smallest_radius(ms_scene_clump(shape)), "scores",
-                     ms_scene_scores_json(shape), "input", shape->input, "curve", curve);
+    json_t *json = json_pack("{s:I,s:o,s:o,s:f,s:o,s:O,s:o}", "particles", (json_int_t)shape->row->particles,
+                             "tolerance", ms_report_number(goal->length > 0 ? shape->tolerance : shape->row->tolerance),
+                             "gain", ms_report_number(ms_scene_gain(shape)), "smallest_radius",
+                             ms_clump_smallest_radius(ms_scene_clump(shape)), "scores", ms_scene_scores_json(shape),
+                             "input", shape->input, "curve", curve);
+    if (scene->has_sizes) {
+        ms_json_object_set(&json, "size", ms_report_number(shape->row->size));
+    }
+    if (goal->length > 0) {
+        ms_json_object_set(&json, "mean_distance", ms_report_number(ms_scene_distance(shape)));
+    }
+    return json;
+}
+
+static json_t *sieve_json(const ms_sieve *sieve)
+{
+    json_t *classes = json_array();
+    for (size_t c = 0; c < sieve->count; c++) {
+        const ms_sieve_class *of = &sieve->of[c];
+        ms_json_object_append(&classes, json_pack("{s:f,s:I,s:f,s:f}", "size", of->size, "particles",
+                                                  (json_int_t)of->count, "asked", of->share, "have", of->mass));
+    }
+    return classes;
 }
 
 void ms_scene_add_json(json_t **json, const ms_scene *scene, const ms_goal *goal)
@@ -126,7 +184,7 @@ void ms_scene_add_json(json_t **json, const ms_scene *scene, const ms_goal *goal
     const int together = goal->kind == MS_GOAL_BUDGET || goal->kind == MS_GOAL_MEAN;
     json_t *shapes = json_array();
     for (size_t s = 0; s < scene->count; s++) {
-        ms_json_object_append(&shapes, shape_json(&scene->shape[s]));
+        ms_json_object_append(&shapes, shape_json(scene, goal, &scene->shape[s]));
     }
     ms_json_object_set(json, "goal", goal_json(goal));
     ms_json_object_set(json, "particles", json_integer((json_int_t)sum->particles));
@@ -141,5 +199,8 @@ void ms_scene_add_json(json_t **json, const ms_scene *scene, const ms_goal *goal
     ms_json_object_set(json, "smallest",
                        json_pack("{s:f,s:o}", "radius", ms_clump_smallest_radius(ms_scene_clump(smallest)), "shape",
                                  ms_report_text(smallest->row->path)));
+    if (scene->sieve) {
+        ms_json_object_set(json, "sieve", sieve_json(scene->sieve));
+    }
     ms_json_object_set(json, "shapes", shapes);
 }

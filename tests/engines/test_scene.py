@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Scripts of a whole scene, in the engines: all particles of the manifest, with their masses, come to rest in the
-vessel.
+"""Scripts of a whole scene, in the engines: all particles of the manifest, with masses and sizes, come to rest in it.
 
     MSKIT=build/eval/mskit tests/engines/test_scene.py [-v]
 """
@@ -12,40 +11,49 @@ import unittest
 import test_engines as engines
 from test_engines import numbers
 
-COUNTS = {"grain": 4, "tablet": 3, "ring": 3}
 SHAPES = {"grain": ("grain",), "tablet": ("tablet", "band_radius=1.2", "band_height=0.8", "cap_height=0.3"),
-          "ring": ("torus", "R=1", "r=0.6")}
+          "ring": ("torus", "R=1", "r=0.6"), "ball": ("ball",)}
 VESSELS = {"box": ("--box", "8,7"), "cylinder": ("--cylinder", "8")}
 SIZE = {"box": (4e-3, 3.5e-3), "cylinder": (4e-3, 4e-3)}  # half its width
 FORMATS = ("--format", "liggghts", "--format", "lammps", "--format", "yade")
+SHAPES_ALONE = {"grain": 4, "tablet": 3, "ring": 3}
+SIZES = {"grain-2.2": 2, "grain-1.1": 16, "ball-1.5": 3}
 
 
 class Scene(engines.Clump):
-    """Three shapes, with scripts for a box and for a cylinder."""
+    """Particles by the names of their templates, SHAPE or SHAPE-SIZE, with a script for each vessel."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, counts, vessels):
         self.top = self.folder = folder
         for name, shape in SHAPES.items():
             self.mskit("shape", *shape, "-o", name + ".stl")
-        self.write("scene.csv", "shape,count\n" + "".join(f"{name}.stl,{n}\n" for name, n in COUNTS.items()))
-        for vessel, flags in VESSELS.items():
+        rows = [(*(name.split("-") + [""])[:2], count) for name, count in counts.items()]
+        self.write("scene.csv", "shape,count,size\n" + "".join(f"{name}.stl,{n},{size}\n" for name, size, n in rows))
+        for vessel in vessels:
             self.mskit("scene", "scene.csv", "--tolerance", "dice=0.15", "-g", "variational", "--cells", "30",
-                       "--density", str(engines.DENSITY), "--unit", "mm", "--carriers", *flags, *FORMATS, "-o", vessel)
-        self.mass, self.spheres = 0, 0
-        for name, count in COUNTS.items():
-            script = self.script(f"box/{name}.liggghts.in")
-            self.mass += count * float(re.search(r" mass (\d\S+)", script).group(1))
-            self.spheres += count * int(re.search(r" nspheres (\d+)", script).group(1))
+                       "--density", str(engines.DENSITY), "--unit", "mm", "--carriers", *VESSELS[vessel], *FORMATS, "-o", vessel)
+        self.particles = sum(counts.values())
+        self.mass = self.spheres = self.single = 0
+        for name, count in counts.items():
+            spheres = sum(not line.startswith("#") for line in self.script(f"{vessels[0]}/{name}.yade").splitlines())
+            mass = re.search(r" mass (\d\S+)", self.script(f"{vessels[0]}/{name}.liggghts.in")).group(1)
+            self.mass += count * float(mass)
+            self.spheres += count * spheres
+            self.single += count * (spheres == 1)
 
 
 class Engine(unittest.TestCase):
     program = None
-    scene = None  # made once, for all engines
+    made = None  # once, for all engines
 
     @classmethod
     def setUpClass(cls):
         engines.need_program(cls.program)
-        Engine.scene = Engine.scene or Scene(engines.make_folder())
+        Engine.made = Engine.made or [Scene(engines.make_folder(), SHAPES_ALONE, list(VESSELS)),
+                                      Scene(engines.make_folder(), SIZES, ["box"])]
+
+    def setUp(self):
+        self.scene = self.made[0]
 
     def run_script(self, vessel, *command):
         """What it says at the end, {word: numbers}, and the total energies from the first to the last."""
@@ -59,8 +67,7 @@ class Engine(unittest.TestCase):
 
     def check(self, vessel, said, energies, spheres):
         """spheres: x, y, z, r of the dump."""
-        total = sum(COUNTS.values())
-        self.assertEqual(said["particles"], [total, total])
+        self.assertEqual(said["particles"], [self.scene.particles] * 2)
         self.assertAlmostEqual(said["mass"][0] / self.scene.mass, 1, delta=1e-9)
         self.assertLess(said["at"][0], 1e-6)  # m g d
         self.assertGreater(len(energies), 20)
@@ -98,9 +105,11 @@ class Engine(unittest.TestCase):
         (rows,) = engines.read_dumps(self.scene.path(name)).values()
         return list(rows.values())
 
-    def each_vessel(self, check):
-        for vessel in VESSELS:
-            with self.subTest(vessel=vessel):
+    def each_scene(self, check):
+        """Three shapes in both vessels; shapes in sizes, one of them of a single sphere."""
+        for number, vessel in ((0, "box"), (0, "cylinder"), (1, "box")):
+            self.scene = self.made[number]
+            with self.subTest(vessel=vessel, number=number):
                 check(vessel)
 
 
@@ -110,10 +119,13 @@ class Liggghts(Engine):
     def test_rest(self):
         def check(vessel):
             said, energies = self.run_script(vessel, "liggghts", "-in", "scene.liggghts.in")
-            self.check(vessel, said, energies, [row[1:] for row in self.rows("scene.liggghts.dump")])
-            self.assertEqual(self.check_picture("scene.liggghts_*.vtk"), self.scene.spheres)
+            rows = [row[1:] for row in self.rows("scene.liggghts.dump")]
+            centres = {tuple(row[:3]): row for row in sorted(rows, key=lambda row: row[3])}  # the outer one of two
+            self.check(vessel, said, energies, list(centres.values()))
+            self.assertEqual(self.check_picture("scene.liggghts_*.vtk"), self.scene.spheres + self.scene.single)
 
-        self.each_vessel(check)
+        self.each_scene(check)
+        self.assertGreater(self.scene.single, 0)
 
     def test_no_room(self):
         """A script that cannot insert all particles says so and ends."""
@@ -121,7 +133,6 @@ class Liggghts(Engine):
         crowded = re.sub(r"particles_in_region 10 ", "particles_in_region 400 ", self.scene.script("scene.liggghts.in"))
         self.scene.write("crowded.in", crowded)
         self.fail_script("liggghts", "-in", "crowded.in")
-
 
     def test_spin(self):
         """Drag on the centres of two spheres ends no spin about their line, which counts as rest."""
@@ -144,7 +155,7 @@ class Lammps(Engine):
             self.check(vessel, said, energies, spheres)
             self.assertGreaterEqual(self.check_picture("scene.lammps.vtk"), self.scene.spheres)  # and the carriers
 
-        self.each_vessel(check)
+        self.each_scene(check)
 
     def test_no_room(self):
         self.scene.folder = os.path.join(self.scene.top, "box")
@@ -176,7 +187,12 @@ class Yade(Engine):
             self.check(vessel, said, energies, spheres)
             self.assertEqual(self.check_picture("scene.yade-*.vtk"), self.scene.spheres)
 
-        self.each_vessel(check)
+        self.each_scene(check)
+
+    def test_no_room(self):
+        self.scene.folder = os.path.join(self.scene.top, "box")
+        self.scene.write("crowded.py", re.sub(r"(?m)^    \(4, ", "    (400, ", self.scene.script("scene.yade.py")))
+        self.fail_script("yade", "-x", "-n", "-j1", "crowded.py")
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 /* Readers, as ms_format.read. In the files of YADE a fifth column is the id of a clump. */
 ms_status ms_xyzr_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
 ms_status ms_xyzr_read_yade(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
+ms_status ms_liggghts_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
 ms_status ms_json_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
 ms_status ms_lammps_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err);
 

@@ -1,5 +1,6 @@
 /* LIGGGHTS: a sphere file and a script with its particletemplate/multisphere. */
 #include <math.h>
+#include <string.h>
 
 #include "base/ms_escape.h"
 #include "ms_fields.h"
@@ -10,12 +11,50 @@
 const char ms_liggghts_style[] = "atom_style granular\natom_modify map array\ncommunicate single vel yes\n"
                                  "boundary f f f\nnewton off\nunits si\n";
 
+/* Of the one sphere, in it: what touches it has passed through half of that one. */
+static ms_sphere inner_of(const ms_sphere *sphere)
+{
+    ms_sphere inner = *sphere;
+    inner.radius /= 2;
+    return inner;
+}
+
+size_t ms_liggghts_spheres(const ms_clump *clump)
+{
+    return clump->n_spheres == 1 ? 2 : clump->n_spheres;
+}
+
+double ms_liggghts_cubes(const ms_clump *clump)
+{
+    double sum = clump->n_spheres == 1 ? pow(inner_of(&clump->sphere[0]).radius, 3) : 0;
+    for (size_t s = 0; s < clump->n_spheres; s++) {
+        sum += pow(clump->sphere[s].radius, 3);
+    }
+    return sum;
+}
+
 /* A comment or an empty line in it crashes LIGGGHTS. */
 ms_status ms_liggghts_write(FILE *stream, const ms_content *content, ms_error *err)
 {
+    const ms_clump *clump = content->clump;
     (void)err;
-    ms_fields_spheres(stream, content->clump, " ", "\n");
+    ms_fields_spheres(stream, clump, " ", "\n");
+    if (clump->n_spheres == 1) {
+        ms_sphere inner = inner_of(&clump->sphere[0]);
+        ms_fields_spheres(stream, &(ms_clump){.n_spheres = 1, .sphere = &inner}, " ", "\n");
+    }
     return MS_OK;
+}
+
+/* Without the sphere that LIGGGHTS alone needs. */
+ms_status ms_liggghts_read(ms_clump *clump, ms_particle *particle, ms_bytes *bytes, const char *name, ms_error *err)
+{
+    const ms_status status = ms_xyzr_read(clump, particle, bytes, name, err);
+    if (status == MS_OK && clump->n_spheres == 2 && clump->n_carriers == 0 && !clump->mass) {
+        const ms_sphere inner = inner_of(&clump->sphere[0]);
+        clump->n_spheres = memcmp(&inner, &clump->sphere[1], sizeof inner) == 0 ? 1 : 2;
+    }
+    return status;
 }
 
 /* Where particles are inserted: above the floor, within the walls, the higher the more there are. */
@@ -75,7 +114,7 @@ static void write_liggghts_particle(FILE *stream, const ms_content *content)
     fprintf(stream,
             "fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 "
             "density constant %s nspheres %zu ntry 1000 spheres file ",
-            ms_script_number(p->density, &a), content->clump->n_spheres);
+            ms_script_number(p->density, &a), ms_liggghts_spheres(content->clump));
     ms_escape_lammps(stream, content->name);
     fputs(" scale 1.0 type 1", stream);
     write_liggghts_mass(stream, p);
@@ -125,7 +164,7 @@ void ms_liggghts_template(FILE *stream, const ms_placed *placed, size_t k, unsig
     fprintf(stream,
             "fix t%zu all particletemplate/multisphere %u atom_type 1 volume_limit 1e-300 density constant %s "
             "nspheres %zu ntry 1000 spheres file ",
-            k, seed, ms_script_number(placed->particle.density, &a), placed->clump.n_spheres);
+            k, seed, ms_script_number(placed->particle.density, &a), ms_liggghts_spheres(&placed->clump));
     ms_escape_lammps(stream, file);
     fprintf(stream, " scale %s type %zu", ms_script_number(placed->scale, &b), k);
     write_liggghts_mass(stream, &placed->particle);

@@ -1,4 +1,6 @@
 /* LIGGGHTS: a script that lets the particles of a scene come to rest. */
+#include <math.h>
+
 #include "ms_fields.h"
 #include "ms_formats.h"
 #include "ms_liggghts.h"
@@ -77,20 +79,15 @@ static void write_liggghts_shares(FILE *stream, const ms_packing *scene)
     double last = 0;
     for (size_t k = 0; k < scene->count; k++) {
         const ms_placed *kind = &scene->placed[k];
-        double cubes = 0;
         ms_number per_cube;
-        for (size_t b = 0; b < kind->clump.n_spheres; b++) {
-            const double r = kind->scale * kind->clump.sphere[b].radius;
-            cubes += r * r * r;
-        }
-        ms_script_number(1 / cubes, &per_cube);
+        ms_script_number(1 / (pow(kind->scale, 3) * ms_liggghts_cubes(&kind->clump)), &per_cube);
         if (k == 0) {
             fprintf(stream, "variable share1 atom %s\n", per_cube.text);
         } else {
             fprintf(stream, "variable share%zu atom \"v_share%zu*(id<=%.0f)+%s*(id>%.0f)\"\n", k + 1, k, last,
                     per_cube.text, last);
         }
-        last += (double)(kind->count * kind->clump.n_spheres);
+        last += (double)(kind->count * ms_liggghts_spheres(&kind->clump));
     }
     fprintf(stream, "variable own atom \"c_sphere[2]*c_sphere[1]^3*v_share%zu\"\n", scene->count);
 }
@@ -111,11 +108,21 @@ static const char MEASURES[] =
     "variable within atom v_own*(z>0.25*v_height)*(z<0.75*v_height)\n"
     "compute within all reduce sum v_within\n";
 
+/* As LIGGGHTS counts. */
+static double count_atoms(const ms_packing *scene)
+{
+    double atoms = 0;
+    for (size_t k = 0; k < scene->count; k++) {
+        atoms += (double)(scene->placed[k].count * ms_liggghts_spheres(&scene->placed[k].clump));
+    }
+    return atoms;
+}
+
 /* After the first step, when there are particles: before, sums over them are 0. */
 static void write_liggghts_measures(FILE *stream, const ms_packing *scene, const ms_script_scene *s)
 {
     fputs("run 1\n", stream);
-    ms_script_scene_inserted(stream, s->spheres);
+    ms_script_scene_inserted(stream, count_atoms(scene));
     fputs("compute sphere all property/atom radius mass\n", stream);
     write_liggghts_shares(stream, scene);
     fputs(MEASURES, stream);
@@ -154,6 +161,6 @@ ms_status ms_liggghts_scene(FILE *stream, const ms_packing *scene, const char *n
     write_liggghts_particles(stream, scene);
     write_liggghts_measures(stream, scene, &s);
     write_liggghts_rest(stream, &s);
-    ms_script_scene_results(stream, &s, s.spheres);
+    ms_script_scene_results(stream, &s, count_atoms(scene));
     return MS_OK;
 }

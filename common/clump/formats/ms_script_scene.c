@@ -79,14 +79,16 @@ static double area_of_centres(const ms_script_scene *s)
     return s->is_round ? PI * a * a : 4 * a * b;
 }
 
-/* Of the balls in which particles keep others away. */
+/* Of the balls in which particles keep others away, as far as they lie in the space of the centres: in a vessel hardly
+ * wider than a particle that is a slice as high as the ball. */
 static double volume_of_balls(const ms_script_scene *s, const ms_packing *scene, int is_alike)
 {
     double sum = 0;
     for (size_t k = 0; k < scene->count; k++) {
         const ms_placed *kind = &scene->placed[k];
         const double more = is_alike ? (s->most - largest_sphere(kind)) / 2 : 0;
-        sum += (double)kind->count * 4 / 3 * PI * pow(kind->scale * ms_template_reach(&kind->clump) + more, 3);
+        const double radius = kind->scale * ms_template_reach(&kind->clump) + more;
+        sum += (double)kind->count * fmin(4 * PI / 3 * pow(radius, 3), 2 * radius * area_of_centres(s));
     }
     return sum;
 }

@@ -16,8 +16,7 @@ const ms_format ms_formats[] = {
      .part = {{"", ms_json_write}}},
     {"vtk", "vtk", "points with radius, for ParaView", MS_NEED_SPHERES, NULL, .part = {{"", ms_vtk_write}}},
     {"liggghts", "liggghts", "sphere file, and a script with its particletemplate/multisphere", MS_NEED_PARTICLE,
-     ms_xyzr_read, .part = {{"", ms_liggghts_write}, {".in", ms_liggghts_script}},
-     .not_one = "LIGGGHTS takes no multisphere of one sphere; use its particletemplate/sphere, or more spheres",
+     ms_liggghts_read, .part = {{"", ms_liggghts_write}, {".in", ms_liggghts_script}},
      .packing = {{"", ms_liggghts_packing}, {".in", ms_liggghts_settle}}, .mixture = {{".in", ms_liggghts_mixture}},
      .scene = {".in", ms_liggghts_scene}},
     {"lammps", "lammps", "molecule file for fix rigid/small, and a script", MS_NEED_MASSES, ms_lammps_read,
@@ -149,9 +148,6 @@ static ms_status write_template(const ms_content *content, const char *path, con
 
 ms_status ms_write_check(const ms_content *content, const ms_format *format, ms_error *err)
 {
-    if (format->not_one && content->clump->n_spheres < 2) {
-        return ms_fail(err, MS_ERR_ARG, "%s", format->not_one);
-    }
     if (format->need == MS_NEED_SPHERES) {
         return MS_OK;
     }

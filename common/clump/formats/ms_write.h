@@ -61,7 +61,6 @@ typedef struct ms_format {
 
     ms_part part[MS_FORMAT_MAX_PARTS]; /* ends with a NULL suffix */
 
-    const char *not_one; /* why the engine takes no clump of one sphere; NULL: it does */
     ms_sum sum;
     const char *sums; /* when it does, in words */
 
@@ -83,7 +82,7 @@ MS_API int ms_write_format_is_folder(const ms_format *format);
 
 /**
  * Can the format hold this clump?
- * @return MS_OK; MS_ERR_ARG where it needs what is not known, or takes no clump of one sphere
+ * @return MS_OK; MS_ERR_ARG where it needs what is not known
  */
 MS_API ms_status ms_write_check(const ms_content *content, const ms_format *format, ms_error *err);
 

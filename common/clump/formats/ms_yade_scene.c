@@ -8,7 +8,8 @@
 static void write_yade_settings(FILE *stream, const ms_script_scene *s)
 {
     ms_number young, step, fall, rest;
-    fputs("import math\nimport random\nfrom yade import export, geom, ymport\n\n", stream);
+    fputs("import itertools\nimport math\nimport random\nimport sys\nfrom yade import export, geom, ymport\n\n",
+          stream);
     fprintf(stream, "young, poisson, restitution, friction = %s, 0.3, 0.5, 0.5\n", ms_script_number(s->young, &young));
     fprintf(stream, "step = %s * math.sqrt(%s / young)\n", ms_script_number(s->step, &step), young.text);
     fprintf(stream, "part = math.ceil(%s / 10 / step)  # steps, a tenth of the time of the fall\n",
@@ -23,7 +24,7 @@ static void write_yade_settings(FILE *stream, const ms_script_scene *s)
 
 static void write_yade_kinds(FILE *stream, const ms_packing *scene)
 {
-    fputs("kinds = [  # particles, template, scale, mass, moments of inertia\n", stream);
+    fputs("kinds = [  # particles, template, scale, mass, moments of inertia, reach; the largest first\n", stream);
     for (size_t k = 0; k < scene->count; k++) {
         const ms_placed *kind = &scene->placed[k];
         const ms_particle *p = &kind->particle;
@@ -35,32 +36,42 @@ static void write_yade_kinds(FILE *stream, const ms_packing *scene)
         ms_escape_python(stream, file);
         fprintf(stream, ", %s, %s, Vector3(", ms_script_number(kind->scale, &scale), ms_script_number(p->mass, &mass));
         ms_fields_numbers(stream, moment, 3, ", ");
-        fputs(")),\n", stream);
+        fprintf(stream, "), %s),\n", ms_script_number(kind->scale * ms_template_reach(&kind->clump), &scale));
     }
     fputs("]\n", stream);
 }
 
-/* Layers of a square lattice, each place with room for the largest particle however it is turned. */
+/* Balls around the particles are put where there is room; what may be near stands in the cells around. */
 static void write_yade_column(FILE *stream, const ms_script_scene *s)
 {
-    ms_number reach, x, y;
-    fprintf(stream, "reach, half_x, half_y = %s, %s, %s  # of the largest particle; of the vessel\n",
-            ms_script_number(s->reach, &reach), ms_script_number(s->half[0], &x), ms_script_number(s->half[1], &y));
-    fputs("cell = 2.2 * reach\n"
-          "along = [[(i - (n - 1) / 2) * cell for i in range(n)]\n"
-          "         for n in (max(1, int(2 * half / cell)) for half in (half_x, half_y))]\n"
-          "layer = [(x, y) for x in along[0] for y in along[1]",
+    ms_number x, y, low, top;
+    fprintf(stream, "half_x, half_y, low, top = %s, %s, %s, %s  # of the vessel; of the column\n",
+            ms_script_number(s->half[0], &x), ms_script_number(s->half[1], &y), ms_script_number(s->low, &low),
+            ms_script_number(s->top, &top));
+    fputs("cell = 2 * max(kind[-1] for kind in kinds)\n"
+          "balls = {}  # by cells\n\n\n"
+          "def find_room(reach):\n"
+          "    for attempt in range(10000):\n"
+          "        x, y = (random.uniform(-1, 1) * (half - reach) for half in (half_x, half_y))\n"
+          "        at = (x, y, random.uniform(low + reach, top - reach))\n"
+          "        home = tuple(int(c // cell) for c in at)\n"
+          "        around = itertools.product(*((c - 1, c, c + 1) for c in home))\n",
           stream);
-    fputs(s->is_round ? " if math.hypot(x, y) <= half_x - reach] or [(0, 0)]\n" : "]\n", stream);
-    fputs("random.seed(1)\n"
-          "order = [kind for kind in kinds for i in range(kind[0])]\n"
-          "random.shuffle(order)\n"
+    fprintf(
+        stream,
+        "        if %sall(math.dist(at, other) > reach + its for c in around for other, its in balls.get(c, ())):\n",
+        s->is_round ? "math.hypot(x, y) < half_x - reach and " : "");
+    fputs("            balls.setdefault(home, []).append((at, reach))\n"
+          "            return Vector3(*at)\n"
+          "    print('scene: not all particles have room; make the column higher')\n"
+          "    sys.exit(1)\n\n\n"
+          "random.seed(1)\n"
           "clumps = []\n"
-          "for i, (_, file, scale, mass, inertia) in enumerate(order):\n"
-          "    axis = Vector3(*[random.gauss(0, 1) for k in range(3)]).normalized()\n"
-          "    turn = Quaternion(axis, random.uniform(0, 2 * math.pi))\n"
-          "    at = Vector3(*layer[i % len(layer)], 1.5 * reach + i // len(layer) * cell)\n"
-          "    clumps.append(particle(file, scale, mass, inertia, at, turn))\n",
+          "for count, file, scale, mass, inertia, reach in kinds:\n"
+          "    for i in range(count):\n"
+          "        axis = Vector3(*[random.gauss(0, 1) for k in range(3)]).normalized()\n"
+          "        turn = Quaternion(axis, random.uniform(0, 2 * math.pi))\n"
+          "        clumps.append(particle(file, scale, mass, inertia, find_room(reach), turn))\n",
           stream);
 }
 
@@ -69,8 +80,7 @@ static void write_yade_vessel(FILE *stream, const ms_script_scene *s)
 {
     fputs("O.bodies.append(wall(0, axis=2, material='matter'))\n", stream);
     if (s->is_round) {
-        fputs("top = 1.5 * reach + (len(clumps) // len(layer) + 2) * cell\n"
-              "edges = 72\n"
+        fputs("edges = 72\n"
               "corner = half_x * math.sqrt(2 * math.pi / edges / math.sin(2 * math.pi / edges))\n"
               "O.bodies.append(geom.facetCylinder((0, 0, top / 2), corner, top, segmentsNumber=edges, wallMask=4,\n"
               "                                   material='matter'))\n",

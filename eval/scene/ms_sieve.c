@@ -1,0 +1,255 @@
+#include "ms_sieve.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/ms_text.h"
+#include "ms_sieve_counts.h"
+
+/* Of a size, so that its cube is a number. */
+static const double LARGEST = 1e50, SMALLEST = 1e-50;
+
+/* The rows of the file. */
+typedef struct sieve_curve {
+    size_t count;
+    double size[MS_SIEVE_MAX_ROWS], passing[MS_SIEVE_MAX_ROWS];
+} sieve_curve;
+
+/* The two words of a line around its comma. */
+static int split(ms_word field[2], const ms_word *line)
+{
+    const char *end = line->start + line->length, *comma = memchr(line->start, ',', line->length);
+    if (!comma || memchr(comma + 1, ',', (size_t)(end - comma - 1))) {
+        return 0;
+    }
+    field[0] = (ms_word){line->start, (size_t)(comma - line->start)};
+    field[1] = (ms_word){comma + 1, (size_t)(end - comma - 1)};
+    for (int f = 0; f < 2; f++) {
+        while (field[f].length > 0 && field[f].start[0] == ' ') {
+            field[f].start++;
+            field[f].length--;
+        }
+        while (field[f].length > 0 && field[f].start[field[f].length - 1] == ' ') {
+            field[f].length--;
+        }
+    }
+    return 1;
+}
+
+static ms_status read_header(ms_text *text, ms_error *err)
+{
+    ms_word field[2];
+    if (!ms_text_seek(text)) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: the sieve curve is empty; its first line is size,passing", text->name);
+    }
+    const ms_word line = ms_text_rest(text);
+    return split(field, &line) && ms_text_word_is(&field[0], "size") && ms_text_word_is(&field[1], "passing")
+               ? MS_OK
+               : ms_text_fail(err, text, "the header is '%s', not size,passing", ms_text_quote(&line).text);
+}
+
+static ms_status read_row(sieve_curve *curve, ms_text *text, ms_error *err)
+{
+    ms_word field[2];
+    const size_t at = curve->count;
+    const ms_word line = ms_text_rest(text);
+    if (at == MS_SIEVE_MAX_ROWS) {
+        return ms_text_fail(err, text, "more than %d rows", MS_SIEVE_MAX_ROWS);
+    }
+    if (!split(field, &line)) {
+        return ms_text_fail(err, text, "'%s' is not a size and a share", ms_text_quote(&line).text);
+    }
+    double *size = &curve->size[at], *passing = &curve->passing[at];
+    if (!ms_text_to_double(size, &field[0]) || !(*size >= SMALLEST && *size <= LARGEST)) {
+        return ms_text_fail(err, text, "the size '%s' is not a number from %g to %g", ms_text_quote(&field[0]).text,
+                            SMALLEST, LARGEST);
+    }
+    if (!ms_text_to_double(passing, &field[1]) || !(*passing >= 0 && *passing <= 1)) {
+        return ms_text_fail(err, text, "the share '%s' is not a number from 0 to 1", ms_text_quote(&field[1]).text);
+    }
+    if (at > 0 && !(*size > size[-1] && *passing >= passing[-1])) {
+        return ms_text_fail(err, text,
+                            "size %g with share %g stands behind %g with %g; sizes ascend, shares do not fall", *size,
+                            *passing, size[-1], passing[-1]);
+    }
+    if (at == 0 && *passing > 0) {
+        return ms_text_fail(
+            err, text, "%g of the mass is finer than the first size; begin with a size that nothing passes", *passing);
+    }
+    curve->count++;
+    return MS_OK;
+}
+
+static ms_status read_curve(sieve_curve *curve, const ms_bytes *bytes, const char *path, ms_error *err)
+{
+    ms_text text;
+    if (memchr(bytes->data, 0, bytes->size)) {
+        return ms_fail(err, MS_ERR_FORMAT, "%s: this is not a text file size,passing", path);
+    }
+    ms_text_start(&text, bytes, path);
+    text.comment = '#';
+    ms_status status = read_header(&text, err);
+    while (status == MS_OK && ms_text_seek(&text)) {
+        status = read_row(curve, &text, err);
+    }
+    if (status == MS_OK && (curve->count == 0 || curve->passing[curve->count - 1] < 1)) {
+        status = ms_fail(err, MS_ERR_FORMAT,
+                         "%s: the last size lets %g of the mass pass, not 1; add the size of the largest", path,
+                         curve->count > 0 ? curve->passing[curve->count - 1] : 0);
+    }
+    return status;
+}
+
+/* The integral of size^-3 over the shares from lo to hi. Between two rows size = a exp(L t), t growing with the share
+ * from 0 to 1. */
+static double count_between(const sieve_curve *curve, double lo, double hi)
+{
+    double sum = 0;
+    for (size_t r = 0; r + 1 < curve->count; r++) {
+        const double p = curve->passing[r], q = curve->passing[r + 1], span = q - p;
+        const double from = fmax(lo, p), to = fmin(hi, q);
+        if (from < to) {
+            const double l = 3 * log(curve->size[r + 1] / curve->size[r]);
+            sum += pow(curve->size[r], -3) * exp(-l * (from - p) / span) * -expm1(-l * (to - from) / span) * span / l;
+        }
+    }
+    return sum;
+}
+
+/* Between these shares. */
+static void add_class(ms_sieve *sieve, const sieve_curve *curve, double lo, double hi)
+{
+    if (lo < hi) {
+        const double size = cbrt((hi - lo) / count_between(curve, lo, hi));
+        sieve->of[sieve->count++] = (ms_sieve_class){.size = size, .share = hi - lo};
+    }
+}
+
+static ms_status make_classes(ms_sieve *sieve, const sieve_curve *curve, size_t classes, ms_error *err)
+{
+    *sieve = (ms_sieve){.of = calloc(classes > 0 ? classes : curve->count, sizeof *sieve->of)};
+    if (!sieve->of) {
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for the classes of size");
+    }
+    for (size_t c = 0; c < classes; c++) {
+        add_class(sieve, curve, (double)c / (double)classes, (double)(c + 1) / (double)classes);
+    }
+    for (size_t r = 0; classes == 0 && r + 1 < curve->count; r++) {
+        add_class(sieve, curve, curve->passing[r], curve->passing[r + 1]);
+    }
+    return MS_OK;
+}
+
+ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_error *err)
+{
+    ms_bytes bytes;
+    *sieve = (ms_sieve){0};
+    sieve_curve *curve = calloc(1, sizeof *curve);
+    ms_status status =
+        curve ? ms_file_read(&bytes, path, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the sieve curve");
+    if (status == MS_OK) {
+        status = read_curve(curve, &bytes, path, err);
+        ms_file_free(&bytes);
+    }
+    if (status == MS_OK) {
+        status = make_classes(sieve, curve, classes, err);
+    }
+    free(curve);
+    return status;
+}
+
+/* How many of each class there are in all, and what they have of the mass. */
+static ms_status count_classes(ms_sieve *sieve, uint64_t particles, ms_error *err)
+{
+    double sum = 0, *share = malloc(sieve->count * sizeof *share), *mass = malloc(sieve->count * sizeof *mass);
+    uint64_t *count = malloc(sieve->count * sizeof *count);
+    const int has_memory = share && mass && count;
+    for (size_t c = 0; c < sieve->count && has_memory; c++) {
+        share[c] = sieve->of[c].share;
+        mass[c] = pow(sieve->of[c].size, 3);
+    }
+    if (has_memory) {
+        ms_sieve_counts_round(count, share, mass, sieve->count, particles);
+    }
+    for (size_t c = 0; c < sieve->count && has_memory; c++) {
+        sieve->of[c].count = count[c];
+        sum += sieve->of[c].mass = (double)count[c] * mass[c];
+    }
+    for (size_t c = 0; c < sieve->count && has_memory; c++) {
+        sieve->of[c].mass /= sum;
+    }
+    free(share);
+    free(mass);
+    free(count);
+    return has_memory ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for the classes of size");
+}
+
+/* A row for each class of a row. @param left of each class */
+static ms_status spread_row(ms_manifest *made, const ms_manifest_row *row, const ms_sieve *sieve, uint64_t *left,
+                            uint64_t *taken, ms_error *err)
+{
+    ms_sieve_counts_take(taken, left, sieve->count, row->particles);
+    for (size_t c = 0; c < sieve->count; c++) {
+        if (taken[c] > 0) {
+            ms_manifest_row *kind = &made->row[made->count++];
+            *kind = *row;
+            kind->path = strdup(row->path);
+            kind->particles = taken[c];
+            kind->size = sieve->of[c].size;
+            if (!kind->path) {
+                return ms_fail(err, MS_ERR_NOMEM, "no memory for the kinds of particles");
+            }
+        }
+    }
+    return MS_OK;
+}
+
+static ms_status spread_rows(ms_manifest *made, const ms_manifest *manifest, const ms_sieve *sieve, ms_error *err)
+{
+    uint64_t *left = malloc(2 * sieve->count * sizeof *left);
+    *made = (ms_manifest){.row = calloc(manifest->count * sieve->count, sizeof *made->row)};
+    ms_status status = left && made->row ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for the kinds of particles");
+    for (size_t c = 0; c < sieve->count && status == MS_OK; c++) {
+        left[c] = sieve->of[c].count;
+    }
+    for (size_t r = 0; r < manifest->count && status == MS_OK; r++) {
+        status = spread_row(made, &manifest->row[r], sieve, left, left + sieve->count, err);
+    }
+    free(left);
+    return status;
+}
+
+ms_status ms_sieve_apply(ms_sieve *sieve, ms_manifest *manifest, ms_error *err)
+{
+    ms_manifest made = {0};
+    uint64_t particles = 0;
+    for (size_t r = 0; r < manifest->count; r++) {
+        particles += manifest->row[r].particles;
+    }
+    if (particles > MS_MANIFEST_MAX_PARTICLES || manifest->count * sieve->count > MS_SIEVE_MAX_KINDS) {
+        return ms_fail(
+            err, MS_ERR_LIMIT,
+            "%llu particles of %zu shapes in %zu sizes; with a sieve curve there are %d particles at most, and "
+            "%d kinds of them",
+            (unsigned long long)particles, manifest->count, sieve->count, MS_MANIFEST_MAX_PARTICLES,
+            MS_SIEVE_MAX_KINDS);
+    }
+    ms_status status = count_classes(sieve, particles, err);
+    if (status == MS_OK) {
+        status = spread_rows(&made, manifest, sieve, err);
+    }
+    if (status != MS_OK) {
+        ms_manifest_free(&made);
+        return status;
+    }
+    ms_manifest_free(manifest);
+    *manifest = made;
+    return MS_OK;
+}
+
+void ms_sieve_free(ms_sieve *sieve)
+{
+    free(sieve->of);
+    *sieve = (ms_sieve){0};
+}
