@@ -31,7 +31,8 @@ class Scene(engines.Clump):
         self.write("scene.csv", "shape,count,size\n" + "".join(f"{name}.stl,{n},{size}\n" for name, size, n in rows))
         for vessel in vessels:
             self.mskit("scene", "scene.csv", "--tolerance", "dice=0.15", "-g", "variational", "--cells", "30",
-                       "--density", str(engines.DENSITY), "--unit", "mm", "--carriers", *VESSELS[vessel], *FORMATS, "-o", vessel)
+                       "--density", str(engines.DENSITY), "--unit", "mm", "--carriers", *VESSELS[vessel], *FORMATS,
+                       "-o", vessel)
         self.particles = sum(counts.values())
         self.mass = self.spheres = self.single = 0
         for name, count in counts.items():
