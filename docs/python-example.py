@@ -29,6 +29,18 @@ for method in ("mss", "setcover"):
     print(f"{method}: D of 10 and 30 spheres {curve['dice'][9]:.3f}, {curve['dice'][-1]:.3f}; "
           f"below 0.06 with {enough[0] if len(enough) else 'more than 30'}")
 
+# %% How many spheres is each grain worth, in a scene of 500 of the first and 80 of the second?
+curves = [mskit.curve(mskit.generate(grain, "mss", spheres=30))["dice"]
+          for grain in mskit.grains(scan, spacing=0.05, border=False)]
+worth = mskit.allocate(curves, [500, 80], budget=6000)
+print(f"{worth.spheres[0]} and {worth.spheres[1]} spheres: mean D = {worth.mean_dice:.3f}; "
+      f"ten each: {(500 * curves[0][9] + 80 * curves[1][9]) / 580:.3f}")
+
+# %% How does it touch a plane: how many spheres at once, and what rebounds of a contact's e = 0.5?
+touch = mskit.contact(clumps[1], poses=200, overlap=0.002)
+for row in touch["contacts"][:2]:
+    print(f"{row['where']}: {row['contacts']:.2f} spheres at once, e = {row['restitution']:.2f}")
+
 # %% True mass and inertia, made exact by a few carriers, and a template for an engine.
 for label, clump in clumps.items():
     heavy = mskit.correct(clump, density=2650, unit="mm", carriers=True)

@@ -53,7 +53,9 @@ class Docs(PythonCase):
         with contextlib.redirect_stdout(io.StringIO()) as said:
             made = runpy.run_path(os.path.join(DOCS, "python-example.py"))
         words = said.getvalue()
-        for pattern in (r"grain 1: 1\.4\d\d mm\^3, D = 0\.0", r"mss: D of 10", r"grain 2: 3\.\d+ mg"):
+        for pattern in (r"grain 1: 1\.4\d\d mm\^3, D = 0\.0", r"mss: D of 10", r"grain 2: 3\.\d+ mg",
+                        r"\d+ and \d+ spheres: mean D = 0\.0\d+; ten each: 0\.0\d+",
+                        r"poses: \d\.\d+ spheres at once, e = 0\."):
             self.assertRegex(words, pattern)
         self.assertIn("<iframe", made["clumps"][1]._repr_html_())
         for name in ("grain-1.lammps", "grain-2.lammps", "grain-1.html"):
