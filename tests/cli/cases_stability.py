@@ -267,6 +267,18 @@ class Stability(Case):
                      "D / D of the unchanged shape"):
             self.assertIn(word, svg)
 
+    def test_without_gnuplot(self):
+        """All scripts and the page are there; it names the charts that are missing."""
+        run = self.mskit("stability", "cube", "-g", "mss", "-n", "2", "--cells", "8", "--runs", "2",
+                         "--perturb", "noise", "--charts", "charts", "--report", "r.html", "-o", "s.csv", code=1,
+                         env={**os.environ, "PATH": self.dir})
+        self.assert_says(run, "gnuplot-nox")
+        scripts = [name for name in sorted(os.listdir(self.path("charts"))) if name.endswith(".gp")]
+        self.assertEqual(scripts, ["1-mss-all.gp", "1-mss-noise.gp"])
+        page = self.read("r.html").decode()
+        self.assertEqual(re.findall("<p>not drawn: charts/(.*?); charts need gnuplot", page), scripts)
+        self.assertIn("<tr data-scene", page)
+
     def blocks(self, name):
         """The series of a chart: name and points."""
         found = []
