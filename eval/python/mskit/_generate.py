@@ -9,7 +9,7 @@ from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Tuple, T
 
 import numpy
 
-from ._clumps import Clump, as_clump, c_particle_of, from_c, lend, new_c_clump, own
+from ._clumps import Clump, as_clump, from_c, lend, new_c_clump, own
 from ._errors import ArgumentError, call, choice, flag, number, remark, show, text, use_threads, whole, word
 from ._library import ffi, lib
 from ._measures import curve_of, scores_of
