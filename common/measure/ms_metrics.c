@@ -169,8 +169,8 @@ static void take_normals(ms_metrics *metrics, const ms_normals *normals)
 }
 
 /* Which side of an open mesh is outside is not known. */
-static ms_status measure_exposed(ms_metrics *metrics, unsigned kinds, const ms_target *target, const ms_clump *clump,
-                                 ms_error *err)
+static ms_status measure_exposed(ms_metrics *metrics, unsigned kinds, const ms_target *target,
+                                 const ms_clump_near *near, ms_error *err)
 {
     const int protrudes = (kinds & MS_METRICS_KIND(SURFACE)) && target->mesh,
               inclined = kinds & MS_METRICS_KIND(NORMAL);
@@ -180,7 +180,7 @@ static ms_status measure_exposed(ms_metrics *metrics, unsigned kinds, const ms_t
         return MS_OK;
     }
     const ms_status status =
-        ms_surface_exposed(protrudes ? &protrusion : NULL, inclined ? &normals : NULL, target, clump, err);
+        ms_surface_exposed(protrudes ? &protrusion : NULL, inclined ? &normals : NULL, target, near, err);
     if (status == MS_OK && protrudes) {
         metrics->protrusion_max = protrusion.max;
         metrics->protrusion_rms = protrusion.rms;
@@ -191,14 +191,33 @@ static ms_status measure_exposed(ms_metrics *metrics, unsigned kinds, const ms_t
     return status;
 }
 
-static ms_status measure_gap(ms_metrics *metrics, const ms_target *target, const ms_clump *clump, ms_error *err)
+static ms_status measure_gap(ms_metrics *metrics, const ms_target *target, const ms_clump_near *near, ms_error *err)
 {
     ms_standout gap;
-    const ms_status status = ms_surface_gap(&gap, target, clump, err);
+    const ms_status status = ms_surface_gap(&gap, target, near, err);
     if (status == MS_OK) {
         metrics->gap_max = gap.max;
         metrics->gap_rms = gap.rms;
     }
+    return status;
+}
+
+/* What lies between the surfaces: both ways. */
+static ms_status measure_surfaces(ms_metrics *metrics, unsigned kinds, const ms_target *target, const ms_clump *clump,
+                                  ms_error *err)
+{
+    ms_clump_near near;
+    if (!(kinds & (MS_METRICS_KIND(SURFACE) | MS_METRICS_KIND(NORMAL)))) {
+        return MS_OK;
+    }
+    ms_status status = ms_clump_near_build(&near, clump, target->mesh, err);
+    if (status == MS_OK) {
+        status = measure_exposed(metrics, kinds, target, &near, err);
+    }
+    if (status == MS_OK && (kinds & MS_METRICS_KIND(SURFACE)) && target->mesh) {
+        status = measure_gap(metrics, target, &near, err);
+    }
+    ms_clump_near_free(&near);
     return status;
 }
 
@@ -271,10 +290,7 @@ ms_status ms_metrics_compute_kinds(ms_metrics *metrics, ms_score *curve, unsigne
         status = measure_spheres(metrics, target, clump, err);
     }
     if (status == MS_OK) {
-        status = measure_exposed(metrics, kinds, target, clump, err);
-    }
-    if (status == MS_OK && (kinds & MS_METRICS_KIND(SURFACE)) && target->mesh) {
-        status = measure_gap(metrics, target, clump, err);
+        status = measure_surfaces(metrics, kinds, target, clump, err);
     }
     if (status == MS_OK && (kinds & MS_METRICS_KIND(DESCRIPTOR))) {
         status = describe(metrics, target, clump, err);
