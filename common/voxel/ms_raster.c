@@ -44,8 +44,12 @@ ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule 
         ms_raster_free(raster);
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
     }
-    memset(raster->first, 0xff, voxels * sizeof *raster->first);
-    memset(raster->vacant, 0xff, words * sizeof *raster->vacant);
+    const size_t plane = voxels / (size_t)grid->n[2], words_of_plane = words / (size_t)grid->n[2];
+#pragma omp parallel for schedule(static) if (voxels >= MS_GRID_THREADS_FROM)
+    for (int k = 0; k < grid->n[2]; k++) {
+        memset(raster->first + plane * (size_t)k, 0xff, plane * sizeof *raster->first);
+        memset(raster->vacant + words_of_plane * (size_t)k, 0xff, words_of_plane * sizeof *raster->vacant);
+    }
     return MS_OK;
 }
 
