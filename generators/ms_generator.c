@@ -41,6 +41,24 @@ void ms_generator_keep_remarks(ms_run *run, ms_error *kept)
     run->remark_context = kept;
 }
 
+/* The diagonal of a voxel: a ball of this radius holds all of the one that its centre lies in. */
+static const double DIAGONAL = 1.7320508075688773;
+
+/* Is the voxel that a ball's centre lies in covered for sure, and of the shape? */
+static int covers_own_voxel(const ms_ball *ball, const ms_grid *grid)
+{
+    int voxel[3];
+    for (int a = 0; a < 3; a++) {
+        const double at = rint(ball->centre[a]);
+        if (!(at >= 0 && at < grid->n[a])) {
+            return 0;
+        }
+        voxel[a] = (int)at;
+    }
+    return ball->radius > DIAGONAL && isfinite(ball->radius) &&
+           grid->inside[ms_grid_index(grid, voxel[0], voxel[1], voxel[2])];
+}
+
 /* Spheres of less than half a voxel may hold its centre, by which methods choose, and yet be nothing by the rule that
  * scores them. Ends at the first sphere that covers a voxel of the shape. */
 static ms_status check_coverage(const ms_clump *clump, const char *name, const ms_run *run, ms_error *err)
@@ -49,6 +67,10 @@ static ms_status check_coverage(const ms_clump *clump, const char *name, const m
     ms_raster raster;
     double largest = 0;
     int64_t covered = 0;
+    const ms_ball one = ms_grid_ball(grid, &clump->sphere[0]);
+    if (covers_own_voxel(&one, grid)) {
+        return MS_OK; /* as nearly always */
+    }
     ms_status status = ms_raster_alloc(&raster, grid, run->target->rule, err);
     for (size_t s = 0; s < clump->n_spheres && covered == 0 && status == MS_OK; s++) {
         const ms_ball ball = ms_grid_ball(grid, &clump->sphere[s]);

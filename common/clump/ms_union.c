@@ -60,7 +60,11 @@ static int compare_ranges(const void *a, const void *b)
 static int make_cap(cap *out, const ms_clump *clump, size_t of, size_t by)
 {
     const ms_sphere *sphere = &clump->sphere[of], *other = &clump->sphere[by];
-    const double r = sphere->radius, q = other->radius, d = sqrt(ms_squared_distance(sphere->centre, other->centre));
+    const double r = sphere->radius, q = other->radius, away = ms_squared_distance(sphere->centre, other->centre);
+    if (away > (r + q) * (r + q) * (1 + 1e-12)) {
+        return 0; /* most of them: without a root */
+    }
+    const double d = sqrt(away);
     if (d <= q - r) {
         return d < q - r || r < q || by < of ? -1 : 0; /* of equal spheres the first is exposed */
     }
@@ -138,7 +142,11 @@ static circle make_circle(const cap *of, const double pole[3])
 static int hide(range *hidden, size_t *count, const circle *c, const cap *by)
 {
     const double x = ms_dot(c->e1, by->axis), y = ms_dot(c->e2, by->axis), along = ms_dot(c->of->axis, by->axis);
-    const double level = by->cosine - c->of->cosine * along, reach = c->of->sine * hypot(x, y);
+    const double level = by->cosine - c->of->cosine * along, sine = c->of->sine;
+    if (level * level > sine * sine * (x * x + y * y) * (1 + 1e-12)) {
+        return level > 0; /* for sure */
+    }
+    const double reach = sine * hypot(x, y);
     if (level >= reach || level <= -reach) {
         return level > 0;
     }

@@ -1,6 +1,8 @@
 #include "ms_metrics.h"
 
 #include <math.h>
+#include <omp.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -169,8 +171,8 @@ static void take_normals(ms_metrics *metrics, const ms_normals *normals)
 }
 
 /* Which side of an open mesh is outside is not known. */
-static ms_status measure_exposed(ms_metrics *metrics, unsigned kinds, const ms_target *target, const ms_clump *clump,
-                                 ms_error *err)
+static ms_status measure_exposed(ms_metrics *metrics, unsigned kinds, const ms_target *target,
+                                 const ms_clump_near *near, ms_error *err)
 {
     const int protrudes = (kinds & MS_METRICS_KIND(SURFACE)) && target->mesh,
               inclined = kinds & MS_METRICS_KIND(NORMAL);
@@ -180,7 +182,7 @@ static ms_status measure_exposed(ms_metrics *metrics, unsigned kinds, const ms_t
         return MS_OK;
     }
     const ms_status status =
-        ms_surface_exposed(protrudes ? &protrusion : NULL, inclined ? &normals : NULL, target, clump, err);
+        ms_surface_exposed(protrudes ? &protrusion : NULL, inclined ? &normals : NULL, target, near, err);
     if (status == MS_OK && protrudes) {
         metrics->protrusion_max = protrusion.max;
         metrics->protrusion_rms = protrusion.rms;
@@ -191,14 +193,33 @@ static ms_status measure_exposed(ms_metrics *metrics, unsigned kinds, const ms_t
     return status;
 }
 
-static ms_status measure_gap(ms_metrics *metrics, const ms_target *target, const ms_clump *clump, ms_error *err)
+static ms_status measure_gap(ms_metrics *metrics, const ms_target *target, const ms_clump_near *near, ms_error *err)
 {
     ms_standout gap;
-    const ms_status status = ms_surface_gap(&gap, target, clump, err);
+    const ms_status status = ms_surface_gap(&gap, target, near, err);
     if (status == MS_OK) {
         metrics->gap_max = gap.max;
         metrics->gap_rms = gap.rms;
     }
+    return status;
+}
+
+/* What lies between the surfaces: both ways. */
+static ms_status measure_surfaces(ms_metrics *metrics, unsigned kinds, const ms_target *target, const ms_clump *clump,
+                                  ms_error *err)
+{
+    ms_clump_near near;
+    if (!(kinds & (MS_METRICS_KIND(SURFACE) | MS_METRICS_KIND(NORMAL)))) {
+        return MS_OK;
+    }
+    ms_status status = ms_clump_near_build(&near, clump, target->mesh, err);
+    if (status == MS_OK) {
+        status = measure_exposed(metrics, kinds, target, &near, err);
+    }
+    if (status == MS_OK && (kinds & MS_METRICS_KIND(SURFACE)) && target->mesh) {
+        status = measure_gap(metrics, target, &near, err);
+    }
+    ms_clump_near_free(&near);
     return status;
 }
 
@@ -229,23 +250,66 @@ ms_status ms_metrics_score_clump(ms_score *score, ms_score *curve, const ms_targ
     return status;
 }
 
-/* After the body of the union. */
-static ms_status describe(ms_metrics *metrics, const ms_target *target, const ms_clump *clump, ms_error *err)
+/* The descriptors of a shape. The hull of a mesh is work for one thread: where there are several, for one beside all
+ * else that is measured. */
+typedef struct shape_errand {
+    const ms_target *target; /* NULL: not wanted */
+    ms_descriptors of;
+    ms_status status;
+    ms_error err;
+    int is_apart;
+    pthread_t thread;
+} shape_errand;
+
+static void *describe_shape(void *argument)
 {
-    ms_descriptors of_shape, of_clump;
-    ms_status status = MS_OK;
-    if (target->descriptors) {
-        of_shape = *target->descriptors;
-    } else {
-        status = ms_descriptors_of_target(&of_shape, target, err);
+    shape_errand *e = argument;
+    e->status = ms_descriptors_of_target(&e->of, e->target, &e->err);
+    return NULL;
+}
+
+static void *describe_shape_apart(void *argument)
+{
+    omp_set_num_threads(1);
+    return describe_shape(argument);
+}
+
+static void begin_errand(shape_errand *e, unsigned kinds, const ms_target *target)
+{
+    e->target = kinds & MS_METRICS_KIND(DESCRIPTOR) ? target : NULL;
+    e->is_apart = e->target && target->mesh && !target->descriptors && !omp_in_parallel() &&
+                  omp_get_max_threads() > 1 && pthread_create(&e->thread, NULL, describe_shape_apart, e) == 0;
+}
+
+/* @param status so far: after a failure nothing is begun any more */
+static ms_status end_errand(shape_errand *e, ms_status status, ms_error *err)
+{
+    if (e->is_apart) {
+        pthread_join(e->thread, NULL);
     }
-    if (status == MS_OK) {
-        status = ms_descriptors_of_clump(&of_clump, clump, &metrics->body, err);
+    if (status != MS_OK || !e->target) {
+        return status;
     }
+    if (e->target->descriptors) {
+        e->of = *e->target->descriptors;
+        return MS_OK;
+    }
+    if (!e->is_apart) {
+        describe_shape(e);
+    }
+    return e->status == MS_OK ? MS_OK : ms_fail(err, e->status, "%s", e->err.text);
+}
+
+/* After the body of the union. */
+static ms_status describe(ms_metrics *metrics, const ms_descriptors *of_shape, const ms_target *target,
+                          const ms_clump *clump, ms_error *err)
+{
+    ms_descriptors of_clump;
+    const ms_status status = ms_descriptors_of_clump(&of_clump, clump, &metrics->body, err);
     if (status == MS_OK) {
-        metrics->voxel_limit = ms_descriptors_voxel_limit(&of_shape, target->grid.h);
-#define TAKE(X, CODE, name, ...)           \
-    metrics->shape_##name = of_shape.name; \
+        metrics->voxel_limit = ms_descriptors_voxel_limit(of_shape, target->grid.h);
+#define TAKE(X, CODE, name, ...)            \
+    metrics->shape_##name = of_shape->name; \
     metrics->clump_##name = of_clump.name;
         MS_DESCRIPTOR_LIST(TAKE, )
 #undef TAKE
@@ -265,19 +329,19 @@ ms_status ms_metrics_compute_kinds(ms_metrics *metrics, ms_score *curve, unsigne
                                    const ms_clump *clump, size_t max_voxels, ms_error *err)
 {
     memset(metrics, 0, sizeof *metrics);
+    shape_errand shape;
+    begin_errand(&shape, kinds, target);
     ms_status status = count_with_cells(metrics, curve, target, clump, max_voxels, err);
     forget_kinds(metrics);
     if (status == MS_OK) {
         status = measure_spheres(metrics, target, clump, err);
     }
     if (status == MS_OK) {
-        status = measure_exposed(metrics, kinds, target, clump, err);
+        status = measure_surfaces(metrics, kinds, target, clump, err);
     }
-    if (status == MS_OK && (kinds & MS_METRICS_KIND(SURFACE)) && target->mesh) {
-        status = measure_gap(metrics, target, clump, err);
-    }
-    if (status == MS_OK && (kinds & MS_METRICS_KIND(DESCRIPTOR))) {
-        status = describe(metrics, target, clump, err);
+    status = end_errand(&shape, status, err);
+    if (status == MS_OK && shape.target) {
+        status = describe(metrics, &shape.of, target, clump, err);
     }
     if (status == MS_OK && metrics->body.volume > 0) {
         status = ms_metrics_compare_inertia(&metrics->inertia, &metrics->body, &target->body, err);

@@ -38,37 +38,10 @@ static void join_parts(ms_standout *out, const part *parts, size_t count)
     out->rms = sum.area > 0 ? sqrt(sum.square / sum.area) : 0;
 }
 
-size_t ms_surface_touching(uint32_t *neighbour, const ms_clump *clump, size_t s)
-{
-    const ms_sphere *sphere = &clump->sphere[s];
-    size_t count = 0;
-    for (size_t o = 0; o < clump->n_spheres; o++) {
-        const ms_sphere *other = &clump->sphere[o];
-        const double reach = sphere->radius + other->radius;
-        if (o != s && ms_squared_distance(sphere->centre, other->centre) < reach * reach) {
-            neighbour[count++] = (uint32_t)o;
-        }
-    }
-    return count;
-}
-
-int ms_surface_is_hidden(const double point[3], const ms_clump *clump, size_t s, const uint32_t *neighbour,
-                         size_t count)
-{
-    for (size_t at = 0; at < count; at++) {
-        const ms_sphere *other = &clump->sphere[neighbour[at]];
-        const double reach = other->radius, away = ms_squared_distance(point, other->centre);
-        if (away < reach * reach * (1 - 1e-12) || (neighbour[at] < s && away <= reach * reach * (1 + 1e-12))) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
 /* What is measured of the exposed surface. */
 typedef struct exposed_job {
     const ms_target *target;
-    const ms_clump *clump;
+    const ms_clump_near *near;
     int protrusion;                /* wanted */
     const ms_normals_shape *shape; /* NULL: normals are not wanted */
     double unit;                   /* of area in a tally */
@@ -101,13 +74,11 @@ static void add_exposed(part *sum, ms_normals_tally *tally, const exposed_job *j
     part_add(sum, area, outside ? fmax(0, distance) : 0);
 }
 
-static part sphere_part(ms_normals_tally *tally, const exposed_job *job, size_t s, uint32_t *neighbour)
+static part sphere_part(ms_normals_tally *tally, const exposed_job *job, size_t s)
 {
-    const ms_clump *clump = job->clump;
-    const ms_sphere *sphere = &clump->sphere[s];
+    const ms_sphere *sphere = &job->near->clump->sphere[s];
     const double h = job->target->grid.h, area = 4 * PI * sphere->radius * sphere->radius;
     const int samples = (int)fmin(1000, fmax(32, ceil(area / (4 * h * h))));
-    const size_t count = ms_surface_touching(neighbour, clump, s);
     part sum = {0};
     for (int m = 0; m < samples; m++) {
         double normal[3], point[3];
@@ -115,7 +86,7 @@ static part sphere_part(ms_normals_tally *tally, const exposed_job *job, size_t 
         for (int k = 0; k < 3; k++) {
             point[k] = sphere->centre[k] + sphere->radius * normal[k];
         }
-        if (!ms_surface_is_hidden(point, clump, s, neighbour, count)) {
+        if (!ms_clump_near_hides(job->near, point, s)) {
             add_exposed(&sum, tally, job, point, normal, area / samples);
         }
     }
@@ -125,17 +96,16 @@ static part sphere_part(ms_normals_tally *tally, const exposed_job *job, size_t 
 /* All spheres. @param parts one for each. @return nonzero without memory */
 static int sample_spheres(part *parts, ms_normals_tally *sum, const exposed_job *job)
 {
-    const size_t n = job->clump->n_spheres;
+    const size_t n = job->near->clump->n_spheres;
     int out_of_memory = 0;
 #pragma omp parallel reduction(| : out_of_memory)
     {
-        uint32_t *neighbour = malloc((n + 1) * sizeof *neighbour);
         ms_normals_tally *tally = calloc(1, sizeof *tally);
-        out_of_memory = !neighbour || !tally;
+        out_of_memory = !tally;
 #pragma omp for schedule(dynamic, 1)
         for (size_t s = 0; s < n; s++) {
-            if (neighbour && tally) {
-                parts[s] = sphere_part(tally, job, s, neighbour);
+            if (tally) {
+                parts[s] = sphere_part(tally, job, s);
             }
         }
         if (tally && job->shape) {
@@ -143,7 +113,6 @@ static int sample_spheres(part *parts, ms_normals_tally *sum, const exposed_job 
             ms_normals_join(sum, tally);
         }
         free(tally);
-        free(neighbour);
     }
     return out_of_memory;
 }
@@ -159,10 +128,11 @@ static double find_area_unit(const ms_clump *clump)
 }
 
 ms_status ms_surface_exposed(ms_standout *protrusion, ms_normals *normals, const ms_target *target,
-                             const ms_clump *clump, ms_error *err)
+                             const ms_clump_near *near, ms_error *err)
 {
+    const ms_clump *clump = near->clump;
     ms_normals_shape shape = {0};
-    exposed_job job = {target, clump, protrusion != NULL, normals ? &shape : NULL, find_area_unit(clump)};
+    exposed_job job = {target, near, protrusion != NULL, normals ? &shape : NULL, find_area_unit(clump)};
     part *parts = calloc(clump->n_spheres + 1, sizeof *parts);
     ms_normals_tally *tally = calloc(1, sizeof *tally);
     ms_status status = MS_OK;
@@ -184,25 +154,8 @@ ms_status ms_surface_exposed(ms_standout *protrusion, ms_normals *normals, const
     return status;
 }
 
-/* Distance from a point to the union of the spheres; 0 within. */
-static double union_distance(const ms_clump *clump, const double point[3])
-{
-    double least = HUGE_VAL;
-    for (size_t s = 0; s < clump->n_spheres; s++) {
-        const ms_sphere *sphere = &clump->sphere[s];
-        const double reach = sphere->radius + least, away = ms_squared_distance(point, sphere->centre);
-        if (away < reach * reach) {
-            least = sqrt(away) - sphere->radius;
-        }
-        if (least <= 0) {
-            return 0;
-        }
-    }
-    return least;
-}
-
 /* Points spread evenly over a triangle: the R2 sequence, folded from the square. */
-static part triangle_part(const ms_target *target, const ms_clump *clump, size_t triangle)
+static part triangle_part(const ms_target *target, const ms_clump_near *near, size_t triangle)
 {
     const uint32_t *t = target->mesh->triangle[triangle];
     const double *a = target->mesh->vertex[t[0]], *b = target->mesh->vertex[t[1]], *c = target->mesh->vertex[t[2]];
@@ -218,23 +171,23 @@ static part triangle_part(const ms_target *target, const ms_clump *clump, size_t
             w = 1 - w;
         }
         const double point[3] = {a[0] + s * u[0] + w * v[0], a[1] + s * u[1] + w * v[1], a[2] + s * u[2] + w * v[2]};
-        part_add(&sum, area / samples, union_distance(clump, point));
+        part_add(&sum, area / samples, ms_clump_near_distance(near, point));
     }
     return sum;
 }
 
 /* Corners stand out the most. */
-static double largest_gap_of_vertices(const ms_mesh *mesh, const ms_clump *clump)
+static double largest_gap_of_vertices(const ms_mesh *mesh, const ms_clump_near *near)
 {
     double largest = 0;
 #pragma omp parallel for schedule(static) reduction(max : largest)
     for (size_t v = 0; v < mesh->n_vertices; v++) {
-        largest = fmax(largest, union_distance(clump, mesh->vertex[v]));
+        largest = fmax(largest, ms_clump_near_distance(near, mesh->vertex[v]));
     }
     return largest;
 }
 
-ms_status ms_surface_gap(ms_standout *out, const ms_target *target, const ms_clump *clump, ms_error *err)
+ms_status ms_surface_gap(ms_standout *out, const ms_target *target, const ms_clump_near *near, ms_error *err)
 {
     const size_t triangles = target->mesh->n_triangles, chunks = (triangles + CHUNK - 1) / CHUNK;
     part *parts = calloc(chunks + 1, sizeof *parts);
@@ -246,14 +199,14 @@ ms_status ms_surface_gap(ms_standout *out, const ms_target *target, const ms_clu
     for (size_t chunk = 0; chunk < chunks; chunk++) {
         const size_t last = (chunk + 1) * CHUNK < triangles ? (chunk + 1) * CHUNK : triangles;
         for (size_t t = chunk * CHUNK; t < last; t++) {
-            const part one = triangle_part(target, clump, t);
+            const part one = triangle_part(target, near, t);
             parts[chunk].area += one.area;
             parts[chunk].square += one.square;
             parts[chunk].max = fmax(parts[chunk].max, one.max);
         }
     }
     join_parts(out, parts, chunks);
-    out->max = fmax(out->max, largest_gap_of_vertices(target->mesh, clump));
+    out->max = fmax(out->max, largest_gap_of_vertices(target->mesh, near));
     free(parts);
     return MS_OK;
 }

@@ -44,8 +44,12 @@ ms_status ms_raster_alloc(ms_raster *raster, const ms_grid *grid, ms_voxel_rule 
         ms_raster_free(raster);
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the union on %zu voxels; use fewer cells", voxels);
     }
-    memset(raster->first, 0xff, voxels * sizeof *raster->first);
-    memset(raster->vacant, 0xff, words * sizeof *raster->vacant);
+    const size_t plane = voxels / (size_t)grid->n[2], words_of_plane = words / (size_t)grid->n[2];
+#pragma omp parallel for schedule(static) if (voxels >= MS_GRID_THREADS_FROM)
+    for (int k = 0; k < grid->n[2]; k++) {
+        memset(raster->first + plane * (size_t)k, 0xff, plane * sizeof *raster->first);
+        memset(raster->vacant + words_of_plane * (size_t)k, 0xff, words_of_plane * sizeof *raster->vacant);
+    }
     return MS_OK;
 }
 
@@ -353,6 +357,16 @@ static void merge_sums(ms_raster *raster, const worker *w)
     }
 }
 
+/* Do the new balls hold so many voxels that a second thread has woken before they are covered? */
+static int are_many_voxels(const ms_raster *raster, size_t first_new)
+{
+    double sum = 0;
+    for (size_t b = first_new; b < raster->n_balls && sum < MS_GRID_THREADS_FROM; b++) {
+        sum += 8 * pow(raster->ball[b].radius, 3);
+    }
+    return sum >= MS_GRID_THREADS_FROM && ms_grid_voxels(raster->grid) >= MS_GRID_THREADS_FROM;
+}
+
 static ms_status cover_balls(ms_raster *raster, size_t first_new, ms_error *err)
 {
     int from, to, out_of_memory = 0;
@@ -363,7 +377,7 @@ static ms_status cover_balls(ms_raster *raster, size_t first_new, ms_error *err)
     }
     omp_lock_t merging;
     omp_init_lock(&merging);
-#pragma omp parallel reduction(| : out_of_memory) if (ms_grid_voxels(raster->grid) >= MS_GRID_THREADS_FROM)
+#pragma omp parallel reduction(| : out_of_memory) if (are_many_voxels(raster, first_new))
     {
         worker w = {
             .raster = raster, .from = first_new, .lo = {INT_MAX, INT_MAX, INT_MAX}, .hi = {INT_MIN, INT_MIN, INT_MIN}};

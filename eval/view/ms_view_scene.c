@@ -9,7 +9,7 @@
 #include "base/ms_escape.h"
 #include "base/ms_fibonacci.h"
 #include "base/ms_vector.h"
-#include "measure/ms_surface.h"
+#include "clump/ms_clump_near.h"
 #include "ms_view_base64.h"
 #include "ms_view_shape.h"
 
@@ -109,22 +109,21 @@ static ms_status put_spheres(FILE *stream, const placing *f, const ms_clump *clu
     return MS_OK;
 }
 
-/* At points of a Fibonacci lattice; 0 of a sphere that is inside. @param neighbour room for all spheres */
-static double find_protrusion(const ms_view_shape *shape, const ms_clump *clump, size_t s, uint32_t *neighbour)
+/* At points of a Fibonacci lattice; 0 of a sphere that is inside. */
+static double find_protrusion(const ms_view_shape *shape, const ms_clump_near *near, size_t s)
 {
-    const ms_sphere *sphere = &clump->sphere[s];
+    const ms_sphere *sphere = &near->clump->sphere[s];
     double most = 0;
     if (ms_closest_signed_distance(shape->closest, sphere->centre) + sphere->radius <= 0) {
         return 0;
     }
-    const size_t count = ms_surface_touching(neighbour, clump, s);
     for (int m = 0; m < SAMPLES; m++) {
         double u[3], point[3];
         ms_fibonacci(u, m, SAMPLES);
         for (int k = 0; k < 3; k++) {
             point[k] = sphere->centre[k] + sphere->radius * u[k];
         }
-        if (!ms_surface_is_hidden(point, clump, s, neighbour, count)) {
+        if (!ms_clump_near_hides(near, point, s)) {
             most = fmax(most, ms_closest_signed_distance(shape->closest, point));
         }
     }
@@ -134,25 +133,24 @@ static double find_protrusion(const ms_view_shape *shape, const ms_clump *clump,
 static ms_status put_protrusions(FILE *stream, const ms_view_shape *shape, const ms_clump *clump, ms_error *err)
 {
     const size_t n = clump->n_spheres;
-    float *value = malloc(n * sizeof *value);
-    int out_of_memory = 0;
-#pragma omp parallel reduction(| : out_of_memory)
-    {
-        uint32_t *neighbour = malloc(n * sizeof *neighbour);
-        out_of_memory = !value || !neighbour;
-#pragma omp for schedule(dynamic, 1)
-        for (size_t s = 0; s < n; s++) {
-            if (value && neighbour) {
-                value[s] = (float)find_protrusion(shape, clump, s, neighbour);
-            }
-        }
-        free(neighbour);
+    ms_clump_near near;
+    ms_status status = ms_clump_near_build(&near, clump, NULL, err);
+    if (status != MS_OK) {
+        return status;
     }
-    if (!out_of_memory) {
+    float *value = malloc(n * sizeof *value);
+    if (value) {
+#pragma omp parallel for schedule(dynamic, 1)
+        for (size_t s = 0; s < n; s++) {
+            value[s] = (float)find_protrusion(shape, &near, s);
+        }
         put_array(stream, "protrusion", value, n, sizeof *value);
+    } else {
+        status = ms_fail(err, MS_ERR_NOMEM, "no memory to show %zu spheres", n);
     }
     free(value);
-    return out_of_memory ? ms_fail(err, MS_ERR_NOMEM, "no memory to show %zu spheres", n) : MS_OK;
+    ms_clump_near_free(&near);
+    return status;
 }
 
 /* Corners as parts of the box; faces in as few bits as number them. */

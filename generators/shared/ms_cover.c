@@ -18,6 +18,9 @@
 /* Bounds that are counted at once: whatever the number of threads, since the choice among estimates hangs on it. */
 enum { AT_ONCE = 8 };
 
+/* From so many rows on counting them takes longer than waking a thread for it. */
+static const double ROWS_FOR_THREADS = 2500;
+
 #define NEVER (UINT32_MAX >> 1)
 
 /* Voxels of the grid for each run that may be kept: at most 6.4 bytes a voxel. */
@@ -104,6 +107,14 @@ static int choose_step(const ms_cover *cover, const heap_entry *entry)
         step /= 2;
     }
     return step;
+}
+
+/* How many rows a count of a candidate goes over, about. */
+static double estimate_rows(const ms_cover *cover, const heap_entry *entry)
+{
+    const remains *part = &cover->remains[entry->index];
+    const double rows = entry->radius / (part->room > 0 ? 1 : choose_step(cover, entry));
+    return part->run ? part->n : 4 * rows * rows;
 }
 
 /* The voxels of a candidate that are left, or at first an estimate; its runs are kept once they are few. */
@@ -283,12 +294,14 @@ static void count_best(ms_cover *cover)
 {
     const int at_once = cover->threads > 1 || cover->rule >= MS_COVER_ADMITTED ? AT_ONCE : 1;
     heap_entry stale[AT_ONCE];
+    double rows = 0;
     int n = 0;
     while (n < at_once && cover->n_heap > 0 && is_stale(cover, &cover->entry[0])) {
+        rows += estimate_rows(cover, &cover->entry[0]);
         cover->free_runs += cover->remains[cover->entry[0].index].room;
         stale[n++] = borrow_first(cover);
     }
-#pragma omp parallel for schedule(dynamic, 1) num_threads(cover->threads) if (n > 1)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(cover->threads) if (rows >= ROWS_FOR_THREADS)
     for (int e = 0; e < n; e++) {
         count_left(cover, &stale[e]);
     }
