@@ -22,8 +22,8 @@ typedef struct ms_standout {
  * @param[out] protrusion of a closed mesh; NULL: not wanted
  * @param[out] normals    of a closed mesh or a volume, points nearer to sharp edges than the least radius apart; NULL:
  *                        not wanted
- * @return MS_OK; MS_ERR_NOMEM; as ms_normals_open. Cost: a search of the mesh per sample, without the normals per sample
- *         near or outside the surface; all cores, the same bits at any number of threads.
+ * @return MS_OK; MS_ERR_NOMEM; as ms_normals_open. Cost: a search of the mesh per sample, without the normals per
+ *         sample near or outside the surface; all cores, the same bits at any number of threads.
  */
 ms_status ms_surface_exposed(ms_standout *protrusion, ms_normals *normals, const ms_target *target,
                              const ms_clump_near *near, ms_error *err);
