@@ -30,8 +30,8 @@ def keys(value):
 
 class Documents(Case):
     def test_commands_of_the_guide(self):
-        """In order, in one folder, which holds an open mesh, a scan with two labels, the guide's manifest and two
-        grains with a coarse clump each."""
+        """In order, in one folder, which holds an open mesh, a scan with two labels, the guide's manifest and sieve
+        curve, and two grains with a coarse clump each."""
         self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))
         self.write("scan.npy", npy([1] * 50 + [2] * 950, (10, 10, 10)))
         os.mkdir(self.path("grains"))
@@ -42,6 +42,8 @@ class Documents(Case):
         guide = document("guide.md")
         manifest = re.search(r"(?m)^    shape,count\n(    .+\n)+", guide).group(0)
         self.write("scene.csv", manifest.replace("    ", ""))
+        curve = re.search(r"(?m)^    printf '(size,passing.+)' > curve\.csv$", guide).group(1)
+        self.write("curve.csv", curve.replace("\\n", "\n"))
         commands = re.findall(r"(?m)^ {4,}mskit (.+)$", guide)
         self.assertGreater(len(commands), 20)
         for command in commands:
