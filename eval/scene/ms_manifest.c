@@ -224,6 +224,16 @@ ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, uint64_
     return MS_OK;
 }
 
+ms_manifest_name ms_manifest_name_row(const ms_manifest_row *row)
+{
+    ms_manifest_name name;
+    const int length = snprintf(name.text, sizeof name.text, "%.460s", row->path);
+    if (!isnan(row->size)) {
+        snprintf(name.text + length, sizeof name.text - (size_t)length, ", size %g", row->size);
+    }
+    return name;
+}
+
 size_t ms_manifest_first(const ms_manifest *manifest, size_t row)
 {
     size_t first = 0;

@@ -37,6 +37,13 @@ ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *er
 /** Particles of one shape. @return MS_OK; MS_ERR_NOMEM */
 ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, uint64_t particles, ms_error *err);
 
+/** What messages call it: "grain.stl", or "grain.stl, size 0.5". */
+typedef struct ms_manifest_name {
+    char text[512];
+} ms_manifest_name;
+
+ms_manifest_name ms_manifest_name_row(const ms_manifest_row *row);
+
 /** Index of the first row of the same shape; its own for the first. */
 size_t ms_manifest_first(const ms_manifest *manifest, size_t row);
 

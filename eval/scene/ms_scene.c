@@ -70,7 +70,7 @@ static ms_status choose_by_tolerance(ms_scene_shape *shape, const ms_goal *goal,
     return ms_fail(err, MS_ERR_LIMIT,
                    "%s: no template of up to %zu spheres has %s %.6g, the best has %.6g; raise --max-spheres, use more "
                    "cells or another method, or ease the tolerance",
-                   shape->row->path, shape->most, goal->measure->name, value, best);
+                   ms_manifest_name_row(shape->row).text, shape->most, goal->measure->name, value, best);
 }
 
 static ms_status choose_by_knee(ms_scene_shape *shape, const ms_goal *goal, ms_error *err)
@@ -391,7 +391,7 @@ void ms_scene_say_remarks(const ms_scene *scene)
     for (size_t s = 0; s < scene->count; s++) {
         const ms_scene_shape *shape = &scene->shape[s];
         if (shape->remarks[shape->chosen - 1].text[0]) {
-            fprintf(stderr, "%s: %s\n", shape->row->path, shape->remarks[shape->chosen - 1].text);
+            fprintf(stderr, "%s: %s\n", ms_manifest_name_row(shape->row).text, shape->remarks[shape->chosen - 1].text);
         }
     }
 }

@@ -1,6 +1,5 @@
 #include "ms_scene_charts.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,7 +31,7 @@ static ms_chart_point make_point(const ms_scene_shape *shape, size_t n, const ms
 static ms_status draw_shape(const ms_scene_shape *shape, const ms_goal *goal, const char *stem, ms_chart_point *point,
                             FILE *words, ms_error *err)
 {
-    char title[NAME_SIZE], size[32] = "";
+    char title[NAME_SIZE];
     const ms_measure *measure = find_measure(goal);
     const char *label = measure->axis ? measure->axis : measure->label;
     ms_chart_point chosen = make_point(shape, shape->chosen, measure);
@@ -47,10 +46,7 @@ static ms_status draw_shape(const ms_scene_shape *shape, const ms_goal *goal, co
     const ms_chart_series series[] = {{.name = "templates", .style = MS_CHART_CURVE, .count = count, .point = point},
                                       {.name = "chosen", .style = MS_CHART_CURVE, .count = 1, .point = &chosen},
                                       {.name = "tolerance", .style = MS_CHART_LEVEL, .count = 1, .point = &tolerance}};
-    if (!isnan(shape->row->size)) {
-        snprintf(size, sizeof size, ", size %g", shape->row->size);
-    }
-    snprintf(title, sizeof title, "%.200s%s: %.60s by number of spheres", shape->row->path, size, label);
+    snprintf(title, sizeof title, "%.220s: %.60s by number of spheres", ms_manifest_name_row(shape->row).text, label);
     const ms_chart chart = {.title = title,
                             .x_label = "number of spheres",
                             .y_label = label,

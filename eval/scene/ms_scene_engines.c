@@ -73,7 +73,7 @@ ms_status ms_scene_engines_correct(ms_scene *scene, const ms_scene_engines *e, s
         ms_error cause;
         status = ms_mass_correct(&shape->mass, &shape->sized, &e->mass, &shape->body, max_voxels, &cause);
         if (status != MS_OK) {
-            status = ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
+            status = ms_fail(err, status, "%s: %s", ms_manifest_name_row(shape->row).text, cause.text);
         }
     }
     return status;
@@ -140,7 +140,8 @@ static ms_status check_room(const ms_packing *packing, const ms_scene *scene, co
         if (width < 2 * ROOM * reach) {
             return ms_fail(err, MS_ERR_ARG,
                            "%s reaches %.4g from its centre, which takes a vessel of %.4g; --%s has %.4g",
-                           scene->shape[k].row->path, reach, 2 * ROOM * reach, e->is_round ? "cylinder" : "box", width);
+                           ms_manifest_name_row(scene->shape[k].row).text, reach, 2 * ROOM * reach,
+                           e->is_round ? "cylinder" : "box", width);
         }
     }
     return MS_OK;
@@ -158,7 +159,7 @@ ms_status ms_scene_engines_check(const ms_scene *scene, const ms_scene_engines *
             ms_error cause;
             status = ms_write_check(&content, outputs[s].file[f].format, &cause);
             if (status != MS_OK) {
-                status = ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
+                status = ms_fail(err, status, "%s: %s", ms_manifest_name_row(shape->row).text, cause.text);
             }
         }
     }

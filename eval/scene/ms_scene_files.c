@@ -44,17 +44,18 @@ static ms_status check_template(const ms_outputs *outputs, const ms_manifest *ma
     return MS_OK;
 }
 
-ms_status ms_scene_files_plan(ms_outputs *outputs, const ms_scene_files *a, const ms_manifest *manifest, ms_error *err)
+ms_status ms_scene_files_plan(ms_outputs *outputs, const ms_scene_files *asked, const ms_manifest *manifest,
+                              ms_error *err)
 {
     ms_status status = MS_OK;
-    for (size_t r = 0; a->folder && r < manifest->count && status == MS_OK; r++) {
-        outputs[r].folder = a->folder;
-        for (size_t f = 0; f < a->n_formats && status == MS_OK; f++) {
-            char *path = template_path(a->folder, &manifest->row[r], a->format[f]);
+    for (size_t r = 0; asked->folder && r < manifest->count && status == MS_OK; r++) {
+        outputs[r].folder = asked->folder;
+        for (size_t f = 0; f < asked->n_formats && status == MS_OK; f++) {
+            char *path = template_path(asked->folder, &manifest->row[r], asked->format[f]);
             if (!path) {
                 return ms_fail(err, MS_ERR_NOMEM, "no memory for the names of %zu templates", manifest->count);
             }
-            outputs[r].file[outputs[r].n_files++] = (ms_output_file){path, path, a->format[f]};
+            outputs[r].file[outputs[r].n_files++] = (ms_output_file){path, path, asked->format[f]};
             status = check_template(outputs, manifest, r, f, err);
         }
     }
@@ -62,12 +63,12 @@ ms_status ms_scene_files_plan(ms_outputs *outputs, const ms_scene_files *a, cons
 }
 
 /* The scripts of the engines. */
-static ms_status list_scripts(ms_files *files, const ms_scene_files *a, ms_error *err)
+static ms_status list_scripts(ms_files *files, const ms_scene_files *asked, ms_error *err)
 {
     ms_status status = MS_OK;
-    for (size_t f = 0; a->folder && f < a->n_formats && status == MS_OK; f++) {
-        if (a->format[f]->scene.suffix) {
-            char *path = ms_scene_engines_path(a->folder, a->format[f], 1);
+    for (size_t f = 0; asked->folder && f < asked->n_formats && status == MS_OK; f++) {
+        if (asked->format[f]->scene.suffix) {
+            char *path = ms_scene_engines_path(asked->folder, asked->format[f], 1);
             status = path ? ms_files_add(files, path, MS_FILE_WRITTEN, err)
                           : ms_fail(err, MS_ERR_NOMEM, "no memory for the names of the scripts");
             free(path);
@@ -76,31 +77,31 @@ static ms_status list_scripts(ms_files *files, const ms_scene_files *a, ms_error
     return status;
 }
 
-ms_status ms_scene_files_check(const ms_outputs *outputs, const ms_scene_files *a, const ms_manifest *manifest,
+ms_status ms_scene_files_check(const ms_outputs *outputs, const ms_scene_files *asked, const ms_manifest *manifest,
                                ms_error *err)
 {
     ms_files files = {0};
     ms_status status = MS_OK;
     for (int f = 0; f < MS_SCENE_FILES_READ && status == MS_OK; f++) {
-        status = a->read[f] ? ms_files_add(&files, a->read[f], MS_FILE_READ, err) : MS_OK;
+        status = asked->read[f] ? ms_files_add(&files, asked->read[f], MS_FILE_READ, err) : MS_OK;
     }
-    if (status == MS_OK && a->charts) {
-        status = ms_files_add_folder(&files, a->charts, err);
+    if (status == MS_OK && asked->charts) {
+        status = ms_files_add_folder(&files, asked->charts, err);
     }
     for (size_t r = 0; r < manifest->count && status == MS_OK; r++) {
         status = ms_files_add_shape(&files, manifest->row[r].path, err);
         if (status == MS_OK) {
             status = ms_outputs_list(&files, &outputs[r], err);
         }
-        if (status == MS_OK && a->charts) {
-            status = ms_scene_charts_list(&files, a->charts, &manifest->row[r], r + 1, a->goal, err);
+        if (status == MS_OK && asked->charts) {
+            status = ms_scene_charts_list(&files, asked->charts, &manifest->row[r], r + 1, asked->goal, err);
         }
     }
     if (status == MS_OK) {
-        status = list_scripts(&files, a, err);
+        status = list_scripts(&files, asked, err);
     }
-    if (status == MS_OK && a->report) {
-        status = ms_files_add(&files, a->report, MS_FILE_WRITTEN, err);
+    if (status == MS_OK && asked->report) {
+        status = ms_files_add(&files, asked->report, MS_FILE_WRITTEN, err);
     }
     if (status == MS_OK) {
         status = ms_files_check(&files, err);

@@ -25,11 +25,11 @@ typedef struct ms_scene_files {
  * @param[out] outputs of each row, zeroed before
  * @return MS_OK; MS_ERR_ARG for two of one name; MS_ERR_NOMEM
  */
-ms_status ms_scene_files_plan(ms_outputs *outputs, const ms_scene_files *files, const ms_manifest *manifest,
+ms_status ms_scene_files_plan(ms_outputs *outputs, const ms_scene_files *asked, const ms_manifest *manifest,
                               ms_error *err);
 
 /** Holds them against what is read, and tries them. @return as ms_outputs_list and ms_files_check */
-ms_status ms_scene_files_check(const ms_outputs *outputs, const ms_scene_files *files, const ms_manifest *manifest,
+ms_status ms_scene_files_check(const ms_outputs *outputs, const ms_scene_files *asked, const ms_manifest *manifest,
                                ms_error *err);
 
 #endif

@@ -1,6 +1,5 @@
 #include "ms_scene_page.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "base/ms_escape.h"
@@ -125,12 +124,9 @@ static ms_status put_shape(FILE *stream, const ms_scene_page *page, const ms_sce
     }
     status = ms_input_show(&target, &input, page->run->input->label, err);
     if (status == MS_OK) {
-        const int length = snprintf(name, sizeof name, "%.400s, %.40s, %zu spheres", shape->row->path,
-                                    recipe->generator->name, ms_scene_clump(shape)->n_spheres);
-        if (!isnan(shape->row->size)) {
-            snprintf(name + length, sizeof name - (size_t)length, ", size %g", shape->row->size);
-            size_shown(&target, &input, shape->factor);
-        }
+        snprintf(name, sizeof name, "%.400s, %.40s, %zu spheres", ms_manifest_name_row(shape->row).text,
+                 recipe->generator->name, ms_scene_clump(shape)->n_spheres);
+        size_shown(&target, &input, shape->factor);
         const ms_view_scene scene = {.name = name,
                                      .clump = ms_scene_clump(shape),
                                      .target = &target,

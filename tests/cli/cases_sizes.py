@@ -186,7 +186,7 @@ class Length(Sizes):
             with self.subTest(args=args):
                 self.assert_refused("scene", "scene.csv", *QUICK, *args, code=2, says=(says,))
         self.assert_refused("scene", "scene.csv", *QUICK, "--tolerance-length", "1e-9", "--max-spheres", "3", code=1,
-                            says=("box.obj", "3 spheres", "dice"))
+                            says=("box.obj, size 1:", "3 spheres", "dice"))
 
 
 class Sieve(Sizes):
