@@ -17,7 +17,7 @@ VESSELS = {"box": ("--box", "8,7"), "cylinder": ("--cylinder", "8")}
 SIZE = {"box": (4e-3, 3.5e-3), "cylinder": (4e-3, 4e-3)}  # half its width
 FORMATS = ("--format", "liggghts", "--format", "lammps", "--format", "yade")
 SHAPES_ALONE = {"grain": 4, "tablet": 3, "ring": 3}
-SIZES = {"grain-2.2": 2, "grain-1.1": 16, "ball-1.5": 3}
+SIZES = {"grain-2.2": 1, "grain-1.4": 4, "ball-1.8": 2}
 
 
 class Scene(engines.Clump):

@@ -12,7 +12,7 @@ static void write_yade_settings(FILE *stream, const ms_script_scene *s)
           stream);
     fprintf(stream, "young, poisson, restitution, friction = %s, 0.3, 0.5, 0.5\n", ms_script_number(s->young, &young));
     fprintf(stream, "step = %s * math.sqrt(%s / young)\n", ms_script_number(s->step, &step), young.text);
-    fprintf(stream, "part = math.ceil(%s / 10 / step)  # steps, a tenth of the time of the fall\n",
+    fprintf(stream, "tenth = math.ceil(%s / 100 / step)  # steps: of a part, ten of which are the time of the fall\n",
             ms_script_number(s->fall, &fall));
     fprintf(stream, "least = %s  # J, kinetic energy of all at rest\n", ms_script_number(s->rest, &rest));
     fprintf(stream, "density = %s\n", ms_script_number(s->density, &rest));
@@ -99,6 +99,7 @@ static const char ENGINES[] =
     "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom()],\n"
     "                    [Ip2_FrictMat_FrictMat_MindlinPhys(en=restitution)], [Law2_ScGeom_MindlinPhys_Mindlin()]),\n"
     "    NewtonIntegrator(damping=0, gravity=(0, 0, -9.81)),\n"
+    "    PyRunner(command='slow_down()', iterPeriod=tenth, firstIterRun=200 * tenth),\n"
     "]\n"
     "O.dt = step\n\n\n";
 
@@ -119,26 +120,29 @@ static const char MEASURES[] =
     "    kinetic = kineticEnergy()\n"
     "    return mass, kinetic, kinetic + weight, height, highest, within / (area * height / 2)\n\n\n";
 
-static const char REST[] =
-    "# They fall, and come to rest within a hundred times the time of the fall.\n"
-    "print('step', 'mass', 'kinetic', 'total', 'height', 'highest', 'fraction')\n"
-    "state = 'not at rest'\n"
-    "for parts in range(1000):\n"
-    "    for tenth in range(10):\n"
-    "        O.run(math.ceil(part / 10), True)\n"
-    "        for body in [O.bodies[clump].state for clump in clumps if parts >= 20]:  # the drag\n"
-    "            body.vel, body.angVel, body.angMom = body.vel * 0.99, body.angVel * 0.99, body.angMom * 0.99\n"
-    "    print(O.iter, *measure())\n"
-    "    if parts >= 20 and kineticEnergy() < least:\n"
-    "        state = 'at rest'\n"
-    "        break\n\n"
-    "ids = [i for clump in clumps for i in O.bodies[clump].shape.members if O.bodies[i].mask]\n"
-    "with open('scene.yade.dump', 'w') as dump:\n"
-    "    print('# id clump x y z radius', file=dump)\n"
-    "    for i in ids:\n"
-    "        b = O.bodies[i]\n"
-    "        print(i, b.clumpId, *b.state.pos, b.shape.radius, file=dump)\n"
-    "export.VTKExporter('scene.yade').exportSpheres(ids=ids)\n\n";
+static const char DRAG[] =
+    "def slow_down():\n"
+    "    \"\"\"The drag, a hundredth of all that moves.\"\"\"\n"
+    "    for body in [O.bodies[clump].state for clump in clumps]:\n"
+    "        body.vel, body.angVel, body.angMom = body.vel * 0.99, body.angVel * 0.99, body.angMom * 0.99\n\n\n";
+
+/* Each O.run waits some hundredths of a second for its end. */
+static const char REST[] = "# They fall, and come to rest within a hundred times the time of the fall.\n"
+                           "print('step', 'mass', 'kinetic', 'total', 'height', 'highest', 'fraction')\n"
+                           "state = 'not at rest'\n"
+                           "for parts in range(1000):\n"
+                           "    O.run(10 * tenth, True)\n"
+                           "    print(O.iter, *measure())\n"
+                           "    if parts >= 20 and kineticEnergy() < least:\n"
+                           "        state = 'at rest'\n"
+                           "        break\n\n"
+                           "ids = [i for clump in clumps for i in O.bodies[clump].shape.members if O.bodies[i].mask]\n"
+                           "with open('scene.yade.dump', 'w') as dump:\n"
+                           "    print('# id clump x y z radius', file=dump)\n"
+                           "    for i in ids:\n"
+                           "        b = O.bodies[i]\n"
+                           "        print(i, b.clumpId, *b.state.pos, b.shape.radius, file=dump)\n"
+                           "export.VTKExporter('scene.yade').exportSpheres(ids=ids)\n\n";
 
 static void write_yade_results(FILE *stream, const ms_script_scene *s)
 {
@@ -169,6 +173,7 @@ ms_status ms_yade_scene(FILE *stream, const ms_packing *scene, const char *name,
     write_yade_vessel(stream, &s);
     fprintf(stream, "area = %s  # of the floor\n", ms_script_number(ms_script_scene_area(&s), &area));
     fputs(ENGINES, stream);
+    fputs(DRAG, stream);
     fputs(MEASURES, stream);
     fputs(REST, stream);
     write_yade_results(stream, &s);
