@@ -48,7 +48,8 @@ COMMANDS = {
     "compare": ["compare", "body.stl", "-n", "2,3", "-g", "mss", "-g", "setcover", "--charts", "charts",
                 "-o", "out.csv"] + SMALL,
     "stability": ["stability", "body.stl", "-g", "mss", "-n", "2", "--json"] + SMALL,
-    "scene": ["scene", "scene.csv", "--budget", "8", "--max-spheres", "4", "-o", "templates", "--json"] + SMALL,
+    "scene": ["scene", "scene.csv", "--sieve", "curve.csv", "--budget", "8", "--max-spheres", "4", "-o", "templates",
+              "--json"] + SMALL,
     "generators": ["generators", "--json"],
 }
 
@@ -159,6 +160,8 @@ def make_inputs(folder):
     os.rename(os.path.join(folder, "body.off"), os.path.join(folder, "other.off"))
     with open(os.path.join(folder, "scene.csv"), "w", encoding="ascii") as f:
         f.write("shape,count\nbody.stl,3\nother.off,1\n")
+    with open(os.path.join(folder, "curve.csv"), "w", encoding="ascii") as f:
+        f.write("size,passing\n1,0\n1.2,0.4\n1.4,1\n")
     solid = bytes(all(2 <= v < 8 for v in (i, j, k)) for k in range(10) for j in range(10) for i in range(10))
     header = b"{'descr': '|u1', 'fortran_order': False, 'shape': (10, 10, 10), }".ljust(117) + b"\n"
     with open(os.path.join(folder, "body.npy"), "wb") as f:
