@@ -11,9 +11,6 @@
 
 enum { SHAPE, COUNT, TOLERANCE, SIZE, COLUMNS };
 
-/* Of a size, so that its fifth power is a number. */
-static const double LARGEST = 1e50, SMALLEST = 1e-50;
-
 /* Which column stands where. */
 typedef struct manifest_header {
     int count, column[COLUMNS];
@@ -129,9 +126,10 @@ static ms_status read_tolerance(double *tolerance, const ms_word *word, const ms
 static ms_status read_size(double *size, const ms_word *word, const ms_text *text, ms_error *err)
 {
     *size = (double)NAN;
-    if (word->length > 0 && (!ms_text_to_double(size, word) || !(*size >= SMALLEST && *size <= LARGEST))) {
+    if (word->length > 0 &&
+        (!ms_text_to_double(size, word) || !(*size >= MS_MANIFEST_LEAST_SIZE && *size <= MS_MANIFEST_MOST_SIZE))) {
         return ms_text_fail(err, text, "the size '%s' is not a number from %g to %g", ms_text_quote(word).text,
-                            SMALLEST, LARGEST);
+                            MS_MANIFEST_LEAST_SIZE, MS_MANIFEST_MOST_SIZE);
     }
     return MS_OK;
 }

@@ -9,6 +9,10 @@
 
 enum { MS_MANIFEST_MAX_SHAPES = 1000, MS_MANIFEST_MAX_PARTICLES = 1000000000 };
 
+/* Of sizes, so that their fifth powers are numbers. */
+#define MS_MANIFEST_LEAST_SIZE 1e-50
+#define MS_MANIFEST_MOST_SIZE 1e50
+
 /** One kind of particle. */
 typedef struct ms_manifest_row {
     char *path; /* of the shape, as it can be opened */

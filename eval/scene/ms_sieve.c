@@ -7,9 +7,6 @@
 #include "base/ms_text.h"
 #include "ms_sieve_counts.h"
 
-/* Of a size, so that its cube is a number. */
-static const double LARGEST = 1e50, SMALLEST = 1e-50;
-
 /* The rows of the file. */
 typedef struct sieve_curve {
     size_t count;
@@ -61,9 +58,9 @@ static ms_status read_row(sieve_curve *curve, ms_text *text, ms_error *err)
         return ms_text_fail(err, text, "'%s' is not a size and a share", ms_text_quote(&line).text);
     }
     double *size = &curve->size[at], *passing = &curve->passing[at];
-    if (!ms_text_to_double(size, &field[0]) || !(*size >= SMALLEST && *size <= LARGEST)) {
+    if (!ms_text_to_double(size, &field[0]) || !(*size >= MS_MANIFEST_LEAST_SIZE && *size <= MS_MANIFEST_MOST_SIZE)) {
         return ms_text_fail(err, text, "the size '%s' is not a number from %g to %g", ms_text_quote(&field[0]).text,
-                            SMALLEST, LARGEST);
+                            MS_MANIFEST_LEAST_SIZE, MS_MANIFEST_MOST_SIZE);
     }
     if (!ms_text_to_double(passing, &field[1]) || !(*passing >= 0 && *passing <= 1)) {
         return ms_text_fail(err, text, "the share '%s' is not a number from 0 to 1", ms_text_quote(&field[1]).text);
