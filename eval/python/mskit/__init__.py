@@ -12,8 +12,8 @@ Lengths are in the unit of the shape, angles in degrees, masses in kg. Errors ar
 """
 import os as _os
 
-# Threads that spin while they wait lose where others want the cores, too: they look for some ten microseconds and sleep.
-# OpenMP reads its policy when it is loaded, so it is set before the library is.
+# Threads that spin while they wait lose where others want the cores, too: these look for some ten microseconds and then
+# sleep. OpenMP reads its policy when it is loaded, so it is set before the library is.
 if "OMP_WAIT_POLICY" not in _os.environ and "GOMP_SPINCOUNT" not in _os.environ:
     _os.environ.update(OMP_WAIT_POLICY="passive", GOMP_SPINCOUNT="500")
 
