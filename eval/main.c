@@ -61,10 +61,14 @@ static void occupy_streams(void)
     }
 }
 
+/* How often a thread of gcc's OpenMP looks for work before it sleeps: some ten microseconds. */
+static const char LOOKS[] = "500";
+
 /*
  * Threads that spin while they wait lose where others want the cores, too: two runs side by side took 30 times as long.
- * OpenMP reads its policy when it is loaded, before any code of ours, so the program starts itself once more with the
- * policy set. Where that fails it goes on as it is.
+ * Those that sleep at once are late for the thousands of short loops of a choice. OpenMP reads its policy when it is
+ * loaded, before any code of ours, so the program starts itself once more with the policy set. Where that fails it goes
+ * on as it is.
  */
 static void wait_passively(char **argv)
 {
@@ -73,7 +77,7 @@ static void wait_passively(char **argv)
         return;
     }
     const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1); /* by its name, for ps and kill */
-    if (length > 0 && setenv("OMP_WAIT_POLICY", "passive", 1) == 0) {
+    if (length > 0 && setenv("OMP_WAIT_POLICY", "passive", 1) == 0 && setenv("GOMP_SPINCOUNT", LOOKS, 1) == 0) {
         program[length] = '\0';
         execv(program, argv);
     }

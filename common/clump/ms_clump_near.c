@@ -158,6 +158,7 @@ static void find_whole_box(ms_clump_near *near, const ms_mesh *mesh)
     for (int a = 0; a < 3; a++) {
         near->lo[a] = mesh ? fmin(lo[a], low[a]) : lo[a];
         near->side[a] = ((mesh ? fmax(hi[a], high[a]) : hi[a]) - near->lo[a]) / (double)near->cells;
+        near->per_side[a] = 1 / near->side[a];
     }
 }
 
@@ -194,7 +195,7 @@ static const uint16_t *see_spheres(size_t *count, const ms_clump_near *near, con
     size_t at[3];
     *count = near->clump->n_spheres;
     for (int a = 0; a < 3; a++) {
-        const double cell = (place[a] - near->lo[a]) / near->side[a];
+        const double cell = (place[a] - near->lo[a]) * near->per_side[a];
         if (!(cell >= 0 && cell < (double)near->cells)) {
             return NULL;
         }
@@ -229,9 +230,9 @@ int ms_clump_near_hides(const ms_clump_near *near, const double point[3], size_t
     const uint16_t *seen = see_spheres(&count, near, point);
     for (size_t at = 0; at < count; at++) {
         const size_t other = seen ? seen[at] : at;
-        const double square = near->clump->sphere[other].radius * near->clump->sphere[other].radius;
-        const double away = ms_squared_distance(point, near->clump->sphere[other].centre);
-        if (other != s && (away < square * (1 - 1e-12) || (other < s && away <= square * (1 + 1e-12)))) {
+        const ms_sphere *sphere = &near->clump->sphere[other];
+        const double square = sphere->radius * sphere->radius, away = ms_squared_distance(point, sphere->centre);
+        if (away <= square * (1 + 1e-12) && other != s && (other < s || away < square * (1 - 1e-12))) {
             return 1;
         }
     }

@@ -10,6 +10,7 @@
 typedef struct ms_clump_near {
     const ms_clump *clump; /* borrowed */
     double lo[3], side[3]; /* of the box, of a cell */
+    double per_side[3];    /* 1 / side */
     size_t cells;          /* along an axis */
     struct ms_clump_near_cell *cell;
     struct ms_clump_near_list *list;

@@ -78,7 +78,8 @@ typedef struct ms_metrics {
  * @return MS_OK; MS_ERR_ARG for an empty clump; MS_ERR_LIMIT; MS_ERR_NOMEM
  *
  * Cost: one raster of the union, a search per sample of the surfaces (ms_surface.h), the descriptors of the clump, and
- * those of the target, unless ms_descriptors_add has been there before.
+ * those of the target, unless ms_descriptors_add has been there before. All cores: those of a mesh, which are work for
+ * one, by a thread of its own beside the rest.
  */
 MS_API ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target,
                                     const ms_clump *clump, size_t max_voxels, ms_error *err);

@@ -12,10 +12,10 @@ Lengths are in the unit of the shape, angles in degrees, masses in kg. Errors ar
 """
 import os as _os
 
-# Threads that spin while they wait lose where others want the cores, too. OpenMP reads its policy when it is loaded, so
-# it is set before the library is.
+# Threads that spin while they wait lose where others want the cores, too: these look for some ten microseconds and then
+# sleep. OpenMP reads its policy when it is loaded, so it is set before the library is.
 if "OMP_WAIT_POLICY" not in _os.environ and "GOMP_SPINCOUNT" not in _os.environ:
-    _os.environ["OMP_WAIT_POLICY"] = "passive"
+    _os.environ.update(OMP_WAIT_POLICY="passive", GOMP_SPINCOUNT="500")
 
 from ._allocate import Allocation, allocate
 from ._clumps import Clump, Particle, formats, read_clump, write
