@@ -66,6 +66,7 @@ typedef struct ms_generator {
     int nested;               /* nonzero: the first k spheres of a run are the clump of k spheres */
     const char *unnested_by;  /* a FLAG among its options under which a nested one is not; NULL if there is none */
     const char *cut_by;       /* a CHOICE among its options of which any but the first needs cut cells; NULL: none */
+    const char *volume_by;    /* a FLAG among its options that has it find spheres of the shape's volume; NULL: none */
     double bytes_per_voxel;   /* that a run takes beyond the target's at its peak; 0: as ms_target_bytes */
     double bytes_per_square;  /* the same, for each square of the surface (ms_target_need) */
     double kept_bytes;        /* of those, a voxel: stay with the target for runs to come */

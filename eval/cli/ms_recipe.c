@@ -75,6 +75,9 @@ ms_status ms_recipe_resolve(ms_recipe *recipe, ms_error *err)
     recipe->generator = ms_generator_find(recipe->name, err);
     ms_status status =
         recipe->generator ? ms_option_settings_init(&recipe->settings, recipe->generator->options, err) : MS_ERR_ARG;
+    if (status == MS_OK && recipe->equal_volume && recipe->generator->volume_by) {
+        status = ms_option_settings_set(&recipe->settings, recipe->generator->volume_by, NULL, err);
+    }
     for (int w = 0; w < recipe->n_wishes && status == MS_OK; w++) {
         const ms_wish *wish = &recipe->wish[w];
         char name[64];

@@ -26,6 +26,7 @@ typedef struct ms_recipe {
     ms_wish wish[MS_RECIPE_MAX_OPTIONS];
     int n_wishes;
     double seed;
+    int equal_volume;              /* clumps will be scaled to the shape's volume: a method that can, holds it itself */
     const ms_generator *generator; /* after ms_recipe_resolve */
     ms_settings settings;
 } ms_recipe;

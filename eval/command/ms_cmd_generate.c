@@ -49,7 +49,7 @@ typedef struct generate_arguments {
     ms_least_work_tries tries;
     ms_outputs outputs;
     ms_mass_flags mass;
-    int correct, equal_volume;
+    int correct;
     const char *target_grid, *curve;
     int json;
 } generate_arguments;
@@ -83,7 +83,7 @@ static ms_status take_generate_flag(void *context, const char *name, const char 
         return MS_OK;
     }
     if (strcmp(name, "equal-volume") == 0) {
-        a->equal_volume = 1;
+        a->recipe.equal_volume = 1;
         return MS_OK;
     }
     if (strcmp(name, "json") == 0 || strcmp(name, "correct") == 0) {
@@ -404,7 +404,7 @@ static int execute_generate(const ms_command *command, generate_arguments *a)
     if (status == MS_OK) {
         status = a->work.dice > 0 ? try_clumps(&r, a, &input, &err) : make_clump(&r, a, &input, &err);
     }
-    if (status == MS_OK && a->equal_volume) {
+    if (status == MS_OK && a->recipe.equal_volume) {
         status = ms_equal_volume_scale(&r.clump, &r.volume, &input.target.body, &err);
     }
     if (status == MS_OK) {
@@ -425,7 +425,7 @@ static ms_status resolve_generate(generate_arguments *a, ms_error *err)
     if (refused != MS_OK) {
         return refused;
     }
-    if (a->equal_volume && (a->curve || a->work.dice > 0)) {
+    if (a->recipe.equal_volume && (a->curve || a->work.dice > 0)) {
         return ms_fail(
             err, MS_ERR_ARG,
             "--equal-volume scales the clump of the end: not with --curve or --least-work, which judge clumps "

@@ -94,7 +94,7 @@ static int take_grains_word(grains_arguments *a, const char *name)
         const char *name;
         int *is_set;
     } words[] = {{"skip-border", &a->grains.skip_border},
-                 {"equal-volume", &a->grains.equal_volume},
+                 {"equal-volume", &a->how.recipe.equal_volume},
                  {"largest-piece", &a->grains.largest_piece},
                  {"resume", &a->resume},
                  {"merge", &a->merge},
@@ -434,7 +434,7 @@ static ms_status execute_grains(grains_arguments *a, char *const *words, size_t 
     }
     a->grains.list = &list;
     /* Rows of a run with the flag and of one without are no one run. */
-    a->grains.run = ms_grain_list_checksum(&list) ^ (uint64_t)a->grains.equal_volume;
+    a->grains.run = ms_grain_list_checksum(&list) ^ (uint64_t)a->how.recipe.equal_volume;
     status = a->assembly ? ms_grain_assembly_check(&a->grains, err) : MS_OK;
     if (status == MS_OK && a->report) {
         status = ms_grain_report_check(&a->grains, err);

@@ -64,7 +64,7 @@ typedef struct scene_arguments {
     const ms_format *format[MS_OUTPUTS_FORMATS];
     size_t n_formats;
     const char *charts, *report; /* folder; path of the page; NULL: none */
-    int equal_volume, json, argc;
+    int json, argc;
     char *const *argv;
 } scene_arguments;
 
@@ -188,7 +188,7 @@ static ms_status take_scene_flag(void *context, const char *name, const char *va
         return take_template_format(a, value, err);
     }
     if (strcmp(name, "json") == 0 || strcmp(name, "equal-volume") == 0) {
-        *(name[0] == 'j' ? &a->json : &a->equal_volume) = 1;
+        *(name[0] == 'j' ? &a->json : &a->recipe.equal_volume) = 1;
         return MS_OK;
     }
     return ms_recipe_flag(&taken, &a->recipe, name, value, err);
@@ -303,7 +303,7 @@ static ms_status choose_and_correct(ms_scene *scene, const scene_arguments *a, c
 static ms_status execute_scene(scene_arguments *a, const ms_manifest *manifest, ms_outputs *outputs, ms_error *err)
 {
     ms_scene scene;
-    const ms_scene_run run = {&a->recipe, &a->input, (size_t)a->max_spheres, a->min_radius, a->equal_volume};
+    const ms_scene_run run = {&a->recipe, &a->input, (size_t)a->max_spheres, a->min_radius};
     const ms_scene_files files = {.read = {a->source, a->recipe.settings.clump_file, a->sieve_file},
                                   .folder = a->folder,
                                   .format = a->format,

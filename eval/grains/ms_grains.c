@@ -209,7 +209,7 @@ static ms_status make_clump(ms_result *r, const ms_input *input, const ms_grain_
     ms_status status = ms_generator_run(&r->clump, &r->reason, how->recipe.generator, &run, err);
     const double generated = omp_get_wtime();
     const size_t max_voxels = ms_input_max_voxels(&how->input);
-    if (status == MS_OK && g->equal_volume) {
+    if (status == MS_OK && how->recipe.equal_volume) {
         status = ms_equal_volume_scale(&r->clump, &r->volume, &input->target.body, err);
     }
     if (status == MS_OK) {

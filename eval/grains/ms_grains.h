@@ -16,7 +16,6 @@ typedef struct ms_grains {
     const ms_mass_flags *mass; /* resolved; NULL: no masses */
     const ms_format *format[MS_GRAINS_FORMATS];
     size_t n_formats;
-    int equal_volume;    /* clumps are scaled to the volume of the grain */
     int skip_border;     /* grains that the border of their volume cuts are left out */
     double least_voxels; /* labels of fewer voxels are left out */
     int largest_piece;   /* of a label in several pieces the largest alone is taken */

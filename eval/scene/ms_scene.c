@@ -161,7 +161,7 @@ static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const 
     if (status == MS_OK) {
         status = ms_curve_clumps(shape->score, shape->clump, shape->remarks, clump, generator, run, max_voxels, err);
     }
-    if (status == MS_OK && how->equal_volume) {
+    if (status == MS_OK && how->recipe->equal_volume) {
         status = scale_templates(shape, run->target, max_voxels, err);
     }
     if (status == MS_OK) {

@@ -70,7 +70,6 @@ typedef struct ms_scene_run {
     const ms_input_flags *input;
     size_t max_spheres;
     double min_radius; /* 0: none */
-    int equal_volume;  /* scale each template, before it is judged, until its union has the shape's volume */
 } ms_scene_run;
 
 /**

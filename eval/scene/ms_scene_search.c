@@ -110,6 +110,6 @@ ms_status ms_scene_search(ms_scene_shape *shape, const ms_input *input, const ms
                       .generator = how->recipe->generator,
                       .run = *run,
                       .max_voxels = ms_input_max_voxels(how->input),
-                      .equal_volume = how->equal_volume};
+                      .equal_volume = how->recipe->equal_volume};
     return search_number(shape, &s, expect_number(input, goal, shape->tolerance, shape->most), err);
 }

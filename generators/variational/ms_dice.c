@@ -6,8 +6,7 @@
 #include "clump/ms_union.h"
 #include "ms_coverage_count.h"
 
-/* |U|, in voxels. */
-static ms_status find_union_volume(double *volume, const ms_ball *ball, size_t count, ms_error *err)
+ms_status ms_dice_union_volume(double *volume, const ms_ball *ball, size_t count, ms_error *err)
 {
     ms_clump clump = {0};
     double area;
@@ -36,7 +35,7 @@ ms_status ms_dice_compute(double *dice, const ms_grid *grid, size_t voxels, cons
     }
     ms_coverage_count_close(&o);
     if (status == MS_OK) {
-        status = find_union_volume(&volume, ball, count, err);
+        status = ms_dice_union_volume(&volume, ball, count, err);
     }
     *dice = status == MS_OK ? 1 - 2 * (double)both / ((double)voxels + volume) : 1;
     return status;

@@ -17,4 +17,7 @@
 ms_status ms_dice_compute(double *dice, const ms_grid *grid, size_t voxels, const ms_ball *ball, size_t count,
                           ms_error *err);
 
+/** |U|, exact, in voxels. @return, cost: as ms_union_measure */
+ms_status ms_dice_union_volume(double *volume, const ms_ball *ball, size_t count, ms_error *err);
+
 #endif

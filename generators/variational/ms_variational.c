@@ -14,7 +14,7 @@
 #include "shared/ms_bisect_count.h"
 #include "shared/ms_judge.h"
 
-enum { EFFORT, POINTS, PROTRUSION, GAP, CONNECTED, EQUAL_RADIUS, SYMMETRY, PLANES, REFINE };
+enum { EFFORT, POINTS, PROTRUSION, GAP, CONNECTED, EQUAL_RADIUS, HOLD_VOLUME, SYMMETRY, PLANES, REFINE };
 
 static const ms_option OPTIONS[] = {
     [EFFORT] = {"effort", MS_OPTION_INTEGER, 0, 0, 3, NULL, NULL,
@@ -26,6 +26,8 @@ static const ms_option OPTIONS[] = {
              "no part of the surface is farther from the spheres; below 0: no bound"},
     [CONNECTED] = {"connected", MS_OPTION_FLAG, 0, 0, 1, NULL, NULL, "the spheres are one piece"},
     [EQUAL_RADIUS] = {"equal-radius", MS_OPTION_FLAG, 0, 0, 1, NULL, NULL, "all spheres of one radius"},
+    [HOLD_VOLUME] = {"hold-volume", MS_OPTION_FLAG, 0, 0, 1, NULL, NULL,
+                     "the union has the shape's volume, but for what little is left to scale"},
     [SYMMETRY] = {"symmetry", MS_OPTION_CHOICE, 0, 0, 0, "none|x|y|z|xy|xz|yz|xyz", NULL,
                   "the spheres are mirror images across planes through the centroid, normal to these axes"},
     [PLANES] = {"plane", MS_OPTION_PLANE, 0, 0, 0, NULL, NULL,
@@ -83,6 +85,13 @@ static ms_status judge_clump(ms_stop_reason *reason, const ms_clump *clump, size
     return status;
 }
 
+/* What else binds the spheres would not survive the fit, nor the scaling after it. */
+static int can_hold_volume(const ms_settings *settings)
+{
+    const double *value = settings->value;
+    return value[PROTRUSION] < 0 && value[GAP] < 0 && value[CONNECTED] == 0 && settings->n_planes == 0;
+}
+
 static ms_variational_settings read_settings(const ms_run *run)
 {
     const double *value = run->settings->value;
@@ -96,6 +105,7 @@ static ms_variational_settings read_settings(const ms_run *run)
                                         .connected = value[CONNECTED] != 0,
                                         .mirror = {.across = {across[0], across[1], across[2]}},
                                         .refine = &run->settings->clump};
+    settings.hold_volume = value[HOLD_VOLUME] != 0 && can_hold_volume(run->settings);
     ms_grid_at(settings.mirror.at, &run->target->grid, run->target->body.centroid);
     return settings;
 }
@@ -219,6 +229,10 @@ static ms_status generate_by_variational(ms_clump *clump, ms_stop_reason *reason
     if (run->settings->n_planes > 0 && run->settings->value[SYMMETRY] != 0) {
         return ms_fail(err, MS_ERR_ARG, "give either planes or a symmetry: a mirror image might cross a plane");
     }
+    if (run->settings->value[HOLD_VOLUME] != 0 && !can_hold_volume(run->settings)) {
+        ms_generator_remark(run, "the fit does not hold the volume of the shape beside protrusion, gap, connected or "
+                                 "planes; the spheres are those without hold-volume");
+    }
     const size_t most = run->stop.spheres > 0 ? run->stop.spheres : MS_CLUMP_MAX_SPHERES;
     ms_run each = *run;
     ms_settings settings = *run->settings;
@@ -238,6 +252,7 @@ const ms_generator ms_generator_variational = {
     .summary = "spheres fitted to the surface where they are exposed, so that the mismatch itself is least",
     .source = "mskit (2026); objective: Buchele et al., MSS eq. 2",
     .nested = 0,
+    .volume_by = "hold-volume",
     .bytes_per_voxel = 7,
     .bytes_per_square = 60, /* places to start from */
     .kept_bytes = 4.8,      /* signed distances at steps 1, 2, 3 and 4 */

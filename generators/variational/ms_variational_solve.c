@@ -14,6 +14,7 @@
 #include "ms_split.h"
 #include "ms_surface_tally.h"
 #include "ms_variational_solver.h"
+#include "ms_volume_hold.h"
 
 /* Part of the surplus that is dropped at a time: what goes at once is chosen without knowing of the rest. */
 static const double DROP = 0.1;
@@ -317,6 +318,9 @@ ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
     }
     if (status == MS_OK) {
         status = try_bulk(&s, err);
+    }
+    if (status == MS_OK && settings->hold_volume) {
+        status = ms_volume_hold(s.ball, s.count, &s.fit, err);
     }
     if (status == MS_OK) {
         *count = ms_variational_solver_expand(&s);

@@ -11,6 +11,7 @@ typedef struct ms_variational_settings {
     ms_bounds bounds; /* `least` is found from the stop rule */
     double gap;       /* no part of the surface is to be farther from the spheres, voxels; HUGE_VAL: no bound */
     int connected;    /* nonzero: one piece */
+    int hold_volume;  /* nonzero: |U| = |S| */
     ms_mirror mirror;
     const ms_clump *refine; /* spheres to start from; empty: none */
 } ms_variational_settings;

@@ -121,6 +121,18 @@ class Correct(Case):
         score = self.mskit("score", "e.csv", "--target", "box.obj", *GRID, "--json").json
         self.assertEqual(score["scores"]["dice"], run.json["scores"]["dice"])
 
+    def test_equal_volume_is_held(self):
+        """variational leaves little to scale, unless it is told not to hold it."""
+        scale = {}
+        for hold in (True, False):
+            flags = () if hold else ("--set", "hold-volume=0")
+            run = self.mskit("generate", "box.obj", *GRID, "-n", 5, "--equal-volume", *flags, "--json", "-o", "e.csv").json
+            self.assertEqual(run["options"]["hold-volume"], "on" if hold else "off")
+            self.assert_close(run["equal_volume"]["volume"], 6, 1e-12)
+            scale[hold] = run["equal_volume"]["scale"]
+        self.assertLess(abs(scale[True] - 1), 1e-3)
+        self.assertGreater(abs(scale[False] - 1), 5e-3)
+
     def test_equal_volume_refused(self):
         self.assert_refused("correct", "c.csv", "--properties", "union", "--density", 1, "--equal-volume",
                             "-o", "d.csv", code=2, says=("--equal-volume",))
