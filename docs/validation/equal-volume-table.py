@@ -3,9 +3,9 @@
 
     MSKIT=build/eval/mskit docs/validation/equal-volume-table.py DATA
 
-Of the free clump, of the same one scaled afterwards, and of the one that is fitted under the constraint, with the volume
-of the free one and the user time of both runs. DATA holds the meshes named below; those that are not there are named
-and left out. The other shapes are made. D is scored at 200 cells along the longest side. One thread.
+Of the free clump, of the same one scaled afterwards, and of the one that is fitted under the constraint, with the
+volume of the free one and the user time of both runs. DATA holds the meshes named below; those that are not there are
+named and left out. The other shapes are made. D is scored at 200 cells along the longest side. One thread.
 """
 import json
 import os

@@ -13,17 +13,20 @@
 #include "clump/formats/ms_read.h"
 #include "clump/ms_particle.h"
 #include "contact/ms_contact_report.h"
+#include "contact/ms_envelope_report.h"
 #include "ms_commands.h"
 
 static const ms_flag FLAGS[] = {
     {"target", 't', "SHAPE", "the mesh or volume that the clump stands for: its volume, centre and poses"},
     {"poses", 0, "N", "orientations drawn at random, and pairs of faces (1000)"},
     {"overlap", 0, "PART[,PART]...", "largest overlap of a contact / r_eq (0.0005,0.002,0.01)"},
+    {"envelope", 0, "PART[,PART]...",
+     "also the volume that no ball of this radius / r_eq, kept outside, can enter; of clump and shape"},
     {"restitution", 0, "E", "coefficient of restitution of one contact (0.5)"},
     {"factors", 0, NULL, "also one modulus and one restitution that would undo it, with their price"},
     {"seed", 0, "S", "seed of the orientations (1)"},
     {"json", 0, NULL, "as JSON"},
-    {"csv", 0, NULL, "the contacts as CSV"},
+    {"csv", 0, NULL, "the contacts as CSV; with --envelope the envelopes"},
     MS_INPUT_MENDING_FLAGS,
     MS_INPUT_VOLUME_FLAGS,
     {"max-memory", 0, "SIZE", "refuse grids beyond this, as 500M or 8G (3/4 of the machine's)"},
@@ -34,6 +37,7 @@ static const ms_flag FLAGS[] = {
 typedef struct contact_arguments {
     ms_input_flags input;
     ms_contact_options options;
+    ms_envelope_table envelopes; /* the radii alone */
     const char *clump, *target;
     const char *of_shape; /* a flag about the shape; NULL without */
     int json, csv, factors;
@@ -44,22 +48,25 @@ typedef struct contact_bodies {
     ms_clump clump;
     ms_body body;
     ms_support shape; /* empty without --target */
+    ms_mesh mesh;     /* of the shape; empty without one */
 } contact_bodies;
 
-static ms_status take_overlaps(ms_contact_options *options, const char *value, ms_error *err)
+/* Parts of r_eq, as 0.001,0.01. @param list room for `most` */
+static ms_status take_parts(double *list, size_t *count, size_t most, const char *name, const char *value,
+                            const double range[2], ms_error *err)
 {
-    options->n_overlaps = 0;
+    *count = 0;
     for (const char *at = value;; at++) {
         const ms_word word = {at, strcspn(at, ",")};
         double part;
-        if (!ms_text_to_double(&part, &word) || !(part >= 1e-9 && part <= MS_CONTACT_MOST_OVERLAP)) {
-            return ms_fail(err, MS_ERR_ARG, "--overlap takes parts of r_eq from 1e-9 to 0.1, as 0.001,0.01, not %s",
-                           value);
+        if (!ms_text_to_double(&part, &word) || !(part >= range[0] && part <= range[1])) {
+            return ms_fail(err, MS_ERR_ARG, "--%s takes parts of r_eq from %g to %g, as %g,%g, not %s", name, range[0],
+                           range[1], 0.01 * range[1], 0.1 * range[1], value);
         }
-        if (options->n_overlaps == MS_CONTACT_MAX_OVERLAPS) {
-            return ms_fail(err, MS_ERR_ARG, "--overlap takes %d parts at most", MS_CONTACT_MAX_OVERLAPS);
+        if (*count == most) {
+            return ms_fail(err, MS_ERR_ARG, "--%s takes %zu parts at most", name, most);
         }
-        options->overlap[options->n_overlaps++] = part;
+        list[(*count)++] = part;
         at += word.length;
         if (*at == '\0') {
             return MS_OK;
@@ -98,7 +105,11 @@ static ms_status take_contact_flag(void *context, const char *name, const char *
     if (strcmp(name, "target") == 0) {
         a->target = value;
     } else if (strcmp(name, "overlap") == 0) {
-        return take_overlaps(&a->options, value, err);
+        return take_parts(a->options.overlap, &a->options.n_overlaps, MS_CONTACT_MAX_OVERLAPS, name, value,
+                          (const double[]){1e-9, MS_CONTACT_MOST_OVERLAP}, err);
+    } else if (strcmp(name, "envelope") == 0) {
+        return take_parts(a->envelopes.radius, &a->envelopes.count, MS_ENVELOPE_MOST, name, value,
+                          (const double[]){0.01, 100}, err);
     } else if (strcmp(name, "json") == 0 || strcmp(name, "csv") == 0) {
         *(name[0] == 'j' ? &a->json : &a->csv) = 1;
     } else if (strcmp(name, "factors") == 0) {
@@ -123,10 +134,18 @@ static ms_status read_shape(contact_bodies *b, const contact_arguments *a, ms_er
         status = ms_fail(err, MS_ERR_SHAPE,
                          "%s is not closed and has no centre of mass; mend it (--fill-holes, --weld)", input.path);
     }
+    if (status == MS_OK && input.is_volume && a->envelopes.count > 0) {
+        status = ms_fail(err, MS_ERR_ARG, "%s is a volume, on whose steps a ball would rest: --envelope takes a mesh",
+                         input.path);
+    }
     if (status == MS_OK) {
         b->body = input.is_volume ? input.target.body : input.solid.body;
         status = input.is_volume ? ms_support_from_grid(&b->shape, &input.target.grid, b->body.centroid, err)
                                  : ms_support_from_mesh(&b->shape, &input.mesh, b->body.centroid, err);
+    }
+    if (status == MS_OK) {
+        b->mesh = input.mesh;
+        input.mesh = (ms_mesh){0};
     }
     ms_input_free(&input);
     return status;
@@ -159,7 +178,28 @@ static ms_status study_contact(ms_contact *contact, const contact_bodies *b, con
     return status == MS_OK ? MS_OK : ms_fail(err, status, "%s: %s", ms_file_name(a->clump), cause.text);
 }
 
-static json_t *contact_json(const contact_arguments *a, const ms_contact *contact, size_t spheres)
+static ms_status find_envelopes(ms_envelope_table *table, const contact_bodies *b, const ms_contact *contact,
+                                ms_error *err)
+{
+    ms_envelope_body body;
+    ms_closest *closest = NULL;
+    table->r_eq = contact->r_eq;
+    table->clump.mean_width = contact->clump.mean_width;
+    table->shape.mean_width = contact->shape.mean_width;
+    ms_status status = ms_envelope_body_clump(&body, &b->clump, err);
+    if (status == MS_OK) {
+        status = ms_envelope_fill(&table->clump, table, &body, err);
+    }
+    if (status == MS_OK && b->mesh.n_triangles > 0 && (status = ms_closest_build(&closest, &b->mesh, err)) == MS_OK) {
+        body = ms_envelope_body_mesh(&b->mesh, closest, b->body.volume);
+        status = ms_envelope_fill(&table->shape, table, &body, err);
+    }
+    ms_closest_free(closest);
+    return status;
+}
+
+static json_t *contact_json(const contact_arguments *a, const ms_contact *contact, const ms_envelope_table *envelopes,
+                            size_t spheres)
 {
     json_t *json = json_pack("{s:o,s:o,s:I,s:I,s:f,s:I}", "path", ms_report_text(ms_file_name(a->clump)), "target",
                              a->target ? ms_report_text(ms_file_name(a->target)) : json_null(), "spheres",
@@ -169,13 +209,42 @@ static json_t *contact_json(const contact_arguments *a, const ms_contact *contac
     if (a->factors) {
         ms_json_object_merge(&json, ms_contact_report_factors_json(contact, a->options.restitution));
     }
+    if (envelopes->count > 0) {
+        ms_json_object_merge(&json, ms_envelope_report_json(envelopes));
+    }
     return json;
+}
+
+static ms_status report_contact(const contact_arguments *a, const contact_bodies *b, const ms_contact *contact,
+                                const ms_envelope_table *envelopes, ms_error *err)
+{
+    if (a->json) {
+        return ms_report_print(stdout, contact_json(a, contact, envelopes, b->clump.n_spheres), err);
+    }
+    if (a->csv) {
+        if (envelopes->count > 0) {
+            ms_envelope_report_csv(stdout, envelopes);
+        } else {
+            ms_contact_report_csv(stdout, contact);
+        }
+        return MS_OK;
+    }
+    printf("%s, %zu spheres\n", ms_file_name(a->clump), b->clump.n_spheres);
+    ms_contact_report_print(stdout, contact);
+    if (a->factors) {
+        ms_contact_report_factors(stdout, contact, a->options.restitution);
+    }
+    if (envelopes->count > 0) {
+        ms_envelope_report_print(stdout, envelopes);
+    }
+    return MS_OK;
 }
 
 static ms_status execute_contact(const contact_arguments *a, ms_error *err)
 {
     contact_bodies b = {.clump = {0}};
     ms_contact contact;
+    ms_envelope_table envelopes = a->envelopes;
     if (a->input.threads) {
         omp_set_num_threads(a->input.threads);
     }
@@ -184,20 +253,16 @@ static ms_status execute_contact(const contact_arguments *a, ms_error *err)
         status = study_contact(&contact, &b, a, err);
     }
     if (status == MS_OK) {
-        if (a->json) {
-            status = ms_report_print(stdout, contact_json(a, &contact, b.clump.n_spheres), err);
-        } else if (a->csv) {
-            ms_contact_report_csv(stdout, &contact);
-        } else {
-            printf("%s, %zu spheres\n", ms_file_name(a->clump), b.clump.n_spheres);
-            ms_contact_report_print(stdout, &contact);
-            if (a->factors) {
-                ms_contact_report_factors(stdout, &contact, a->options.restitution);
-            }
+        if (envelopes.count > 0) {
+            status = find_envelopes(&envelopes, &b, &contact, err);
+        }
+        if (status == MS_OK) {
+            status = report_contact(a, &b, &contact, &envelopes, err);
         }
         ms_contact_free(&contact);
     }
     ms_support_free(&b.shape);
+    ms_mesh_free(&b.mesh);
     ms_clump_free(&b.clump);
     return status;
 }
@@ -241,8 +306,8 @@ static int run_contact(const ms_command *command, int argc, char **argv)
 const ms_command ms_command_contact = {
     .name = "contact",
     .summary = "how many spheres of a clump touch at once, what rebounds, and how it lies beside its shape",
-    .usage =
-        "CLUMP [--target SHAPE] [--poses N] [--overlap PART] [--restitution E] [--factors] [--seed S] [--json | --csv]",
+    .usage = "CLUMP [--target SHAPE] [--poses N] [--overlap PART] [--envelope PART] [--restitution E] [--factors] "
+             "[--seed S] [--json | --csv]",
     .example = "mskit contact grain.csv --target grain.stl --overlap 0.001",
     .flags = FLAGS,
     .run = run_contact,

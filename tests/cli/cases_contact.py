@@ -104,6 +104,38 @@ class Contact(Case):
         # Each corner is a ball of 1/2 there: h differs by (|x| + |y| + |z| - 1) / 2, whose square has this mean.
         self.assert_close(found["support_rms"], math.sqrt((2 + 4 / math.pi - 3) / 4), 2e-3, "rms")
 
+    def test_envelope(self):
+        """Of two balls that touch, between them a neck in closed form; of a box, itself."""
+        self.write("two.csv", "x,y,z,r\n0.5,1,0.5,0.5\n1.5,1,0.5,0.5\n")
+        args = ("two.csv", "--target", "box.obj", "--overlap", "0.01", "--poses", "5", "--envelope")
+        r_eq = (3 * 6 / (4 * math.pi))**(1 / 3)
+        radius = 0.5 / r_eq
+        row, = self.mskit("contact", *args, repr(radius), "--json").json["envelopes"]
+        # The centre on a ring of radius root(3)/2; the balls touch at 1/4 from the middle.
+        ring = math.sqrt(3) / 2
+        wide = (ring**2 + 0.25) / 4 - ring * (0.25 * ring / 2 + 0.25 * math.pi / 6) - 0.25**3 / 3
+        neck = 2 * math.pi * (wide - (0.25**2 / 2 - 0.25**3 / 3))
+        self.assert_close(row["radius"], radius, 1e-12)
+        self.assert_close(row["clump_volume"] * 6, math.pi / 3, 1e-9)
+        self.assertAlmostEqual(row["clump_envelope"] * 6, math.pi / 3 + neck, delta=1e-3)
+        self.assert_close(row["clump_width"] * 2 * r_eq, 1.5, 1e-3, "that of a ball and half the distance")
+        self.assert_close(row["shape_volume"], 1, 1e-12)
+        self.assert_close(row["shape_envelope"], 1, 1e-9)
+        self.assert_close(row["shape_width"] * 2 * r_eq, 3, 1e-3)
+        table = list(csv.DictReader(io.StringIO(self.mskit("contact", *args, repr(radius), "--csv").out)))
+        self.assertEqual(list(table[0]), list(row))
+        for name, value in table[0].items():
+            self.assert_close(float(value), row[name], 1e-6, name)
+        alone = self.mskit("contact", "two.csv", "--overlap", "0.01", "--poses", "5", "--envelope", "0.1,1")
+        self.assertEqual(len([l for l in alone.out.splitlines() if l.startswith("  clump    ") and "e-" in l]), 2)
+        self.assertIn("parts of r_eq", self.mskit("contact", *args, "0", code=2).err)
+
+    def test_envelope_of_a_volume_refused(self):
+        self.write("v.npy", npy([0] * 21 + [1] + [0] * 42, (4, 4, 4)))
+        self.write("one.csv", "x,y,z,r\n1,1,1,0.5\n")
+        self.assert_refused("contact", "one.csv", "--target", "v.npy", "--envelope", "0.5", code=1,
+                            says=("takes a mesh",))
+
     def test_one_ball(self):
         self.write("ball.csv", "x,y,z,r\n1,2,3,0.7\n")
         found = self.contact("ball.csv", "--overlap", "0.01")

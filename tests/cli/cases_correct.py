@@ -126,7 +126,8 @@ class Correct(Case):
         scale = {}
         for hold in (True, False):
             flags = () if hold else ("--set", "hold-volume=0")
-            run = self.mskit("generate", "box.obj", *GRID, "-n", 5, "--equal-volume", *flags, "--json", "-o", "e.csv").json
+            run = self.mskit("generate", "box.obj", *GRID, "-n", 5, "--equal-volume", *flags, "--json",
+                             "-o", "e.csv").json
             self.assertEqual(run["options"]["hold-volume"], "on" if hold else "off")
             self.assert_close(run["equal_volume"]["volume"], 6, 1e-12)
             scale[hold] = run["equal_volume"]["scale"]

@@ -1,0 +1,133 @@
+/* Envelopes by rolling balls, against bodies of revolution in closed form. */
+#include "contact/ms_envelope.h"
+#include "support/clump_samples.h"
+#include "support/test_support.h"
+
+static ms_envelope find_envelope(const ms_envelope_body *body, double radius)
+{
+    ms_envelope out;
+    ms_error err;
+    if (ms_envelope_compute(&out, body, radius, &err) != MS_OK) {
+        fail_msg("%s", err.text);
+    }
+    return out;
+}
+
+static ms_envelope envelope_of_clump(double *volume, const ms_clump *clump, double radius)
+{
+    ms_envelope_body body;
+    assert_int_equal(ms_envelope_body_clump(&body, clump, NULL), MS_OK);
+    *volume = body.volume;
+    return find_envelope(&body, radius);
+}
+
+/* Of a kind of shape by its mesh; its volume, too. */
+static ms_envelope envelope_of_shape(double *volume, const char *kind, const char *parameters, double radius)
+{
+    ms_mesh mesh;
+    ms_body solid;
+    ms_closest *closest;
+    make_shape(&mesh, kind, parameters);
+    assert_int_equal(ms_inertia_mesh(&solid, &mesh, NULL), MS_OK);
+    assert_int_equal(ms_closest_build(&closest, &mesh, NULL), MS_OK);
+    const ms_envelope_body body = ms_envelope_body_mesh(&mesh, closest, solid.volume);
+    const ms_envelope out = find_envelope(&body, radius);
+    ms_closest_free(closest);
+    ms_mesh_free(&mesh);
+    *volume = solid.volume;
+    return out;
+}
+
+static void one_ball_is_its_own(void **state)
+{
+    ms_clump clump = {0};
+    double volume;
+    (void)state;
+    add_sphere(&clump, 5.3, 0.2, 0.1, 1.7);
+    const ms_envelope e = envelope_of_clump(&volume, &clump, 0.7);
+    expect_close(e.volume, ball_volume(1.7), 1e-9);
+    expect_close(e.error, 0, 1e-9);
+    ms_clump_free(&clump);
+}
+
+static void convex_bodies_are_their_own(void **state)
+{
+    double volume;
+    (void)state;
+    const ms_envelope e = envelope_of_shape(&volume, "cube", "fineness=1", 0.3);
+    expect_close(e.volume, volume, 1e-9 * volume);
+    expect_close(e.error, 0, 1e-9 * volume);
+}
+
+/* Between two balls of radius 1 that touch: the ball rolls about their axis with its centre on a ring of radius s, so
+ * that the neck is s - root(R^2 - x^2) wide, up to x = R / (1 + R) where it touches. */
+static double neck_of(double r)
+{
+    const double s = sqrt((1 + r) * (1 + r) - 1), x = r / (1 + r);
+    const double ring = (s * s + r * r) * x - s * (x * sqrt(r * r - x * x) + r * r * asin(x / r)) - x * x * x / 3;
+    return 2 * pi * (ring - (x * x - x * x * x / 3));
+}
+
+static void two_balls_that_touch(void **state)
+{
+    static const double RADIUS[] = {0.2, 3};
+    ms_clump clump = {0};
+    (void)state;
+    add_sphere(&clump, 0.3, 0.2, 0.1, 1);
+    add_sphere(&clump, 0.3 + 1.2, 0.2 + 1.28, 0.1 + 0.96, 1);
+    assert_int_equal(ms_clump_add_carrier(&clump, &(ms_sphere){{0, 0, 2}, 1}, NULL), MS_OK); /* touches nothing */
+    for (size_t r = 0; r < sizeof RADIUS / sizeof *RADIUS; r++) {
+        double volume;
+        const ms_envelope e = envelope_of_clump(&volume, &clump, RADIUS[r]);
+        expect_close(volume, 2 * ball_volume(1), 1e-12);
+        expect_close(e.volume - volume, neck_of(RADIUS[r]), 1e-3);
+        assert_true(e.error > 0 && e.error < 2e-2);
+    }
+    ms_clump_free(&clump);
+}
+
+/* A ball of 4 on a ring of 3 and 1 rests at 4 above its middle, and touches at 2.4 from the axis: above the hole there
+ * is 4 - root(16 - p^2), less the ring from 2 to 2.4. Its centre is in a corner, that of a cone. */
+static void the_hole_of_a_ring(void **state)
+{
+    const double above = 4 * 2.88 - (64 - 32.768) / 3;
+    const double ring = 1.5 * (pi / 2 - 0.48 - asin(0.6)) - 0.512 / 3;
+    double volume;
+    (void)state;
+    const ms_envelope e = envelope_of_shape(&volume, "torus", "R=3 r=1 fineness=8", 4);
+    expect_close(e.volume - volume, 4 * pi * (above - ring), 0.03 * 4 * pi * (above - ring));
+}
+
+/* A cavity of 0.5 holds the ball, or is filled. */
+static void a_cavity(void **state)
+{
+    double volume;
+    (void)state;
+    ms_envelope e = envelope_of_shape(&volume, "hollow", "R=1 r=0.5 fineness=8", 0.45);
+    expect_close(e.volume, volume, 0.01); /* the corners of its facets are filled */
+    e = envelope_of_shape(&volume, "hollow", "R=1 r=0.5 fineness=8", 0.6);
+    expect_close(e.volume, volume * 8 / 7, 0.003);
+}
+
+static void what_there_is_none_of(void **state)
+{
+    ms_envelope_body body;
+    ms_error err = {{0}};
+    const ms_clump empty = {0};
+    (void)state;
+    assert_int_equal(ms_envelope_body_clump(&body, &empty, &err), MS_ERR_ARG);
+    assert_non_null(strstr(err.text, "no spheres"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_ball_is_its_own),
+        cmocka_unit_test(convex_bodies_are_their_own),
+        cmocka_unit_test(two_balls_that_touch),
+        cmocka_unit_test(the_hole_of_a_ring),
+        cmocka_unit_test(a_cavity),
+        cmocka_unit_test(what_there_is_none_of),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
