@@ -31,6 +31,7 @@ import numpy
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import tables  # noqa: E402
+from intervals import interval_of_mean  # noqa: E402
 MSKIT = os.environ.get("MSKIT", os.path.join(HERE, "..", "..", "build", "eval", "mskit"))
 LIGGGHTS = os.environ.get("LIGGGHTS", "liggghts")
 TABLE = os.path.join(HERE, "packing.csv")
@@ -166,17 +167,20 @@ def pack(folder, n, seed, step):
 
 
 def make_table():
-    """Mean and standard deviation over the packings by one clump and step."""
+    """Mean, half of its 90 % interval, and standard deviation over the packings of so many spheres and one step."""
     rows, out = tables.read(TABLE), []
     for n, step in dict.fromkeys((row["n"], row["step"]) for row in rows):
         these = [row for row in rows if (row["n"], row["step"]) == (n, step)]
 
         def spread(name, digits, these=these):
             values = [float(row[name]) for row in these]
-            deviation = f" +- {statistics.stdev(values):.{digits}f}" if len(values) > 1 else ""
-            return f"{statistics.mean(values):.{digits}f}{deviation}"
-        out.append([n, f"{float(these[0]['dice']):.4f}", step, str(len(these)), spread("height_envelope", 1),
-                    spread("height_top", 1), spread("fraction", 4), spread("cpu_seconds", 0)])
+            if len(values) == 1:
+                return f"{values[0]:.{digits}f}"
+            mean, half = interval_of_mean(values)
+            return f"{mean:.{digits}f} +- {half:.{digits}f} ({statistics.stdev(values):.{digits}f})"
+        dice = sorted({f"{float(row['dice']):.4f}" for row in these})
+        out.append([n, " and ".join(dice), step, str(len(these)), spread("height_envelope", 2), spread("height_top", 2),
+                    spread("fraction", 4), f"{statistics.mean(float(row['cpu_seconds']) for row in these):.0f}"])
     return tables.markdown(["spheres", "D", "step, s", "packings", "mean of the upper envelope, mm",
                             "highest point, mm", "packing fraction", "CPU s"], out)
 

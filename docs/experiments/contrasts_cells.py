@@ -1,0 +1,110 @@
+"""The clumps of contrasts.py: for the M&M candy of packing.py, of its volume unless their radii were changed."""
+import csv
+import json
+import math
+import os
+import subprocess
+from collections import namedtuple
+
+from packing import A, C, DENSITY, MASS, MSKIT
+
+# radii: factor on all of them, with places, mass and inertia as they were; rolling: coefficient of rolling friction
+Cell = namedtuple("Cell", "method n radii rolling", defaults=(1.0, 0.0))
+CELLS = {
+    **{f"sphere-{rolling:g}": Cell("sphere", 1, 1.0, rolling) for rolling in (0.0, 0.1, 0.3)},
+    **{f"variational-{n}": Cell("variational", n) for n in (2, 3, 5, 10, 20)},
+    "variational-10-small": Cell("variational", 10, 0.97),
+    "variational-10-large": Cell("variational", 10, 1.03),
+    "setcover-10": Cell("setcover", 10),
+    "mss-10": Cell("mss", 10),
+    "variational-60": Cell("variational", 60),
+}
+SERIES = ["sphere-0"] + [f"variational-{n}" for n in (2, 3, 5, 10, 20, 60)]  # the last one is the reference
+HIDDEN = 1e-2  # radius of a sphere within a single one, which LIGGGHTS wants beside it, over that of the latter
+
+COLUMNS = ["cell", "method", "n", "radii", "rolling", "dice", "volume", "mean_width", "normal_median", "convexity",
+           "contacts"]
+
+
+def run_mskit(*words):
+    done = subprocess.run([MSKIT, *map(str, words)], check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    return done.stdout
+
+
+def find_shape(folder):
+    shape = os.path.join(folder, "candy.stl")
+    if not os.path.exists(shape):
+        run_mskit("shape", "ellipsoid", f"a={A}", f"b={A}", f"c={C}", "-o", shape)
+    return shape
+
+
+def write_rows(path, rows, head="", between=" "):
+    with open(path, "w", encoding="ascii") as stream:
+        stream.write(head + "".join(between.join(repr(x) for x in row) + "\n" for row in rows))
+
+
+def read_rows(path):
+    with open(path, encoding="ascii") as stream:
+        return [[float(x) for x in line.split()] for line in stream]
+
+
+def write_sphere(path):
+    """A ball of the candy's volume and density, with the inertia of a ball."""
+    r = (A * A * C) ** (1 / 3) * 1e-3
+    write_rows(path, [[0.0, 0.0, 0.0, r], [0.0, 0.0, 0.0, HIDDEN * r]])
+    i = 0.4 * MASS * r * r
+    with open(path + ".in", "w", encoding="ascii") as stream:
+        stream.write("fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 "
+                     f"density constant {DENSITY} nspheres 2 ntry 1000 spheres file \"{os.path.basename(path)}\" "
+                     f"scale 1.0 type 1 mass {MASS!r} inertia_tensor {i!r} 0 0 {i!r} 0 {i!r} use_density\n")
+
+
+def write_clump(folder, path, cell):
+    if cell.method == "sphere":
+        write_sphere(path)
+    else:
+        run_mskit("generate", find_shape(folder), "-g", cell.method, "-n", cell.n, "--deq", 100, "--equal-volume",
+                  "--correct", "--density", DENSITY, "--unit", "mm", "-o", path)
+    write_rows(path, [[x, y, z, cell.radii * r] for x, y, z, r in read_rows(path)])
+
+
+def make(folder, name):
+    """The template's line for LIGGGHTS, its number of spheres, rolling friction. What is in the folder is taken."""
+    cell, path = CELLS[name], os.path.join(folder, name + ".liggghts")
+    if not os.path.exists(path + ".in"):
+        write_clump(folder, path, cell)
+    with open(path + ".in", encoding="utf-8") as stream:
+        line = next(line for line in stream if line.startswith("fix clump "))
+    return {"template": line.replace(os.path.basename(path), os.path.abspath(path)).strip(), "rolling": cell.rolling,
+            "members": len(read_rows(path))}
+
+
+def describe(folder, name):
+    """A row of contrasts-clumps.csv: what may predict how the clump acts."""
+    cell, shape = CELLS[name], find_shape(folder)
+    make(folder, name)
+    spheres = [[1000 * x for x in row] for row in read_rows(os.path.join(folder, name + ".liggghts"))]
+    path = os.path.join(folder, name + ".csv")
+    write_rows(path, spheres[:cell.n], "x,y,z,r\n", ",")
+    # Templates lie along principal axes, which are the candy's own but for a turn about its axis.
+    scores = json.loads(run_mskit("score", path, "--target", shape, "--deq", 100, "--json"))["scores"]
+    contact = json.loads(run_mskit("contact", path, "--target", shape, "--overlap", 0.002, "--json"))
+    (pair,) = [c for c in contact["contacts"] if c["against"] == "particle" and c["where"] == "random"]
+    return {"cell": name, "method": cell.method, "n": cell.n, "radii": cell.radii, "rolling": cell.rolling,
+            "dice": scores["dice"], "volume": scores["off_volume"],
+            "mean_width": contact["clump"]["mean_width"] / contact["shape"]["mean_width"],
+            "normal_median": scores["normal_median"], "convexity": scores["clump_convexity"],
+            "contacts": pair["contacts"]}
+
+
+def describe_all(folder, path):
+    """Those that are not in the table yet, added to it."""
+    there = []
+    if os.path.exists(path):
+        with open(path, newline="", encoding="utf-8") as stream:
+            there = list(csv.DictReader(stream))
+    rows = there + [describe(folder, name) for name in CELLS if name not in {row["cell"] for row in there}]
+    with open(path, "w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, COLUMNS)
+        writer.writeheader()
+        writer.writerows(rows)

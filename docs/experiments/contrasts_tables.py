@@ -1,0 +1,167 @@
+"""The tables of docs/behaviour.md on beds, from contrasts.csv and contrasts-clumps.csv beside this file."""
+import math
+import os
+import statistics
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, ".."))
+import tables  # noqa: E402
+from contrasts_cells import CELLS, SERIES  # noqa: E402
+from intervals import interval, pool  # noqa: E402
+
+RUNS, CLUMPS = (os.path.join(HERE, name) for name in ("contrasts.csv", "contrasts-clumps.csv"))
+STEP, RATE = 2.5e-5, 5.0  # of the experiment; other rows are checks of these
+# what was measured: its heading, digits, and the margin of equivalence, of the reference's mean or in degrees
+MEASURED = {"fraction": ("fraction", 4, ("relative", 0.01)), "start": ("start, degrees", 2, ("absolute", 1.0)),
+            "stop": ("stop, degrees", 2, ("absolute", 1.0)),
+            "flowed": ("fraction after flow", 4, ("relative", 0.01))}
+
+
+def read_runs(path=RUNS):
+    return tables.read(path) if os.path.exists(path) else []
+
+
+def take(rows, field, cell, step=STEP, rate=RATE):
+    """Values of a cell, in the order of the rows."""
+    return [float(row[field]) for row in rows
+            if row["cell"] == cell and (float(row["step"]), float(row["rate"])) == (step, rate)]
+
+
+def pool_cells(rows, field):
+    return pool([values for values in (take(rows, field, cell) for cell in CELLS) if values])
+
+
+def margin(field, reference):
+    kind, size = MEASURED[field][2]
+    return size * statistics.mean(reference) if kind == "relative" else size
+
+
+def is_equivalent(difference, half, allowed):
+    """The whole interval lies within the margin."""
+    return abs(difference) + half <= allowed
+
+
+def show(difference, half, digits):
+    return f"{difference:+.{digits}f} +- {half:.{digits}f}"
+
+
+def table_clumps():
+    return tables.markdown(
+        ["cell", "spheres", "D", "volume", "mean width", "normals, degrees", "convexity", "contacts of a pair"],
+        [[r["cell"], r["n"], f"{float(r['dice']):.4f}", f"{float(r['volume']):.4f}", f"{float(r['mean_width']):.4f}",
+          f"{float(r['normal_median']):.1f}", f"{float(r['convexity']):.4f}", f"{float(r['contacts']):.2f}"]
+         for r in tables.read(CLUMPS)])
+
+
+def table_runs(rows):
+    out = []
+    for cell in CELLS:
+        found = {field: take(rows, field, cell) for field in [*MEASURED, "cpu_seconds"]}
+        if found["fraction"]:
+            out.append([cell, str(len(found["fraction"]))] + [f"{statistics.mean(found[f]):.{MEASURED[f][1]}f}"
+                                                              for f in MEASURED]
+                       + [f"{statistics.mean(found['cpu_seconds']):.0f}"])
+    spread = [f"{pool_cells(rows, f)[0]:.{MEASURED[f][1]}f}" for f in MEASURED]
+    out.append(["spread within cells", str(pool_cells(rows, "fraction")[1])] + spread + [""])
+    return tables.markdown(["cell", "runs"] + [head for head, _, _ in MEASURED.values()] + ["CPU s"], out)
+
+
+def table_contrasts(rows, contrasts):
+    """Each of (what it asks, cell, other cell): differences with their intervals."""
+    out = []
+    for what, cell, other in contrasts:
+        if take(rows, "fraction", cell) and take(rows, "fraction", other):
+            out.append([what, f"{cell} - {other}"] + [
+                show(*interval(take(rows, f, cell), take(rows, f, other), *pool_cells(rows, f)), MEASURED[f][1])
+                for f in MEASURED])
+    return tables.markdown(["contrast", "difference"] + [head for head, _, _ in MEASURED.values()], out)
+
+
+def judge_series(rows, field):
+    """(cell, difference from the reference, half of the interval, within the margin, so at every larger n too)."""
+    reference, out, so_far = take(rows, field, SERIES[-1]), [], True
+    for cell in reversed(SERIES[:-1]):
+        if reference and take(rows, field, cell):
+            difference, half = interval(take(rows, field, cell), reference, *pool_cells(rows, field))
+            within = is_equivalent(difference, half, margin(field, reference))
+            so_far = so_far and within
+            out.append((cell, difference, half, within, so_far))
+    return out[::-1]
+
+
+def table_enough(rows):
+    judged = {field: {line[0]: line for line in judge_series(rows, field)} for field in MEASURED}
+    out = []
+    for cell in SERIES[:-1]:
+        if cell in judged["fraction"]:
+            line = [cell]
+            for field, by_cell in judged.items():
+                _, difference, half, within, enough = by_cell[cell]
+                line.append(show(difference, half, MEASURED[field][1])
+                            + (", enough" if enough else ", within" if within else ""))
+            out.append(line)
+    return tables.markdown([f"cell - {SERIES[-1]}"] + [head for head, _, _ in MEASURED.values()], out)
+
+
+def table_checks(rows):
+    """Other steps and rates, against the experiment's of the same cell."""
+    out = []
+    for cell, step, rate in dict.fromkeys((r["cell"], float(r["step"]), float(r["rate"])) for r in rows):
+        if (step, rate) != (STEP, RATE):
+            pairs = {f: (take(rows, f, cell, step, rate), take(rows, f, cell)) for f in MEASURED}
+            out.append([cell, f"{step:g}", f"{rate:g}", str(len(pairs["fraction"][0]))] + [
+                show(*interval(*pairs[f], *pool_cells(rows, f)), MEASURED[f][1]) for f in MEASURED])
+    return tables.markdown(["cell", "step, s", "degrees a second", "runs"] + [head for head, _, _ in MEASURED.values()],
+                           out)
+
+
+def fit_line(points):
+    """Slope and intercept of least squares."""
+    x, y = ([point[k] for point in points] for k in (0, 1))
+    middle, height = statistics.mean(x), statistics.mean(y)
+    slope = sum((a - middle) * (b - height) for a, b in points) / sum((a - middle) ** 2 for a in x)
+    return slope, height - slope * middle
+
+
+def judge_predictor(rows, clumps, field, predictor):
+    """Root mean square errors of a line through the cells of the series, but for the sphere: on these, and on cells of
+    other methods and radii, which had no part in it. None predicts the mean of the series."""
+    points = {}
+    for row in clumps:
+        values = take(rows, field, row["cell"])
+        if values and row["method"] != "sphere":
+            points[row["cell"]] = (float(row[predictor]) if predictor else 0.0, statistics.mean(values))
+    inside, outside = ([point for cell, point in points.items() if (cell in SERIES) == part] for part in (True, False))
+    slope, at = fit_line(inside) if predictor else (0.0, statistics.mean(y for _, y in inside))
+    return [math.sqrt(statistics.mean((at + slope * x - y) ** 2 for x, y in part)) for part in (inside, outside)]
+
+
+def table_predictors(rows):
+    clumps, out = tables.read(CLUMPS), []
+    for predictor, name in PREDICTORS.items():
+        line = [name]
+        for field in MEASURED:
+            line.append(", ".join(f"{error:.{MEASURED[field][1]}f}" for error in
+                                  judge_predictor(rows, clumps, field, predictor)))
+        out.append(line)
+    return tables.markdown(["predictor"] + [head for head, _, _ in MEASURED.values()], out)
+
+
+# columns of contrasts-clumps.csv
+PREDICTORS = {"": "none", "dice": "D", "mean_width": "mean width", "normal_median": "normals", "convexity": "convexity",
+              "contacts": "contacts of a pair"}
+# what is asked, cell, what it is held against
+CONTRASTS = [
+    ("radii -3 %", "variational-10-small", "variational-10"), ("radii +3 %", "variational-10-large", "variational-10"),
+    ("10 spheres, other D", "setcover-10", "variational-10"), ("10 spheres, other D", "mss-10", "variational-10"),
+    ("equal D, other n", "setcover-10", "variational-5"),
+    ("rolling friction 0.1", "sphere-0.1", "variational-60"), ("rolling friction 0.3", "sphere-0.3", "variational-60"),
+]
+
+
+def fill():
+    rows = read_runs()
+    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {
+        "bed-clumps": table_clumps(), "bed-runs": table_runs(rows), "bed-contrasts": table_contrasts(rows, CONTRASTS),
+        "bed-enough": table_enough(rows), "bed-predictors": table_predictors(rows), "bed-checks": table_checks(rows)})

@@ -1,0 +1,255 @@
+#!/usr/bin/env python3
+"""What docs/experiments/contrasts.py makes of its runs: beds of known height and fraction, series of velocities made up
+here, intervals by hand, and a table that is gone on with. The engine is a stand-in that notes how often it was called.
+
+    MSKIT=build/eval/mskit /usr/bin/python3 tests/experiments/test_contrasts.py [-v]
+"""
+import contextlib
+import csv
+import io
+import math
+import os
+import stat
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "experiments"))
+import contrasts  # noqa: E402
+import contrasts_cells as cells  # noqa: E402
+import contrasts_tables as tables  # noqa: E402
+import intervals  # noqa: E402
+
+
+class Beds(unittest.TestCase):
+    def test_layers_across_the_borders(self):
+        """Balls of radius 5 mm on a square lattice of 10 mm, those at the border cut by it. Lines end on the upper half
+        of a ball, pi/6 of its radius high in the mean over its square, or pass between, as 1 - pi/4 of them do."""
+        layers, ticks = 12, numpy.arange(6) * 10.0
+        spheres = numpy.array([[x, y, 5 + 10 * k, 5] for k in range(layers) for x in ticks for y in ticks])
+        height, fraction = contrasts.measure(spheres)
+        expected = math.pi / 4 * (10 * layers - 5) + math.pi / 6 * 5
+        self.assertAlmostEqual(height, expected, delta=0.01 * expected)
+        low, high = height / 4, 3 * height / 4
+        part = sum(self.slab(low - 5 - 10 * k, high - 5 - 10 * k) for k in range(layers)) / (10 * 10 * (high - low))
+        self.assertAlmostEqual(fraction, part, delta=0.01 * part)
+
+    @staticmethod
+    def slab(low, high, r=5.0):
+        """Volume of a ball between two planes."""
+        low, high = max(-r, min(r, low)), max(-r, min(r, high))
+        return math.pi * (r * r * (high - low) - (high ** 3 - low ** 3) / 3)
+
+    def test_wherever_the_box_begins(self):
+        """A bed that is shifted by whole voxels is the same bed."""
+        spheres = numpy.array([[3.0, 58.0, 9.0, 6.0], [30.0, 1.0, 20.0, 7.0], [59.5, 30.0, 31.0, 5.0]])
+        shifted = spheres + [17.5, 44.0, 0, 0]
+        shifted[:, :2] %= 60
+        for one, other in zip(contrasts.measure(spheres), contrasts.measure(shifted)):
+            self.assertAlmostEqual(one, other, places=12)
+
+
+class Angles(unittest.TestCase):
+    def test_where_it_starts_to_flow_for_good(self):
+        """What moves and comes to rest again before is no start."""
+        rise = [(20.0, 0.0), (21.0, 0.03), (22.0, 0.005), (23.0, 0.011), (24.0, 0.02), (25.0, 0.06)]
+        fall = [(24.0, 0.08), (23.0, 0.04), (22.0, 0.009), (21.0, 0.001)]
+        self.assertEqual(contrasts.find_angles(rise, fall), (23.0, 22.0))
+
+    def test_it_moved_from_the_first(self):
+        self.assertEqual(contrasts.find_angles([(1.0, 0.02), (2.0, 0.06)], [(1.0, 0.001)]), (1.0, 1.0))
+
+    def test_no_flow_or_no_rest(self):
+        for rise, fall in (([(20.0, 0.04)], [(19.0, 0.001)]), ([(20.0, 0.06)], [(19.0, 0.009)]), ([(20.0, 0.06)], []),
+                           ([], [])):
+            self.assertEqual(contrasts.find_angles(rise, fall), (None, None))
+
+
+class Intervals(unittest.TestCase):
+    def test_quantiles(self):
+        """Of Student's distribution, tables of any textbook."""
+        for freedom, expected in ((5, 2.0150), (10, 1.8125), (20, 1.7247), (30, 1.6973), (1000, 1.6464)):
+            self.assertAlmostEqual(intervals.quantile(freedom), expected, delta=1e-3)
+
+    def test_pooled(self):
+        deviation, freedom = intervals.pool([[1.0, 3.0], [10.0, 12.0, 14.0], [7.0]])
+        self.assertEqual(freedom, 3)
+        self.assertAlmostEqual(deviation, math.sqrt((2 + 8) / 3))
+        difference, half = intervals.interval([1.0, 3.0], [10.0, 12.0, 14.0], deviation, 10)
+        self.assertAlmostEqual(difference, -10)
+        self.assertAlmostEqual(half, intervals.quantile(10) * deviation * math.sqrt(1 / 2 + 1 / 3))
+
+    def test_one_run_has_no_interval(self):
+        deviation, freedom = intervals.pool([[1.0], [2.0]])
+        difference, half = intervals.interval([1.0], [2.0], deviation, freedom)
+        self.assertEqual(difference, -1)
+        self.assertTrue(math.isnan(half))
+        self.assertFalse(tables.is_equivalent(difference, half, 5))
+
+    def test_the_whole_interval_within_the_margin(self):
+        self.assertTrue(tables.is_equivalent(-0.5, 0.4, 1))
+        self.assertFalse(tables.is_equivalent(0.1, 1.0, 1))
+        self.assertFalse(tables.is_equivalent(-1.2, 0.1, 1))
+
+    def test_enough_only_if_so_at_every_larger_number(self):
+        """Five spheres agree with the reference and twenty do not: ten, between them, agrees and is not enough."""
+        means = dict(zip(tables.SERIES, (30.0, 25.0, 25.0, 20.0, 20.0, 25.0, 20.0)))
+        rows = [{"cell": cell, "step": tables.STEP, "rate": tables.RATE, "start": mean + noise}
+                for cell, mean in means.items() for noise in (-0.01, 0.01)]
+        judged = tables.judge_series(rows, "start")
+        self.assertEqual([line[0] for line in judged], tables.SERIES[:-1])
+        self.assertEqual([line[3] for line in judged], [False, False, False, True, True, False])
+        self.assertEqual([line[4] for line in judged], [False] * 6)
+        for row in rows:
+            row["start"] -= 5 * (row["cell"] == "variational-20")
+        judged = tables.judge_series(rows, "start")
+        self.assertEqual([line[4] for line in judged], [False, False, False, True, True, True])
+
+    def test_a_predictor_that_holds_elsewhere_and_one_that_does_not(self):
+        """The angle is 20 + 100 D, whatever the method; mean width goes with it in the series alone."""
+        clumps = [{"cell": cell, "method": "any", "dice": dice, "mean_width": width} for cell, dice, width in (
+            ("variational-2", 0.3, 1.3), ("variational-10", 0.1, 1.1), ("variational-60", 0, 1), ("mss-10", 0.2, 1))]
+        rows = [{"cell": clump["cell"], "step": tables.STEP, "rate": tables.RATE, "start": 20 + 100 * clump["dice"]}
+                for clump in clumps]
+        for predictor, inside, outside in (("dice", 0, 0), ("mean_width", 0, 20),
+                                           ("", 100 * math.sqrt(0.14 / 9), 20 / 3)):
+            errors = tables.judge_predictor(rows, clumps, "start", predictor)
+            self.assertAlmostEqual(errors[0], inside)
+            self.assertAlmostEqual(errors[1], outside)
+
+    def test_checks_are_no_part_of_the_means(self):
+        rows = [{"cell": "mss-10", "step": step, "rate": rate, "start": value}
+                for step, rate, value in ((tables.STEP, tables.RATE, 1), (tables.STEP / 2, tables.RATE, 2),
+                                          (tables.STEP, tables.RATE / 2, 3), (tables.STEP, tables.RATE, 4))]
+        self.assertEqual(tables.take(rows, "start", "mss-10"), [1, 4])
+
+
+class Clumps(unittest.TestCase):
+    def test_a_sphere_of_the_candy_s_volume(self):
+        with tempfile.TemporaryDirectory() as folder:
+            clump = cells.make(folder, "sphere-0.1")
+            self.assertEqual((clump["members"], clump["rolling"]), (2, 0.1))
+            (x, y, z, r), (*_, hidden) = cells.read_rows(os.path.join(folder, "sphere-0.1.liggghts"))
+            self.assertEqual((x, y, z), (0, 0, 0))
+            self.assertAlmostEqual(r ** 3, 6.585e-3 ** 2 * 3.395e-3, delta=1e-15)
+            self.assertLess(hidden, 0.02 * r)
+            words = clump["template"].split()
+            mass, inertia = (float(words[words.index(word) + 1]) for word in ("mass", "inertia_tensor"))
+            self.assertAlmostEqual(mass, 1377 * 4 / 3 * math.pi * r ** 3, delta=1e-12)
+            self.assertAlmostEqual(inertia, 0.4 * mass * r * r, delta=1e-15)
+
+    def test_radii_alone_differ(self):
+        """Places, mass and inertia of the small and the large clump are those of the one between."""
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(cells, "run_mskit", self.write_fake):
+            lines, rows = {}, {}
+            for name in ("variational-10", "variational-10-small", "variational-10-large"):
+                lines[name] = cells.make(folder, name)["template"].replace(name, "")
+                rows[name] = cells.read_rows(os.path.join(folder, name + ".liggghts"))
+        self.assertEqual(len(set(lines.values())), 1)
+        for name, factor in (("variational-10-small", 0.97), ("variational-10-large", 1.03)):
+            for (*at, r), (*here, radius) in zip(rows["variational-10"], rows[name]):
+                self.assertEqual(at, here)
+                self.assertAlmostEqual(radius, factor * r, places=15)
+
+    @staticmethod
+    def write_fake(*words):
+        """A clump of two spheres, for the generator's."""
+        if words[0] == "generate":
+            with open(words[-1], "w", encoding="ascii") as stream:
+                stream.write("-0.001 0 0 0.004\n0.001 0 0 0.003\n")
+            with open(words[-1] + ".in", "w", encoding="ascii") as stream:
+                stream.write(f"# a drop\nfix clump all \"{os.path.basename(words[-1])}\" mass 1\nfix kinds all\n")
+
+
+ENGINE = """#!/bin/sh
+echo called >> ../calls
+cat > settled.dump <<end
+ITEM: ATOMS id type x y z radius
+{atoms}
+end
+cp settled.dump flowed.dump
+echo "{said}"
+"""
+SAID = """at rest: 1e-20 J
+    1000 564 1e-20 0
+RISE 20 0.02
+RISE 21 0.06
+FALL 20 0.02
+FALL 19 0.001
+"""
+
+
+class Resumption(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.table = os.path.join(self.folder, "contrasts.csv")
+        self.write_engine(SAID)
+        mskit = self.write("mskit", "#!/bin/sh\necho mskit 0\n")
+        for target, name, value in ((contrasts, "TABLE", self.table), (contrasts, "MSKIT", mskit),
+                                    (contrasts, "LIGGGHTS", os.path.join(self.folder, "engine")),
+                                    (contrasts.contrasts_tables, "fill", lambda: None),
+                                    (contrasts, "describe_clumps", lambda folder: None)):
+            patch = mock.patch.object(target, name, value)
+            patch.start()
+            self.addCleanup(patch.stop)
+
+    def write(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, "w", encoding="ascii") as stream:
+            stream.write(text)
+        os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
+        return path
+
+    def write_engine(self, said, count=contrasts.COUNT):
+        atoms = [f"{k} 1 {0.005 * (k % 12)} {0.005 * (k // 12 % 12)} {0.01 + 0.005 * (k // 144)} 0.003"
+                 for k in range(2 * count)]
+        self.write("engine", ENGINE.format(atoms="\n".join(atoms), said=said))
+
+    def call(self, *words):
+        with mock.patch.object(sys, "argv", ["contrasts.py", "--work", os.path.join(self.folder, "work"), *words]), \
+                contextlib.redirect_stdout(io.StringIO()):
+            contrasts.main()
+
+    def calls(self):
+        path = os.path.join(self.folder, "work", "calls")
+        if not os.path.exists(path):
+            return 0
+        with open(path, encoding="ascii") as stream:
+            return len(stream.readlines())
+
+    def rows(self):
+        with open(self.table, newline="", encoding="utf-8") as stream:
+            return list(csv.DictReader(stream))
+
+    def test_rows_that_are_there_are_not_run_again(self):
+        self.call("--cells", "sphere-0", "--seeds", "2")
+        self.assertEqual(self.calls(), 2)
+        self.assertEqual([(r["start"], r["stop"], r["seconds"]) for r in self.rows()], [("20.0", "19.0", "0.03")] * 2)
+        self.call("--cells", "sphere-0,sphere-0.1", "--seeds", "2")
+        self.assertEqual(self.calls(), 4)
+        self.call("--cells", "sphere-0", "--seeds", "2", "--rate", "2")
+        self.assertEqual(self.calls(), 6)
+        self.assertEqual(len({(r["cell"], r["seed"], r["rate"]) for r in self.rows()}), 6)
+
+    def test_no_time_left(self):
+        self.call("--cells", "sphere-0", "--most", "-1")
+        self.assertEqual(self.calls(), 0)
+
+    def test_a_run_that_failed_is_no_row(self):
+        for said, count, word in ((SAID.replace("at rest: 1e-20 J", ""), contrasts.COUNT, "no rest"),
+                                  (SAID.replace("1e-20 J", "1 J"), contrasts.COUNT, "no rest"),
+                                  (SAID, contrasts.COUNT - 1, "498 spheres settled"),
+                                  (SAID.replace("0.06", "0.04"), contrasts.COUNT, "did not flow")):
+            self.write_engine(said, count)
+            with self.assertRaisesRegex(SystemExit, word):
+                self.call("--cells", "sphere-0")
+            self.assertFalse(os.path.exists(self.table))
+
+
+if __name__ == "__main__":
+    unittest.main()
