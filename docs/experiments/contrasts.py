@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """How many spheres are enough in bulk: beds of M&M candies by clumps that differ in one thing, in LIGGGHTS.
 
-    docs/experiments/contrasts.py [--seeds K] [--cells NAME,...] [--step SECONDS] [--rate DEGREES] [--work FOLDER]
-                                  [--most MINUTES]
+    docs/experiments/contrasts.py [--seeds K] [--cells NAME,...] [--largest N] [--step SECONDS] [--rate DEGREES]
+                                  [--work FOLDER] [--most MINUTES]
 
 A cell is a clump (contrasts_cells.py); a run is a cell with a seed. Each adds a row to contrasts.csv beside this file;
 rows that are there are not run again. Then the tables of all of them go into docs/behaviour.md, which --seeds 0 does
@@ -11,7 +11,7 @@ alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine (liggghts
 Material, friction and stiffness are Yuan's (packing.py). A box of 60 x 60 mm, periodic in x and y, has a floor of 8 x 8
 fixed spheres that touch. 250 candies in random orientations fall onto it from up to half a metre, all at once. At rest
 (kinetic energy below 1e-6 m g d each) the first three are measured; then gravity tilts towards x, by RATE degrees a
-second from 12 degrees on and four times as fast before, until the bed flows at 0.05 m/s, and back until it stands.
+second from 16 degrees on and four times as fast before, until the bed flows at 0.05 m/s, and back until it stands.
     height    mean of the highest points along vertical lines 0.5 mm apart, above the centres of the floor's spheres, mm
     fraction  between 1/4 and 3/4 of the height, the part within spheres (voxels of 0.5 mm)
     start     degrees at which the mean velocity along x rises above 0.01 m/s and stays there until the bed flows
@@ -50,7 +50,7 @@ newton off
 units si
 region box block 0 0.06 0 0.06 -0.01 0.55 units box
 create_box 2 box
-neighbor 0.0005 bin
+neighbor 0.001 bin
 neigh_modify delay 0
 hard_particles yes
 fix young all property/global youngsModulus peratomtype 5e7 5e7
@@ -96,9 +96,9 @@ print "at rest: ${{now}} J"
 group candies type 1
 write_dump candies custom settled.dump id type x y z radius modify sort id
 variable angle equal 0
-variable k loop 10000
+variable up loop 10000
 label rise
-if "${{angle}} < 11.999" then "variable next equal ${{angle}}+{fast}" else "variable next equal ${{angle}}+{slow}"
+if "${{angle}} < 15.999" then "variable next equal ${{angle}}+{fast}" else "variable next equal ${{angle}}+{slow}"
 variable angle equal ${{next}}
 variable x equal sin(${{angle}}*PI/180)
 variable z equal -cos(${{angle}}*PI/180)
@@ -107,10 +107,10 @@ run {each}
 variable now equal ${{speed}}
 print "RISE ${{angle}} ${{now}}"
 if "${{now}} > {flows} || ${{angle}} > 60" then "jump SELF flows"
-next k
+next up
 jump SELF rise
 label flows
-variable k loop 10000
+variable down loop 10000
 label fall
 variable next equal ${{angle}}-{slow}
 variable angle equal ${{next}}
@@ -121,7 +121,7 @@ run {each}
 variable now equal ${{speed}}
 print "FALL ${{angle}} ${{now}}"
 if "${{now}} < {stands} || ${{angle}} < 0" then "jump SELF stands"
-next k
+next down
 jump SELF fall
 label stands
 write_dump candies custom flowed.dump id type x y z radius modify sort id
@@ -209,8 +209,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=3, help="runs of each cell (3)")
     parser.add_argument("--cells", help="names, with commas between (all)")
-    parser.add_argument("--step", type=float, default=2.5e-5, help="s (2.5e-5)")
-    parser.add_argument("--rate", type=float, default=5.0, help="degrees a second (5)")
+    parser.add_argument("--largest", type=int, default=20, help="no clumps of more spheres (20)")
+    parser.add_argument("--step", type=float, default=contrasts_tables.STEP, help="s (4e-5)")
+    parser.add_argument("--rate", type=float, default=contrasts_tables.RATE, help="degrees a second (8)")
     parser.add_argument("--work", default="contrasts", help="folder of the engine's files (contrasts)")
     parser.add_argument("--most", type=float, default=1e9, help="no run is begun after so many minutes")
     asked = parser.parse_args()
@@ -220,8 +221,10 @@ def main():
     there = {(row["cell"], int(row["seed"]), float(row["step"]), float(row["rate"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
         for name in asked.cells.split(",") if asked.cells else cells.CELLS:
-            if (name, seed, asked.step, asked.rate) in there or time.time() - begun > 60 * asked.most:
+            if cells.CELLS[name].n > asked.largest or (name, seed, asked.step, asked.rate) in there:
                 continue
+            if time.time() - begun > 60 * asked.most:
+                break
             row = run(asked.work, name, seed, asked.step, asked.rate)
             new = not os.path.exists(TABLE)
             with open(TABLE, "a", newline="", encoding="utf-8") as stream:

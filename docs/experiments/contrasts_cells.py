@@ -11,15 +11,16 @@ from packing import A, C, DENSITY, MASS, MSKIT
 # radii: factor on all of them, with places, mass and inertia as they were; rolling: coefficient of rolling friction
 Cell = namedtuple("Cell", "method n radii rolling", defaults=(1.0, 0.0))
 CELLS = {
-    **{f"sphere-{rolling:g}": Cell("sphere", 1, 1.0, rolling) for rolling in (0.0, 0.1, 0.3)},
+    "sphere-0": Cell("sphere", 1),
     **{f"variational-{n}": Cell("variational", n) for n in (2, 3, 5, 10, 20)},
     "variational-10-small": Cell("variational", 10, 0.97),
     "variational-10-large": Cell("variational", 10, 1.03),
+    "euclid-20": Cell("euclid", 20),
     "setcover-10": Cell("setcover", 10),
-    "mss-10": Cell("mss", 10),
+    "sphere-0.1": Cell("sphere", 1, 1.0, 0.1),
     "variational-60": Cell("variational", 60),
 }
-SERIES = ["sphere-0"] + [f"variational-{n}" for n in (2, 3, 5, 10, 20, 60)]  # the last one is the reference
+SERIES = ["sphere-0"] + [f"variational-{n}" for n in (2, 3, 5, 10, 20, 60)]
 HIDDEN = 1e-2  # radius of a sphere within a single one, which LIGGGHTS wants beside it, over that of the latter
 
 COLUMNS = ["cell", "method", "n", "radii", "rolling", "dice", "volume", "mean_width", "normal_median", "convexity",

@@ -99,19 +99,21 @@ class Intervals(unittest.TestCase):
         means = dict(zip(tables.SERIES, (30.0, 25.0, 25.0, 20.0, 20.0, 25.0, 20.0)))
         rows = [{"cell": cell, "step": tables.STEP, "rate": tables.RATE, "start": mean + noise}
                 for cell, mean in means.items() for noise in (-0.01, 0.01)]
-        judged = tables.judge_series(rows, "start")
-        self.assertEqual([line[0] for line in judged], tables.SERIES[:-1])
+        reference, judged = tables.judge_series(rows, "start")
+        self.assertEqual((reference, [line[0] for line in judged]), (tables.SERIES[-1], tables.SERIES[:-1]))
         self.assertEqual([line[3] for line in judged], [False, False, False, True, True, False])
         self.assertEqual([line[4] for line in judged], [False] * 6)
         for row in rows:
             row["start"] -= 5 * (row["cell"] == "variational-20")
-        judged = tables.judge_series(rows, "start")
+        _, judged = tables.judge_series(rows, "start")
         self.assertEqual([line[4] for line in judged], [False, False, False, True, True, True])
+        reference, _ = tables.judge_series([row for row in rows if row["cell"] != "variational-60"], "start")
+        self.assertEqual(reference, "variational-20")
 
     def test_a_predictor_that_holds_elsewhere_and_one_that_does_not(self):
         """The angle is 20 + 100 D, whatever the method; mean width goes with it in the series alone."""
         clumps = [{"cell": cell, "method": "any", "dice": dice, "mean_width": width} for cell, dice, width in (
-            ("variational-2", 0.3, 1.3), ("variational-10", 0.1, 1.1), ("variational-60", 0, 1), ("mss-10", 0.2, 1))]
+            ("variational-2", 0.3, 1.3), ("variational-10", 0.1, 1.1), ("variational-60", 0, 1), ("euclid-20", 0.2, 1))]
         rows = [{"cell": clump["cell"], "step": tables.STEP, "rate": tables.RATE, "start": 20 + 100 * clump["dice"]}
                 for clump in clumps]
         for predictor, inside, outside in (("dice", 0, 0), ("mean_width", 0, 20),
@@ -121,10 +123,10 @@ class Intervals(unittest.TestCase):
             self.assertAlmostEqual(errors[1], outside)
 
     def test_checks_are_no_part_of_the_means(self):
-        rows = [{"cell": "mss-10", "step": step, "rate": rate, "start": value}
+        rows = [{"cell": "setcover-10", "step": step, "rate": rate, "start": value}
                 for step, rate, value in ((tables.STEP, tables.RATE, 1), (tables.STEP / 2, tables.RATE, 2),
                                           (tables.STEP, tables.RATE / 2, 3), (tables.STEP, tables.RATE, 4))]
-        self.assertEqual(tables.take(rows, "start", "mss-10"), [1, 4])
+        self.assertEqual(tables.take(rows, "start", "setcover-10"), [1, 4])
 
 
 class Clumps(unittest.TestCase):
@@ -229,12 +231,16 @@ class Resumption(unittest.TestCase):
     def test_rows_that_are_there_are_not_run_again(self):
         self.call("--cells", "sphere-0", "--seeds", "2")
         self.assertEqual(self.calls(), 2)
-        self.assertEqual([(r["start"], r["stop"], r["seconds"]) for r in self.rows()], [("20.0", "19.0", "0.03")] * 2)
+        self.assertEqual([(r["start"], r["stop"], r["seconds"]) for r in self.rows()], [("20.0", "19.0", "0.04")] * 2)
         self.call("--cells", "sphere-0,sphere-0.1", "--seeds", "2")
         self.assertEqual(self.calls(), 4)
         self.call("--cells", "sphere-0", "--seeds", "2", "--rate", "2")
         self.assertEqual(self.calls(), 6)
         self.assertEqual(len({(r["cell"], r["seed"], r["rate"]) for r in self.rows()}), 6)
+
+    def test_no_larger_clumps_than_asked_for(self):
+        self.call("--cells", "sphere-0,variational-2", "--seeds", "1", "--largest", "1")
+        self.assertEqual([row["cell"] for row in self.rows()], ["sphere-0"])
 
     def test_no_time_left(self):
         self.call("--cells", "sphere-0", "--most", "-1")
