@@ -5,12 +5,12 @@
                                   [--work FOLDER] [--most MINUTES]
 
 A cell is a clump (contrasts_cells.py); a run is a cell with a seed. Each adds a row to contrasts.csv beside this file;
-rows that are there are not run again. Then the tables of all of them go into docs/behaviour.md, which --seeds 0 does
-alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine (liggghts). Takes numpy.
+rows that are there are not run again. Then tables and chart of all of them go into docs/behaviour.md, which --seeds 0
+does alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine (liggghts). Takes numpy, and gnuplot.
 
 Material, friction and stiffness are Yuan's (packing.py). A box of 60 x 60 mm, periodic in x and y, has a floor of 8 x 8
 fixed spheres that touch. 250 candies in random orientations fall onto it from up to half a metre, all at once. At rest
-(kinetic energy below 1e-6 m g d each) the first three are measured; then gravity tilts towards x, by RATE degrees a
+(kinetic energy below 1e-6 m g d each) height and fraction are measured; then gravity tilts towards x, by RATE degrees a
 second from 16 degrees on and four times as fast before, until the bed flows at 0.05 m/s, and back until it stands.
     height    mean of the highest points along vertical lines 0.5 mm apart, above the centres of the floor's spheres, mm
     fraction  between 1/4 and 3/4 of the height, the part within spheres (voxels of 0.5 mm)
@@ -32,6 +32,7 @@ import time
 import numpy
 
 import contrasts_cells as cells
+import contrasts_chart
 import contrasts_tables
 from packing import LIGGGHTS, MASS, MSKIT, REST, SEEDS, read_spheres
 
@@ -234,6 +235,7 @@ def main():
                 writer.writerow(row)
             print(", ".join(f"{key} {row[key]}" for key in COLUMNS if key not in ("particles", "version")), flush=True)
     contrasts_tables.fill()
+    contrasts_chart.draw(contrasts_tables.read_runs(TABLE))
 
 
 if __name__ == "__main__":

@@ -67,10 +67,9 @@ def table_runs(rows):
     return tables.markdown(["cell", "runs"] + [head for head, _, _ in MEASURED.values()] + ["CPU s"], out)
 
 
-def table_contrasts(rows, contrasts):
-    """Each of (what it asks, cell, other cell): differences with their intervals."""
+def table_contrasts(rows):
     out = []
-    for what, cell, other in contrasts:
+    for what, cell, other in CONTRASTS:
         if take(rows, "fraction", cell) and take(rows, "fraction", other):
             out.append([what, f"{cell} - {other}"] + [
                 show(*interval(take(rows, f, cell), take(rows, f, other), *pool_cells(rows, f)), MEASURED[f][1])
@@ -159,5 +158,5 @@ CONTRASTS = [
 def fill():
     rows = read_runs()
     tables.fill(os.path.join(HERE, "..", "behaviour.md"), {
-        "bed-clumps": table_clumps(rows), "bed-runs": table_runs(rows), "bed-contrasts": table_contrasts(rows, CONTRASTS),
+        "bed-clumps": table_clumps(rows), "bed-runs": table_runs(rows), "bed-contrasts": table_contrasts(rows),
         "bed-enough": table_enough(rows), "bed-predictors": table_predictors(rows), "bed-checks": table_checks(rows)})

@@ -195,6 +195,7 @@ class Resumption(unittest.TestCase):
         for target, name, value in ((contrasts, "TABLE", self.table), (contrasts, "MSKIT", mskit),
                                     (contrasts, "LIGGGHTS", os.path.join(self.folder, "engine")),
                                     (contrasts.contrasts_tables, "fill", lambda: None),
+                                    (contrasts.contrasts_chart, "draw", lambda rows: None),
                                     (contrasts, "describe_clumps", lambda folder: None)):
             patch = mock.patch.object(target, name, value)
             patch.start()

@@ -1,0 +1,57 @@
+"""The chart of docs/behaviour.md on beds: fraction and start angle against the number of spheres. Takes gnuplot."""
+import os
+import shutil
+import statistics
+import subprocess
+
+from contrasts_cells import CELLS, SERIES
+from contrasts_tables import HERE, pool_cells, take
+from intervals import quantile
+
+CHART = os.path.join(HERE, "beds.svg")
+COLOURS = ["#666666", "#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c510a"]
+TITLES = {"fraction": "packing fraction", "start": "start angle, degrees"}
+
+
+def find_group(name):
+    cell = CELLS[name]
+    if name in SERIES[1:]:
+        return "variational"
+    if cell.method == "sphere":
+        return f"a sphere, rolling friction {cell.rolling:g}"
+    return f"{cell.method}, radii times {cell.radii:g}" if cell.radii != 1 else cell.method
+
+
+def collect(rows, field):
+    """Of each group of cells the points: number of spheres, mean, half of its 90 % interval by the pooled deviation."""
+    deviation, freedom = pool_cells(rows, field)
+    groups = {}
+    for name, cell in CELLS.items():
+        values = take(rows, field, name)
+        if values:
+            half = quantile(freedom) * deviation / len(values) ** 0.5 if freedom else 0.0
+            groups.setdefault(find_group(name), []).append((cell.n, statistics.mean(values), half))
+    return groups
+
+
+def write_commands(rows):
+    lines = ["set terminal svg size 900,520 background rgb 'white'", f"set output '{CHART}'", "set multiplot layout 1,2",
+             "set key outside below maxcols 2 title ' '", "set logscale x", "set xrange [0.8:30]",
+             "set xtics (1, 2, 3, 5, 10, 20)", "set xlabel 'spheres'", "set offsets 0, 0, graph 0.05, graph 0.05"]
+    for field, title in TITLES.items():
+        plots = []
+        for k, (name, points) in enumerate(collect(rows, field).items()):
+            data, style = f"${field}{k}", "yerrorlines" if len(points) > 1 else "yerrorbars"
+            lines.append(f"{data} << END\n" + "".join(f"{n} {mean} {half}\n" for n, mean, half in points) + "END")
+            # as many spheres: beside each other
+            plots.append(f"{data} using ($1*{0.94 + 0.06 * k}):2:3 with {style} linecolor rgb '{COLOURS[k]}' "
+                         f"pointtype {k + 4} title '{name}'")
+        lines += [f"set title '{title}'", "plot " + ", ".join(plots)]
+    return "\n".join(lines) + "\n"
+
+
+def draw(rows):
+    if not shutil.which("gnuplot"):
+        print("gnuplot is not installed (package gnuplot-nox): the chart is not drawn anew")
+        return
+    subprocess.run(["gnuplot"], input=write_commands(rows), encoding="utf-8", check=True)
