@@ -20,7 +20,6 @@ second from 16 degrees on and four times as fast before, until the bed flows at 
 Velocity is the mean over all spheres, every 0.01 s.
 """
 import argparse
-import csv
 import math
 import os
 import re
@@ -227,12 +226,7 @@ def main():
             if time.time() - begun > 60 * asked.most:
                 break
             row = run(asked.work, name, seed, asked.step, asked.rate)
-            new = not os.path.exists(TABLE)
-            with open(TABLE, "a", newline="", encoding="utf-8") as stream:
-                writer = csv.DictWriter(stream, COLUMNS)
-                if new:
-                    writer.writeheader()
-                writer.writerow(row)
+            cells.add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in COLUMNS if key not in ("particles", "version")), flush=True)
     contrasts_tables.fill()
     contrasts_chart.draw(contrasts_tables.read_runs(TABLE))

@@ -99,13 +99,20 @@ def describe(folder, name):
 
 
 def describe_all(folder, path):
-    """Those that are not in the table yet, added to it."""
-    there = []
+    """Adds those that are not in the table yet."""
+    there = set()
     if os.path.exists(path):
         with open(path, newline="", encoding="utf-8") as stream:
-            there = list(csv.DictReader(stream))
-    rows = there + [describe(folder, name) for name in CELLS if name not in {row["cell"] for row in there}]
-    with open(path, "w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, COLUMNS)
-        writer.writeheader()
-        writer.writerows(rows)
+            there = {row["cell"] for row in csv.DictReader(stream)}
+    for name in CELLS:
+        if name not in there:
+            add_row(path, COLUMNS, describe(folder, name))
+
+
+def add_row(path, columns, row):
+    new = not os.path.exists(path)
+    with open(path, "a", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, columns)
+        if new:
+            writer.writeheader()
+        writer.writerow(row)

@@ -184,6 +184,21 @@ FALL 19 0.001
 """
 
 
+class Tables(unittest.TestCase):
+    def test_clumps_in_the_table_are_not_described_again(self):
+        def describe(_, name, value=0):
+            return {**dict.fromkeys(cells.COLUMNS, value), "cell": name}
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(cells, "describe", describe):
+            path = os.path.join(folder, "clumps.csv")
+            cells.add_row(path, cells.COLUMNS, describe("", "variational-10", 1))
+            for _ in range(2):
+                cells.describe_all(folder, path)
+            with open(path, newline="", encoding="utf-8") as stream:
+                rows = [(row["cell"], row["dice"]) for row in csv.DictReader(stream)]
+        others = [(name, "0") for name in cells.CELLS if name != "variational-10"]
+        self.assertEqual(rows, [("variational-10", "1")] + others)
+
+
 class Resumption(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
