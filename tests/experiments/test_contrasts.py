@@ -9,6 +9,7 @@ import csv
 import io
 import math
 import os
+import shutil
 import stat
 import sys
 import tempfile
@@ -20,6 +21,7 @@ import numpy
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "experiments"))
 import contrasts  # noqa: E402
 import contrasts_cells as cells  # noqa: E402
+import contrasts_chart as chart  # noqa: E402
 import contrasts_tables as tables  # noqa: E402
 import intervals  # noqa: E402
 
@@ -199,6 +201,27 @@ class Tables(unittest.TestCase):
         self.assertEqual(rows, [("variational-10", "1")] + others)
 
 
+class Chart(unittest.TestCase):
+    def setUp(self):
+        self.rows = [{"cell": cell, "step": tables.STEP, "rate": tables.RATE, "fraction": 0.6 + k / 100, "start": 20 + k}
+                     for cell in ("variational-2", "variational-10", "euclid-20") for k in (0, 2)]
+
+    def test_points_and_bars(self):
+        half = intervals.quantile(3) * math.sqrt(2) / math.sqrt(2)
+        self.assertEqual(chart.collect(self.rows, "start"),
+                         {"variational": [(2, 21, half), (10, 21, half)], "euclid": [(20, 21, half)]})
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed (package gnuplot-nox)")
+    def test_drawn(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with mock.patch.object(chart, "CHART", os.path.join(folder, "beds.svg")):
+                chart.draw(self.rows)
+            with open(os.path.join(folder, "beds.svg"), encoding="utf-8") as stream:
+                drawn = stream.read()
+        for text in ("packing fraction", "start angle, degrees", "variational", "euclid"):
+            self.assertIn(text, drawn)
+
+
 class Resumption(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -209,8 +232,8 @@ class Resumption(unittest.TestCase):
         mskit = self.write("mskit", "#!/bin/sh\necho mskit 0\n")
         for target, name, value in ((contrasts, "TABLE", self.table), (contrasts, "MSKIT", mskit),
                                     (contrasts, "LIGGGHTS", os.path.join(self.folder, "engine")),
-                                    (contrasts.contrasts_tables, "fill", lambda: None),
-                                    (contrasts.contrasts_chart, "draw", lambda rows: None),
+                                    (tables, "fill", lambda: None),
+                                    (chart, "draw", lambda rows: None),
                                     (contrasts, "describe_clumps", lambda folder: None)):
             patch = mock.patch.object(target, name, value)
             patch.start()
