@@ -203,7 +203,7 @@ class Tables(unittest.TestCase):
 
 class Chart(unittest.TestCase):
     def setUp(self):
-        self.rows = [{"cell": cell, "step": tables.STEP, "rate": tables.RATE, "fraction": 0.6 + k / 100, "start": 20 + k}
+        self.rows = [{"cell": cell, "step": tables.STEP, "rate": tables.RATE, "fraction": k / 100, "start": 20 + k}
                      for cell in ("variational-2", "variational-10", "euclid-20") for k in (0, 2)]
 
     def test_points_and_bars(self):
