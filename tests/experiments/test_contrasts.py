@@ -2,7 +2,7 @@
 """What docs/experiments/contrasts.py makes of its runs: beds of known height and fraction, series of velocities made up
 here, intervals by hand, and a table that is gone on with. The engine is a stand-in that notes how often it was called.
 
-    MSKIT=build/eval/mskit /usr/bin/python3 tests/experiments/test_contrasts.py [-v]
+    /usr/bin/python3 tests/experiments/test_contrasts.py [-v]
 """
 import contextlib
 import csv
