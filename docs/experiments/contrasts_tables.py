@@ -108,6 +108,8 @@ def table_checks(rows):
             pairs = {f: (take(rows, f, cell, step, rate), take(rows, f, cell)) for f in MEASURED}
             out.append([cell, f"{step:g}", f"{rate:g}", str(len(pairs["fraction"][0]))] + [
                 show(*interval(*pairs[f], *pool_cells(rows, f)), MEASURED[f][1]) for f in MEASURED])
+    if not out:
+        return "None was run yet."
     return tables.markdown(["cell", "step, s", "degrees a second", "runs"] + [head for head, _, _ in MEASURED.values()],
                            out)
 
