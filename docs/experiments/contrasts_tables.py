@@ -42,6 +42,11 @@ def is_equivalent(difference, half, allowed):
     return abs(difference) + half <= allowed
 
 
+def is_different(difference, half, allowed):
+    """The whole interval lies outside the margin."""
+    return abs(difference) - half > allowed
+
+
 def show(difference, half, digits):
     return f"{difference:+.{digits}f} +- {half:.{digits}f}"
 
@@ -78,15 +83,17 @@ def table_contrasts(rows):
 
 
 def judge_series(rows, field):
-    """(cell, difference from the reference, half of the interval, within the margin, so at every larger n too). The
-    reference is the clump of most spheres that was run."""
+    """The reference, which is the clump of most spheres that was run, and of each other one (cell, difference, half of
+    the interval, verdict): within the margin, enough if so at every larger n too, outside, or nothing."""
     *series, reference = [cell for cell in SERIES if take(rows, field, cell)]
     those, out, so_far = take(rows, field, reference), [], True
     for cell in reversed(series):
         difference, half = interval(take(rows, field, cell), those, *pool_cells(rows, field))
-        within = is_equivalent(difference, half, margin(field, those))
+        allowed = margin(field, those)
+        within = is_equivalent(difference, half, allowed)
         so_far = so_far and within
-        out.append((cell, difference, half, within, so_far))
+        verdict = "enough" if so_far else "within" if within else ""
+        out.append((cell, difference, half, "outside" if is_different(difference, half, allowed) else verdict))
     return reference, out[::-1]
 
 
@@ -95,8 +102,8 @@ def table_enough(rows):
     out = []
     for lines in zip(*(lines for _, lines in judged.values())):
         out.append([lines[0][0]] + [
-            show(difference, half, MEASURED[field][1]) + (", enough" if enough else ", within" if within else "")
-            for field, (_, difference, half, within, enough) in zip(MEASURED, lines)])
+            ", ".join(filter(None, (show(difference, half, MEASURED[field][1]), verdict)))
+            for field, (_, difference, half, verdict) in zip(MEASURED, lines)])
     return tables.markdown([f"cell - {judged['fraction'][0]}"] + [head for head, _, _ in MEASURED.values()], out)
 
 

@@ -90,11 +90,14 @@ class Intervals(unittest.TestCase):
         self.assertEqual(difference, -1)
         self.assertTrue(math.isnan(half))
         self.assertFalse(tables.is_equivalent(difference, half, 5))
+        self.assertFalse(tables.is_different(difference, half, 0.5))
 
     def test_the_whole_interval_within_the_margin(self):
         self.assertTrue(tables.is_equivalent(-0.5, 0.4, 1))
         self.assertFalse(tables.is_equivalent(0.1, 1.0, 1))
         self.assertFalse(tables.is_equivalent(-1.2, 0.1, 1))
+        self.assertTrue(tables.is_different(-1.2, 0.1, 1))
+        self.assertFalse(tables.is_different(-1.2, 0.3, 1))
 
     def test_enough_only_if_so_at_every_larger_number(self):
         """Five spheres agree with the reference and twenty do not: ten, between them, agrees and is not enough."""
@@ -103,12 +106,11 @@ class Intervals(unittest.TestCase):
                 for cell, mean in means.items() for noise in (-0.01, 0.01)]
         reference, judged = tables.judge_series(rows, "start")
         self.assertEqual((reference, [line[0] for line in judged]), (tables.SERIES[-1], tables.SERIES[:-1]))
-        self.assertEqual([line[3] for line in judged], [False, False, False, True, True, False])
-        self.assertEqual([line[4] for line in judged], [False] * 6)
+        self.assertEqual([line[3] for line in judged], ["outside"] * 3 + ["within"] * 2 + ["outside"])
         for row in rows:
             row["start"] -= 5 * (row["cell"] == "variational-20")
         _, judged = tables.judge_series(rows, "start")
-        self.assertEqual([line[4] for line in judged], [False, False, False, True, True, True])
+        self.assertEqual([line[3] for line in judged], ["outside"] * 3 + ["enough"] * 3)
         reference, _ = tables.judge_series([row for row in rows if row["cell"] != "variational-60"], "start")
         self.assertEqual(reference, "variational-20")
 
