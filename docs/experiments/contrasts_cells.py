@@ -64,8 +64,10 @@ def write_clump(folder, path, cell):
     if cell.method == "sphere":
         write_sphere(path)
     else:
-        run_mskit("generate", find_shape(folder), "-g", cell.method, "-n", cell.n, "--deq", 100, "--equal-volume",
-                  "--correct", "--density", DENSITY, "--unit", "mm", "-o", path)
+        # Scaled after the fit, as other methods are: the rows that are there are of these clumps.
+        scaled = ["--set", "hold-volume=0"] if cell.method == "variational" else []
+        run_mskit("generate", find_shape(folder), "-g", cell.method, *scaled, "-n", cell.n, "--deq", 100,
+                  "--equal-volume", "--correct", "--density", DENSITY, "--unit", "mm", "-o", path)
     write_rows(path, [[x, y, z, cell.radii * r] for x, y, z, r in read_rows(path)])
 
 
