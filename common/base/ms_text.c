@@ -84,12 +84,9 @@ void ms_text_skip_line(ms_text *text)
     }
 }
 
-ms_word ms_text_rest(ms_text *text)
+/* Takes the blanks off both ends. */
+static ms_word trim_blanks(const char *start, const char *stop)
 {
-    const char *start = text->at;
-    const char *newline = memchr(start, '\n', (size_t)(text->end - start));
-    const char *stop = newline ? newline : text->end;
-    text->at = stop;
     while (start < stop && is_blank(*start)) {
         start++;
     }
@@ -97,6 +94,29 @@ ms_word ms_text_rest(ms_text *text)
         stop--;
     }
     return (ms_word){start, (size_t)(stop - start)};
+}
+
+ms_word ms_text_rest(ms_text *text)
+{
+    const char *start = text->at;
+    const char *newline = memchr(start, '\n', (size_t)(text->end - start));
+    text->at = newline ? newline : text->end;
+    return trim_blanks(start, text->at);
+}
+
+int ms_text_split(ms_word *field, int most, const ms_word *line)
+{
+    const char *at = line->start, *end = line->start + line->length;
+    for (int fields = 0;; fields++) {
+        const char *comma = memchr(at, ',', (size_t)(end - at));
+        if (fields < most) {
+            field[fields] = trim_blanks(at, comma ? comma : end);
+        }
+        if (!comma) {
+            return fields + 1;
+        }
+        at = comma + 1;
+    }
 }
 
 ms_status ms_text_doubles(double *values, size_t n, ms_text *text, const char *what, ms_error *err)

@@ -40,6 +40,10 @@ void ms_text_skip_line(ms_text *text);
 /** What is left of this line, without the blanks around it; comments and joints are not looked for. */
 ms_word ms_text_rest(ms_text *text);
 
+/** Cuts a line at its commas, without the blanks around each field. @return how many fields there are, of which the
+ * first `most` are kept */
+int ms_text_split(ms_word *field, int most, const ms_word *line);
+
 /** Reads n numbers that stand on this line; `what` names them in the message. @return MS_OK; MS_ERR_FORMAT */
 ms_status ms_text_doubles(double *values, size_t n, ms_text *text, const char *what, ms_error *err);
 

@@ -27,10 +27,9 @@ typedef struct ms_contact_options {
 /** A contact of two bodies, or of one with a plane, against a single one: of spheres of r_eq that have the body's mass,
  * by Hertz, at the same overlap. Both ratios are those of a small change of the overlap. */
 typedef struct ms_touch {
-    size_t count; /* of pairs that touch; 0 where the bodies pass each other */
-    double
-        stiffness;  /* sum of root(R_i d_i / (R d)); R: of curvature, d: overlap; N for N equal spheres side by side */
-    double damping; /* sum of (R_i d_i / (R d))^(1/4): an engine damps each contact by root(stiffness mass) */
+    size_t count;     /* of pairs that touch; 0 where the bodies pass each other */
+    double stiffness; /* sum of root(R_i d_i / (R d)), N for N equal spheres; R: of curvature, d: overlap */
+    double damping;   /* sum of (R_i d_i / (R d))^(1/4): an engine damps each contact by root(stiffness mass) */
 } ms_touch;
 
 typedef enum ms_contact_against { MS_CONTACT_PLANE, MS_CONTACT_PARTICLE } ms_contact_against;

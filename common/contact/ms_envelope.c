@@ -64,14 +64,7 @@ ms_status ms_envelope_body_clump(ms_envelope_body *out, const ms_clump *clump, m
     if (clump->n_spheres == 0) {
         return ms_fail(err, MS_ERR_ARG, "a clump of no spheres has no envelope");
     }
-    for (int k = 0; k < 3; k++) {
-        out->lo[k] = HUGE_VAL;
-        out->hi[k] = -HUGE_VAL;
-        for (size_t s = 0; s < clump->n_spheres; s++) {
-            out->lo[k] = fmin(out->lo[k], clump->sphere[s].centre[k] - clump->sphere[s].radius);
-            out->hi[k] = fmax(out->hi[k], clump->sphere[s].centre[k] + clump->sphere[s].radius);
-        }
-    }
+    ms_clump_box(out->lo, out->hi, clump);
     return ms_union_measure(&out->volume, &area, clump, err);
 }
 

@@ -33,7 +33,7 @@ import numpy
 import contrasts_cells as cells
 import contrasts_chart
 import contrasts_tables
-from packing import LIGGGHTS, MASS, MSKIT, REST, SEEDS, read_spheres
+from packing import LIGGGHTS, MSKIT, REST, SEEDS, read_spheres
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TABLE = os.path.join(HERE, "contrasts.csv")
@@ -131,7 +131,7 @@ write_dump candies custom flowed.dump id type x y z radius modify sort id
 def measure(spheres, h=0.5):
     """Height and fraction; spheres in mm, as many as touch the box from any side."""
     count = round(SIDE / h)
-    ticks, layers = (numpy.arange(count) + 0.5) * h, math.ceil((spheres[:, 2] + spheres[:, 3]).max() / h) + 1
+    layers = math.ceil((spheres[:, 2] + spheres[:, 3]).max() / h) + 1
     z = (numpy.arange(layers) + 0.5) * h
     top, filled = numpy.zeros((count, count)), numpy.zeros((count, count, layers), dtype=bool)
     for cx, cy, cz, r in spheres:

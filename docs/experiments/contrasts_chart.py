@@ -35,9 +35,11 @@ def collect(rows, field):
 
 
 def write_commands(rows):
+    numbers = sorted({cell.n for name, cell in CELLS.items() if take(rows, "fraction", name)})
     lines = ["set terminal svg size 900,520 background rgb 'white'", f"set output '{CHART}'",
              "set multiplot layout 1,2", "set key outside below maxcols 2 title ' '", "set logscale x",
-             "set xrange [0.8:30]", "set xtics (1, 2, 3, 5, 10, 20)", "set xlabel 'spheres'",
+             f"set xrange [0.8:{1.5 * numbers[-1]:g}]", f"set xtics ({', '.join(map(str, numbers))})",
+             "set xlabel 'spheres'",
              "set offsets 0, 0, graph 0.05, graph 0.05"]
     for field, title in TITLES.items():
         plots = []

@@ -115,11 +115,11 @@ fix floor all wall/gran model {model} primitive type 1 zplane 0
 timestep {step!r}
 fix gravity all gravity {start.gravity!r} vector 0 0 -1
 fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 density constant &
-  {body.member * DENSITY!r} nspheres {len(body.spheres)} ntry 1000 spheres file spheres scale 1.0 type 1 mass \
-{body.mass!r} inertia_tensor {six} use_density
+  {body.member * DENSITY!r} nspheres {len(body.spheres)} ntry 1000 spheres file spheres scale 1.0 type 1 &
+  mass {body.mass!r} inertia_tensor {six} use_density
 fix kinds all particledistribution/discrete 15485867 1 clump 1.0
-region at block -1e-15 1e-15 -1e-15 1e-15 {start.height - 1e-15!r} {start.height + 1e-15!r} volume_limit 1e-300 units \
-box
+region at block -1e-15 1e-15 -1e-15 1e-15 {start.height - 1e-15!r} {start.height + 1e-15!r} &
+  volume_limit 1e-300 units box
 fix insert all insert/pack seed 32452843 distributiontemplate kinds vel constant {numbers(start.velocity)} &
   omega constant {numbers(start.spin)} insert_every once overlapcheck no orientation constant 1 0 0 0 all_in no &
   particles_in_region 1 region at
@@ -228,8 +228,8 @@ def build():
 
 def tell(state):
     spin = state.ori.conjugate() * state.angVel
-    print('ENERGY', 0.5 * state.mass * state.vel.squaredNorm(), 0.5 * sum(i * w * w for i, w in zip(state.inertia, \
-spin)))
+    turning = 0.5 * sum(i * w * w for i, w in zip(state.inertia, spin))
+    print('ENERGY', 0.5 * state.mass * state.vel.squaredNorm(), turning)
 
 
 for step in {list(steps)!r}:

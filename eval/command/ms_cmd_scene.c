@@ -146,35 +146,13 @@ static ms_status take_template_format(scene_arguments *a, const char *name, ms_e
     return MS_OK;
 }
 
-static ms_status take_scene_flag(void *context, const char *name, const char *value, ms_error *err)
+/* What is read and written beside the shapes. */
+static ms_status take_scene_file(int *taken, scene_arguments *a, const char *name, const char *value, ms_error *err)
 {
-    scene_arguments *a = context;
-    int taken;
-    ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
-    if (!taken) {
-        status = take_goal(&taken, &a->goal, name, value, err);
-    }
-    if (!taken) {
-        status = ms_scene_engines_flag(&taken, &a->engines, name, value, err);
-    }
-    if (taken) {
-        return status;
-    }
-    if (strcmp(name, "particles") == 0) {
-        return ms_flags_whole(&a->particles, name, value, 1, MS_MANIFEST_MAX_PARTICLES, err);
-    }
+    *taken = 1;
     if (strcmp(name, "sieve") == 0) {
         a->sieve_file = value;
         return MS_OK;
-    }
-    if (strcmp(name, "classes") == 0) {
-        return ms_flags_whole(&a->classes, name, value, 1, MS_SIEVE_MAX_CLASSES, err);
-    }
-    if (strcmp(name, "max-spheres") == 0) {
-        return ms_flags_whole(&a->max_spheres, name, value, 1, MS_SCENE_MAX_SPHERES, err);
-    }
-    if (strcmp(name, "min-radius") == 0) {
-        return ms_until_min_radius(&a->min_radius, value, err);
     }
     if (strcmp(name, "output") == 0 || strcmp(name, "charts") == 0) {
         *(name[0] == 'o' ? &a->folder : &a->charts) = value;
@@ -186,6 +164,39 @@ static ms_status take_scene_flag(void *context, const char *name, const char *va
     }
     if (strcmp(name, "format") == 0) {
         return take_template_format(a, value, err);
+    }
+    *taken = 0;
+    return MS_OK;
+}
+
+static ms_status take_scene_flag(void *context, const char *name, const char *value, ms_error *err)
+{
+    scene_arguments *a = context;
+    int taken;
+    ms_status status = ms_input_flag(&taken, &a->input, name, value, err);
+    if (!taken) {
+        status = take_goal(&taken, &a->goal, name, value, err);
+    }
+    if (!taken) {
+        status = ms_scene_engines_flag(&taken, &a->engines, name, value, err);
+    }
+    if (!taken) {
+        status = take_scene_file(&taken, a, name, value, err);
+    }
+    if (taken) {
+        return status;
+    }
+    if (strcmp(name, "particles") == 0) {
+        return ms_flags_whole(&a->particles, name, value, 1, MS_MANIFEST_MAX_PARTICLES, err);
+    }
+    if (strcmp(name, "classes") == 0) {
+        return ms_flags_whole(&a->classes, name, value, 1, MS_SIEVE_MAX_CLASSES, err);
+    }
+    if (strcmp(name, "max-spheres") == 0) {
+        return ms_flags_whole(&a->max_spheres, name, value, 1, MS_SCENE_MAX_SPHERES, err);
+    }
+    if (strcmp(name, "min-radius") == 0) {
+        return ms_until_min_radius(&a->min_radius, value, err);
     }
     if (strcmp(name, "json") == 0 || strcmp(name, "equal-volume") == 0) {
         *(name[0] == 'j' ? &a->json : &a->recipe.equal_volume) = 1;

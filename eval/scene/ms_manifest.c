@@ -16,34 +16,6 @@ typedef struct manifest_header {
     int count, column[COLUMNS];
 } manifest_header;
 
-/* Takes the blanks off both ends. */
-static ms_word trim(const char *start, const char *stop)
-{
-    while (start < stop && (*start == ' ' || *start == '\t')) {
-        start++;
-    }
-    while (stop > start && (stop[-1] == ' ' || stop[-1] == '\t')) {
-        stop--;
-    }
-    return (ms_word){start, (size_t)(stop - start)};
-}
-
-/* Cuts a line at its commas. Returns how many fields there are, of which the first COLUMNS are kept. */
-static int split(ms_word field[COLUMNS], const ms_word *line)
-{
-    const char *at = line->start, *end = line->start + line->length;
-    for (int fields = 0;; fields++) {
-        const char *comma = memchr(at, ',', (size_t)(end - at));
-        if (fields < COLUMNS) {
-            field[fields] = trim(at, comma ? comma : end);
-        }
-        if (!comma) {
-            return fields + 1;
-        }
-        at = comma + 1;
-    }
-}
-
 /* Shape and count, then what is asked for of the rest, each once, in any order. */
 static int know_header(manifest_header *header, const ms_word field[COLUMNS])
 {
@@ -70,7 +42,7 @@ static ms_status read_header(manifest_header *header, ms_text *text, ms_error *e
         return ms_fail(err, MS_ERR_FORMAT, "%s: the manifest is empty; its first line is shape,count", text->name);
     }
     const ms_word line = ms_text_rest(text);
-    header->count = split(field, &line);
+    header->count = ms_text_split(field, COLUMNS, &line);
     return header->count >= 2 && header->count <= COLUMNS && know_header(header, field)
                ? MS_OK
                : ms_text_fail(err, text, "the header is '%s', not shape,count with tolerance, size or both behind it",
@@ -80,7 +52,7 @@ static ms_status read_header(manifest_header *header, ms_text *text, ms_error *e
 /* Sizes are alike, or there is none. */
 static int is_same_size(double a, double b)
 {
-    return isnan(a) ? isnan(b) : !(a < b || a > b || isnan(b));
+    return a == b || (isnan(a) && isnan(b));
 }
 
 static ms_status check_row(const ms_manifest *manifest, const ms_manifest_row *row, const ms_text *text, ms_error *err)
@@ -149,7 +121,7 @@ static ms_status read_row(ms_manifest *manifest, const manifest_header *header, 
 {
     ms_word field[COLUMNS] = {{0}}, by_name[COLUMNS] = {{0}};
     const ms_word line = ms_text_rest(text);
-    const int fields = split(field, &line), columns = header->count;
+    const int fields = ms_text_split(field, COLUMNS, &line), columns = header->count;
     if (memchr(line.start, '"', line.length)) {
         return ms_text_fail(err, text, "a quotation mark; names with commas or quotation marks are not taken");
     }

@@ -206,12 +206,26 @@ static ms_status find_surface(double *surface, const ms_target *target, ms_error
 {
     ms_descriptors of_shape;
     const ms_status status = ms_descriptors_of_target(&of_shape, target, err);
+    if (status != MS_OK) {
+        return status;
+    }
     *surface = of_shape.area / of_shape.volume;
-    return status == MS_OK && isnan(*surface)
-               ? ms_fail(err, MS_ERR_SHAPE,
-                         "the area of its surface is not known, so that no length can be tolerated; use more cells, or "
-                         "--tolerance")
-               : status;
+    return isnan(*surface) ? ms_fail(err, MS_ERR_SHAPE,
+                                     "the area of its surface is not known, so that no length can be tolerated; use "
+                                     "more cells, or --tolerance")
+                           : MS_OK;
+}
+
+/* Field by field: what rows are of which shape is read meanwhile, for other shapes. */
+static void share_templates(ms_scene_shape *shape, const ms_scene_shape *first)
+{
+    shape->most = first->most;
+    shape->clump = first->clump;
+    shape->score = first->score;
+    shape->dice = first->dice;
+    shape->remarks = first->remarks;
+    shape->input = json_incref(first->input);
+    shape->surface = first->surface;
 }
 
 /* The shape of a row in its size, with the templates of the first row of that shape. */
@@ -220,9 +234,7 @@ static void take_row(ms_scene_shape *shape, const ms_scene_shape *first, const m
     const ms_manifest_row *row = shape->row;
     const double own = cbrt(6 * target->body.volume / acos(-1.0)), f = isnan(row->size) ? 1 : row->size / own;
     if (shape != first) {
-        *shape = *first;
-        shape->row = row;
-        json_incref(shape->input);
+        share_templates(shape, first);
     }
     shape->factor = f;
     shape->body.volume = f * f * f * target->body.volume;
@@ -234,7 +246,6 @@ static void take_row(ms_scene_shape *shape, const ms_scene_shape *first, const m
     }
     const double asked = goal->length > 0 ? dice_of_length(shape, goal->length) : goal->value;
     shape->tolerance = isnan(row->tolerance) ? asked : row->tolerance;
-    shape->chosen = 0;
 }
 
 /* What the goal says of each row of the shape alone. */

@@ -10,7 +10,7 @@
 #include "cli/ms_recipe.h"
 #include "measure/ms_metrics.h"
 #include "ms_allocate.h"
-#include "ms_manifest.h"
+#include "ms_sieve.h"
 
 enum { MS_SCENE_MAX_SPHERES = 1000 };
 
@@ -49,16 +49,14 @@ typedef struct ms_scene_shape {
     ms_mass mass;      /* of it, where masses were asked for (ms_scene_engines.h) */
 } ms_scene_shape;
 
-struct ms_sieve;
-
 /** A zeroed struct is empty. */
 typedef struct ms_scene {
     size_t count;
     ms_scene_shape *shape;
-    ms_allocation sum;            /* of the templates chosen; slack of MS_GOAL_MEAN and MS_GOAL_BUDGET */
-    double least_gain;            /* ms_allocate_gain */
-    int has_sizes;                /* some rows have one */
-    const struct ms_sieve *sieve; /* that they are of, for the report; borrowed; NULL: none */
+    ms_allocation sum;     /* of the templates chosen; slack of MS_GOAL_MEAN and MS_GOAL_BUDGET */
+    double least_gain;     /* ms_allocate_gain */
+    int has_sizes;         /* some rows have one */
+    const ms_sieve *sieve; /* that they are of, for the report; borrowed; NULL: none */
     int is_searched;    /* ms_scene_is_searched: most numbers of spheres were not run, and nothing is spread evenly */
     double even_each;   /* as many spheres, the same number for each particle: one more for a part of each shape's */
     ms_allocation even; /* what that comes to */

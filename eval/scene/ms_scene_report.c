@@ -5,7 +5,6 @@
 #include "cli/ms_record.h"
 #include "cli/ms_report.h"
 #include "ms_scene.h"
-#include "ms_sieve.h"
 
 static void print_goal(FILE *stream, const ms_goal *goal)
 {
@@ -107,7 +106,7 @@ void ms_scene_print_sums(FILE *stream, const ms_scene *scene, const ms_goal *goa
             scene->least_gain);
     print_slack(stream, sum, goal->kind);
     fprintf(stream, "  %-26s %.4g in %s; by convention it limits the time step\n", "smallest radius",
-            ms_clump_smallest_radius(ms_scene_clump(smallest)), smallest->row->path);
+            ms_clump_smallest_radius(ms_scene_clump(smallest)), ms_manifest_name_row(smallest->row).text);
     if (scene->sieve) {
         print_sieve(stream, scene->sieve);
     }

@@ -13,27 +13,6 @@ typedef struct sieve_curve {
     double size[MS_SIEVE_MAX_ROWS], passing[MS_SIEVE_MAX_ROWS];
 } sieve_curve;
 
-/* The two words of a line around its comma. */
-static int split(ms_word field[2], const ms_word *line)
-{
-    const char *end = line->start + line->length, *comma = memchr(line->start, ',', line->length);
-    if (!comma || memchr(comma + 1, ',', (size_t)(end - comma - 1))) {
-        return 0;
-    }
-    field[0] = (ms_word){line->start, (size_t)(comma - line->start)};
-    field[1] = (ms_word){comma + 1, (size_t)(end - comma - 1)};
-    for (int f = 0; f < 2; f++) {
-        while (field[f].length > 0 && field[f].start[0] == ' ') {
-            field[f].start++;
-            field[f].length--;
-        }
-        while (field[f].length > 0 && field[f].start[field[f].length - 1] == ' ') {
-            field[f].length--;
-        }
-    }
-    return 1;
-}
-
 static ms_status read_header(ms_text *text, ms_error *err)
 {
     ms_word field[2];
@@ -41,7 +20,8 @@ static ms_status read_header(ms_text *text, ms_error *err)
         return ms_fail(err, MS_ERR_FORMAT, "%s: the sieve curve is empty; its first line is size,passing", text->name);
     }
     const ms_word line = ms_text_rest(text);
-    return split(field, &line) && ms_text_word_is(&field[0], "size") && ms_text_word_is(&field[1], "passing")
+    return ms_text_split(field, 2, &line) == 2 && ms_text_word_is(&field[0], "size") &&
+                   ms_text_word_is(&field[1], "passing")
                ? MS_OK
                : ms_text_fail(err, text, "the header is '%s', not size,passing", ms_text_quote(&line).text);
 }
@@ -54,7 +34,7 @@ static ms_status read_row(sieve_curve *curve, ms_text *text, ms_error *err)
     if (at == MS_SIEVE_MAX_ROWS) {
         return ms_text_fail(err, text, "more than %d rows", MS_SIEVE_MAX_ROWS);
     }
-    if (!split(field, &line)) {
+    if (ms_text_split(field, 2, &line) != 2) {
         return ms_text_fail(err, text, "'%s' is not a size and a share", ms_text_quote(&line).text);
     }
     double *size = &curve->size[at], *passing = &curve->passing[at];

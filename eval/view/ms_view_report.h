@@ -29,9 +29,8 @@ typedef struct ms_view_report {
     const size_t *shown;       /* which of them */
     size_t n_columns, n_shown;
     const ms_csv *csv;
-    const long *scene; /* of each row, which scene it opens; -1: none */
-    const char *const
-        *chart; /* paths of SVG files; of one that is not there its script of gnuplot is named, if that is */
+    const long *scene;        /* of each row, which scene it opens; -1: none */
+    const char *const *chart; /* paths of SVG files; of those that are not there the gnuplot script is named */
     size_t n_charts;
 } ms_view_report;
 

@@ -161,6 +161,36 @@ static void quotes_are_printable_and_short(void **state)
     assert_string_equal(quote.text + 36, "...");
 }
 
+static void expect_word(const ms_word *word, const char *text)
+{
+    assert_int_equal(word->length, strlen(text));
+    assert_memory_equal(word->start, text, word->length);
+}
+
+static void lines_are_cut_at_commas(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *line, *first, *second;
+        int fields;
+    } CASES[] = {{"", "", NULL, 1},
+                 {" a b ", "a b", NULL, 1},
+                 {"a,\tb\t", "a", "b", 2},
+                 {" , ", "", "", 2},
+                 {"a,b,c,", "a", "b", 4}};
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        const ms_word line = {CASES[i].line, strlen(CASES[i].line)};
+        ms_word field[2] = {{NULL, 0}};
+        assert_int_equal(ms_text_split(field, 2, &line), CASES[i].fields);
+        expect_word(&field[0], CASES[i].first);
+        if (CASES[i].second) {
+            expect_word(&field[1], CASES[i].second);
+        } else {
+            assert_null(field[1].start);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -171,6 +201,7 @@ int main(void)
         cmocka_unit_test(a_locale_with_a_comma_changes_nothing),
         cmocka_unit_test(integers_are_strict),
         cmocka_unit_test(lines_are_counted_over_comments_and_joints),
+        cmocka_unit_test(lines_are_cut_at_commas),
         cmocka_unit_test(quotes_are_printable_and_short),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -26,7 +26,7 @@ static double scaled_dice(double *excess, const ms_target *target, size_t n, con
     return dice;
 }
 
-/* Ten large spheres in a grain lack volume; with the constraint they do not, and that costs less than scaling. */
+/* Six large spheres in a grain lack volume; with the constraint they do not, and that costs less than scaling. */
 static void of_a_grain(void **state)
 {
     double without, with;

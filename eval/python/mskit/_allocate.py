@@ -42,8 +42,7 @@ def _find_knees(n: Any, shares: Any, count: int, part: float) -> None:
         n[s] = lib.ms_allocate_knee(ffi.addressof(shares, s), part)
         if n[s] == 0:
             raise LimitError(f"curve {s}: up to the last of {shares[s].most} spheres each takes away {part:.6g} of D "
-                             f"or "
-                             "more; give a longer curve, or raise the part")
+                             "or more; give a longer curve, or raise the part")
 
 
 def allocate(curves: Sequence[Any], particles: Optional[Sequence[int]] = None, *, budget: Optional[int] = None,
