@@ -1,5 +1,6 @@
 #include "ms_flags.h"
 
+#include <float.h>
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
@@ -203,6 +204,11 @@ ms_status ms_flags_number(double *value, const char *name, const char *text, dou
 {
     const ms_word word = {text, strlen(text)};
     if (word.length == 0 || !ms_text_to_double(value, &word) || !(*value >= lo && *value <= hi)) {
+        if (lo == DBL_MIN) {
+            return hi == DBL_MAX
+                       ? ms_fail(err, MS_ERR_ARG, "--%s '%s' is not a number above 0", name, text)
+                       : ms_fail(err, MS_ERR_ARG, "--%s '%s' is not a number above 0, up to %.16g", name, text, hi);
+        }
         return ms_fail(err, MS_ERR_ARG, "--%s '%s' is not a number from %.16g to %.16g", name, text, lo, hi);
     }
     return MS_OK;

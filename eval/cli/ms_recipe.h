@@ -10,7 +10,8 @@ enum { MS_RECIPE_MAX_OPTIONS = 256 };
 /* clang-format off */
 #define MS_RECIPE_FLAGS \
     {"generator", 'g', "NAME", "the method (" MS_GENERATOR_DEFAULT "); mskit generators lists them"}, \
-    {"set", 0, "OPTION=VALUE", "an option of the method (mskit help NAME); --OPTION VALUE does the same"}, \
+    {"set", 0, "OPTION=VALUE", "an option of the method (mskit help NAME); --OPTION VALUE does the same, " \
+     "--OPTION of one that is off"}, \
     {"seed", 0, "S", "seed of methods that draw random numbers (1)"}
 /* clang-format on */
 

@@ -55,7 +55,7 @@ static void print_option(const ms_option *o)
 static void print_generator(const ms_generator *generator)
 {
     printf("%s: %s\n%s\nprefixes are clumps themselves: %s\n\n"
-           "options (--set NAME=VALUE, or --NAME VALUE):\n",
+           "options (--set NAME=VALUE, or --NAME VALUE; --NAME alone of those that are off):\n",
            generator->name, generator->summary, generator->source, generator->nested ? "yes" : "no");
     for (const ms_option *o = generator->options; o->name; o++) {
         print_option(o);

@@ -29,9 +29,15 @@ double ms_scene_gain(const ms_scene_shape *shape)
     return shape->chosen > 1 ? shape->dice[shape->chosen - 2] - shape->dice[shape->chosen - 1] : (double)NAN;
 }
 
+/* Mean distance of surfaces that have this D, 2 V D / A. */
+static double length_of_dice(const ms_scene_shape *shape, double dice)
+{
+    return 2 * dice * shape->factor / shape->surface;
+}
+
 double ms_scene_distance(const ms_scene_shape *shape)
 {
-    return 2 * shape->dice[shape->chosen - 1] * shape->factor / shape->surface;
+    return length_of_dice(shape, shape->dice[shape->chosen - 1]);
 }
 
 ms_share ms_scene_share(const ms_scene_shape *shape)
@@ -51,6 +57,18 @@ const ms_scene_shape *ms_scene_smallest(const ms_scene *scene)
     return smallest;
 }
 
+/* No template of a row reaches its tolerance; of a length it is told as one. */
+static ms_status miss_tolerance(const ms_scene_shape *shape, const ms_goal *goal, double best, ms_error *err)
+{
+    const int is_length = goal->length > 0 && isnan(shape->row->tolerance);
+    return ms_fail(err, MS_ERR_LIMIT,
+                   "%s: no template of up to %zu spheres has %s %.6g, the best has %.6g; raise --max-spheres, use more "
+                   "cells or another method, or ease the tolerance",
+                   ms_manifest_name_row(shape->row).text, shape->most,
+                   is_length ? "a mean distance of" : goal->measure->name, is_length ? goal->length : shape->tolerance,
+                   is_length ? length_of_dice(shape, best) : best);
+}
+
 /* The least number of spheres that reaches a tolerance. */
 static ms_status choose_by_tolerance(ms_scene_shape *shape, const ms_goal *goal, ms_error *err)
 {
@@ -67,10 +85,7 @@ static ms_status choose_by_tolerance(ms_scene_shape *shape, const ms_goal *goal,
         }
         best = goal->measure->better == MS_BETTER_MORE ? fmax(best, have) : fmin(best, have);
     }
-    return ms_fail(err, MS_ERR_LIMIT,
-                   "%s: no template of up to %zu spheres has %s %.6g, the best has %.6g; raise --max-spheres, use more "
-                   "cells or another method, or ease the tolerance",
-                   ms_manifest_name_row(shape->row).text, shape->most, goal->measure->name, value, best);
+    return miss_tolerance(shape, goal, best, err);
 }
 
 static ms_status choose_by_knee(ms_scene_shape *shape, const ms_goal *goal, ms_error *err)

@@ -181,12 +181,16 @@ class Length(Sizes):
 
     def test_refused(self):
         self.manifest("box.obj,1,1")
-        for args, says in ((("--tolerance-length", "0"), "'0'"), (("--tolerance-length", "nan"), "'nan'"),
+        for args, says in ((("--tolerance-length", "0"), "'0' is not a number above 0\n"),
+                           (("--tolerance-length", "nan"), "'nan'"),
                            (("--tolerance-length", "0.1", "--budget", "9"), "exclude one another")):
             with self.subTest(args=args):
                 self.assert_refused("scene", "scene.csv", *QUICK, *args, code=2, says=(says,))
         self.assert_refused("scene", "scene.csv", *QUICK, "--tolerance-length", "1e-9", "--max-spheres", "3", code=1,
-                            says=("box.obj, size 1:", "3 spheres", "dice"))
+                            says=("box.obj, size 1:", "3 spheres has a mean distance of 1e-09, the best has 0."))
+        self.manifest("box.obj,1,1,1e-9", header="shape,count,size,tolerance")
+        self.assert_refused("scene", "scene.csv", *QUICK, "--tolerance-length", "1", "--max-spheres", "3", code=1,
+                            says=("3 spheres has dice 1e-09",))
 
 
 class Sieve(Sizes):
