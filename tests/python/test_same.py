@@ -152,9 +152,10 @@ class Same(PythonCase):
         self.assertTrue((again.masses == heavy.masses).all())
 
     def test_equal_volume(self):
-        clump = mskit.generate(self.path(self.grain), "mss", spheres=6, cells=20)
-        self.expect_same(mskit.equal_volume(clump), "generate", self.grain, "-g", "mss", "-n", 6, "--cells", 20,
-                         "--equal-volume")
+        for method, options in (("mss", {}), ("variational", {"hold_volume": True})):
+            clump = mskit.generate(self.path(self.grain), method, spheres=6, cells=20, **options)
+            self.expect_same(mskit.equal_volume(clump), "generate", self.grain, "-g", method, "-n", 6, "--cells", 20,
+                             "--equal-volume")
 
     def test_expected(self):
         numpy.save(self.path("v.npy"), labelled())

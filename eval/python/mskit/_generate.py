@@ -312,7 +312,10 @@ def _plain(value: Any) -> Any:
 
 
 def equal_volume(clump: Any, shape: Any = None) -> Clump:
-    """The clump scaled about the centroid of the shape until the union of its spheres has the shape's volume."""
+    """The clump scaled about the centroid of the shape until the union of its spheres has the shape's volume.
+
+    Of variational `mskit generate --equal-volume` has held the volume before: `generate(..., hold_volume=True)`.
+    """
     clump = as_clump(clump)
     chosen, solid = _body_for(clump, shape)
     made = own(clump)
