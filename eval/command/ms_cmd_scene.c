@@ -439,7 +439,7 @@ static int run_scene(const ms_command *command, int argc, char **argv)
     }
     a.source = argv[first];
     if (a.particles > 0 && is_manifest(a.source)) {
-        return ms_flags_wrong_usage(command, "--particles is of a shape; a manifest has its own counts, so leave it out");
+        return ms_flags_wrong_usage(command, "leave --particles out: a manifest has its own counts");
     }
     if (a.classes > 0 && !a.sieve_file) {
         return ms_flags_wrong_usage(command, "--classes are those of a sieve curve; give --sieve FILE beside it");
