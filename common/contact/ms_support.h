@@ -31,7 +31,11 @@ MS_API ms_status ms_support_from_clump(ms_support *body, const ms_clump *clump, 
  */
 MS_API ms_status ms_support_from_mesh(ms_support *body, const ms_mesh *mesh, const double centre[3], ms_error *err);
 
-/** The hull of the faces of voxels, likewise. @return MS_OK; as ms_grid_hull_build */
+/**
+ * The hull of the centres of the outer faces of voxels, likewise.
+ *
+ * @return MS_OK; MS_ERR_SHAPE if no voxel is inside; MS_ERR_ARG if this build cannot make hulls; MS_ERR_NOMEM
+ */
 MS_API ms_status ms_support_from_grid(ms_support *body, const ms_grid *grid, const double centre[3], ms_error *err);
 
 /** h(u), the greatest c.u + r; exact. @param u of length 1. Cost: O(count) */

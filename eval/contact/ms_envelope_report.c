@@ -8,7 +8,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* What is said of a body: X(name, value). */
+/* What is said of a body: X(name, value), where t is the table, r a radius of it and ball the volume of find_ball. */
 #define MS_ENVELOPE_COLUMNS(X, name, side)                \
     X(name "_volume", (side).volume / ball)               \
     X(name "_envelope", (side).envelope[r].volume / ball) \

@@ -13,12 +13,12 @@ static char *template_path(const char *folder, const ms_manifest_row *row, const
 {
     size_t length;
     const char *stem = ms_files_stem(&length, row->path);
-    char *path, size[32] = "";
+    char size[32] = "";
     if (!isnan(row->size)) {
         snprintf(size, sizeof size, "-%.6g", row->size);
     }
     const size_t room = strlen(folder) + length + strlen(size) + strlen(format->ending) + 3;
-    path = malloc(room);
+    char *path = malloc(room);
     if (path) {
         const int start = snprintf(path, room, "%s/", folder);
         snprintf(path + start, room - (size_t)start, "%.*s%s.%s", (int)length, stem, size, format->ending);

@@ -28,7 +28,8 @@ typedef struct ms_sieve {
  * @param[out] sieve   the caller frees it; empty on failure
  * @param      classes 0: one between each row and the next, without those that hold nothing; else as many of equal mass
  * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line: another header, a size that is not above the one before, a
- *         share that falls or is none from 0 to 1, a curve that does not begin with 0 or end with 1; MS_ERR_NOMEM
+ *         share that falls or is none from 0 to 1, a curve that does not begin with 0 or end with 1, more rows
+ *         than MS_SIEVE_MAX_ROWS; MS_ERR_NOMEM
  */
 ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_error *err);
 

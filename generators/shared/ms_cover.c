@@ -301,7 +301,7 @@ static void count_best(ms_cover *cover)
         cover->free_runs += cover->remains[cover->entry[0].index].room;
         stale[n++] = borrow_first(cover);
     }
-#pragma omp parallel for schedule(dynamic, 1) num_threads(cover->threads) if (rows >= ROWS_FOR_THREADS)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(cover->threads) if (n > 1 && rows >= ROWS_FOR_THREADS)
     for (int e = 0; e < n; e++) {
         count_left(cover, &stale[e]);
     }

@@ -2,6 +2,7 @@
 import csv
 import io
 import math
+import re
 
 from support import Case, box_obj, npy
 
@@ -127,7 +128,7 @@ class Contact(Case):
         for name, value in table[0].items():
             self.assert_close(float(value), row[name], 1e-6, name)
         alone = self.mskit("contact", "two.csv", "--overlap", "0.01", "--poses", "5", "--envelope", "0.1,1")
-        self.assertEqual(len([l for l in alone.out.splitlines() if l.startswith("  clump    ") and "e-" in l]), 2)
+        self.assertEqual(len(re.findall(r"(?m)^  clump    .*e-", alone.out)), 2)
         self.assertIn("parts of r_eq", self.mskit("contact", *args, "0", code=2).err)
 
     def test_envelope_of_a_volume_refused(self):

@@ -98,8 +98,9 @@ class Column(Sizes):
         out = self.mskit("scene", "scene.csv", *QUICK, "--knee", "0.3", "--report", "page.html").out
         self.assertRegex(out, r"least r +size\n")
         self.assertIn(" its own\n", out)
+        self.assertIn(" in box.obj, size 0.5; by convention", out)
         scenes = scenes_of(self.read("page.html").decode())
-        for scene, size in zip(scenes, self.NAMES.values()):
+        for scene, size in zip(scenes, self.NAMES.values(), strict=True):
             factor = (size or OWN) / OWN
             for got, want in zip(scene["centre"], (1.5, 1, 0.5)):
                 self.assert_close(got, factor * want, 1e-6, "centre of the page's scene")
@@ -141,7 +142,7 @@ class Length(Sizes):
 
     def check(self, scene, length):
         numbers = []
-        for shape, size in zip(scene["shapes"], self.SIZES):
+        for shape, size in zip(scene["shapes"], self.SIZES, strict=True):
             factor = size / OWN
             limit = length * AREA / (2 * VOLUME * factor)
             self.assert_close(shape["tolerance"], limit, 1e-12, "D")
@@ -226,8 +227,7 @@ class Sieve(Sizes):
             self.assertEqual(sum(s["particles"] for s in scene["shapes"] if s["size"] == size), n)
 
     def test_classes(self):
-        scene = self.scene(*QUICK, "--budget", "200", "--max-spheres", "2", "--sieve", "curve.csv", "--classes", "5",
-                           source="scene.csv")
+        scene = self.scene(*QUICK, "--budget", "200", "--max-spheres", "2", "--sieve", "curve.csv", "--classes", "5")
         self.assertEqual(len(scene["sieve"]), 5)
         for row in scene["sieve"]:
             self.assert_close(row["asked"], 0.2, 1e-12, "share")
@@ -248,7 +248,6 @@ class Sieve(Sizes):
                            (("--sieve", "curve.csv", "--classes", "0"), "--classes"),
                            (("--sieve", "curve.csv", "--classes", "1.5"), "--classes")):
             self.assert_refused("scene", "scene.csv", *quick, *args, code=2, says=(says,))
-        self.write("curve.csv", self.CURVE)
         self.manifest("box.obj,3,1")
         self.assert_refused("scene", "scene.csv", *quick, "--sieve", "curve.csv", code=2,
                             says=("has sizes", "--sieve curve.csv"))
