@@ -78,17 +78,17 @@ static ms_status read_curve(sieve_curve *curve, const ms_bytes *bytes, const cha
     return status;
 }
 
-/* The integral of size^-3 over the shares from lo to hi. Between two rows size = a exp(L t), t growing with the share
- * from 0 to 1. */
-static double count_between(const sieve_curve *curve, double lo, double hi)
+/* The mean of size^-3 over the shares from lo to hi. Between two rows size = a exp(L t), t growing with the share from 0
+ * to 1. However small a share and L are, their quotients are numbers. */
+static double mean_count(const sieve_curve *curve, double lo, double hi)
 {
     double sum = 0;
     for (size_t r = 0; r + 1 < curve->count; r++) {
-        const double p = curve->passing[r], q = curve->passing[r + 1], span = q - p;
-        const double from = fmax(lo, p), to = fmin(hi, q);
+        const double a = curve->size[r], p = curve->passing[r], span = curve->passing[r + 1] - p;
+        const double from = fmax(lo, p), to = fmin(hi, curve->passing[r + 1]);
         if (from < to) {
-            const double l = 3 * log(curve->size[r + 1] / curve->size[r]);
-            sum += pow(curve->size[r], -3) * exp(-l * (from - p) / span) * -expm1(-l * (to - from) / span) * span / l;
+            const double l = 3 * log1p((curve->size[r + 1] - a) / a), part = l * ((to - from) / span);
+            sum += (to - from) / (hi - lo) * pow(a, -3) * exp(-l * ((from - p) / span)) * (-expm1(-part) / part);
         }
     }
     return sum;
@@ -98,7 +98,7 @@ static double count_between(const sieve_curve *curve, double lo, double hi)
 static void add_class(ms_sieve *sieve, const sieve_curve *curve, double lo, double hi)
 {
     if (lo < hi) {
-        const double size = cbrt((hi - lo) / count_between(curve, lo, hi));
+        const double size = cbrt(1 / mean_count(curve, lo, hi));
         sieve->of[sieve->count++] = (ms_sieve_class){.size = size, .share = hi - lo};
     }
 }

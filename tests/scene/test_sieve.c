@@ -183,6 +183,24 @@ static void test_classes_of_equal_mass(void **state)
     }
 }
 
+/* The least share and the least step of sizes there are. */
+static void test_classes_of_next_to_nothing(void **state)
+{
+    ms_sieve sieve;
+    ms_error err;
+    (void)state;
+    assert_int_equal(read_text(&sieve, "size,passing\n1,0\n2,5e-324\n3,1\n", 0, &err), MS_OK);
+    assert_int_equal(sieve.count, 2);
+    assert_close(pow(sieve.of[0].size, -3) / mean_of(1, 2), 1, 1e-13);
+    assert_close(pow(sieve.of[1].size, -3) / mean_of(2, 3), 1, 1e-13);
+    ms_sieve_free(&sieve);
+    assert_int_equal(read_text(&sieve, "size,passing\n1.9999999999999996,0\n1.9999999999999998,1\n", 2, &err), MS_OK);
+    for (int c = 0; c < 2; c++) {
+        assert_close(sieve.of[c].size, 2, 1e-15);
+    }
+    ms_sieve_free(&sieve);
+}
+
 static void test_refused(void **state)
 {
     static const char *const CASES[][2] = {
@@ -278,6 +296,7 @@ int main(void)
         cmocka_unit_test(test_take),
         cmocka_unit_test(test_classes_of_rows),
         cmocka_unit_test(test_classes_of_equal_mass),
+        cmocka_unit_test(test_classes_of_next_to_nothing),
         cmocka_unit_test(test_refused),
         cmocka_unit_test(test_apply),
     };
