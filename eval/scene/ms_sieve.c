@@ -78,8 +78,8 @@ static ms_status read_curve(sieve_curve *curve, const ms_bytes *bytes, const cha
     return status;
 }
 
-/* The mean of size^-3 over the shares from lo to hi. Between two rows size = a exp(L t), t growing with the share from 0
- * to 1. However small a share and L are, their quotients are numbers. */
+/* The mean of size^-3 over the shares from lo to hi. Between two rows size = a exp(L t), t growing with the share from
+ * 0 to 1. However small a share and L are, their quotients are numbers. */
 static double mean_count(const sieve_curve *curve, double lo, double hi)
 {
     double sum = 0;
