@@ -163,10 +163,11 @@ static void find_own_centres(envelope_cells *c)
     }
 }
 
-/* Distance from the envelope's surface, positive inside. */
+/* Distance from the envelope's surface, positive inside. Where a ball's centre may be, the body's is told instead: the
+ * envelope is a radius or more away, which may be less than a cell. */
 static double find_margin(const envelope_cells *c, size_t cell)
 {
-    return c->reach[cell] - c->radius;
+    return c->depth[cell] < c->radius ? c->reach[cell] - c->radius : -c->depth[cell];
 }
 
 /* Tries the centres of the cell's neighbours. @return 1 if one is nearer */
