@@ -96,7 +96,7 @@ void ms_report_metrics(FILE *stream, const ms_metrics *m, const ms_target *targe
             print_inertia(stream, measure, m);
         } else if (measure->kind == MS_MEASURE_KIND_DESCRIPTOR && code != MS_MEASURE_VOXEL_LIMIT) {
             continue;
-        } else if (code == MS_MEASURE_COVERAGE_CUT && isnan(measure->of_metrics(m))) { /* not asked for */
+        } else if (isnan(measure->of_metrics(m))) { /* not asked for, or of a volume of few voxels not known */
             continue;
         } else if (code != MS_MEASURE_PROTRUSION_RMS && code != MS_MEASURE_GAP_RMS) {
             fprintf(stream, "  %-34s %.*f\n", measure->label, measure->digits, measure->of_metrics(m));

@@ -134,6 +134,13 @@ class Correct(Case):
         self.assertLess(abs(scale[True] - 1), 1e-3)
         self.assertGreater(abs(scale[False] - 1), 5e-3)
 
+    def test_equal_volume_that_cannot_be_held_is_said(self):
+        """Balls whose least D on a plate takes far more than its volume."""
+        plate = self.shape("plate")
+        run = self.mskit("generate", plate, "-n", 3, "--cells", 6, "--equal-volume", "--json", "-o", "e.csv")
+        self.assert_says(run, "the fit leaves 3 spheres with 1.1", "left to scaling")
+        self.assert_close(run.json["equal_volume"]["volume"], 5 * 5 * 0.1, 1e-6)
+
     def test_equal_volume_refused(self):
         self.assert_refused("correct", "c.csv", "--properties", "union", "--density", 1, "--equal-volume",
                             "-o", "d.csv", code=2, says=("--equal-volume",))

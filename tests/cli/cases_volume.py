@@ -56,6 +56,13 @@ class Volume(Case):
         self.assert_close(info["elongation"], b / a, 1e-12, "elongation of a cuboid")
         self.assert_close(info["flatness"], c / b, 1e-12, "flatness of a cuboid")
 
+    def test_one_voxel(self):
+        """Of so few the area is not known, nor what hangs on it: left out, as in JSON."""
+        self.write("voxel.npy", npy(b"\1", (1, 1, 1)))
+        run = self.mskit("generate", "voxel.npy", "-g", "mss", "-n", "1", "-o", "a.csv")
+        self.assertNotIn("nan", run.out + run.err)
+        self.assertNotIn("voxel limit", run.out + run.err)
+
     def test_info_lists_the_labels(self):
         """Of several labels each has a line: voxels, box, pieces, and whether the border cuts it."""
         listed = labels()
