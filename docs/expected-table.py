@@ -23,6 +23,8 @@ import sys
 import tempfile
 from collections import Counter
 
+import tables
+
 MSKIT = os.path.abspath(os.environ.get("MSKIT", "build/eval/mskit"))
 SHARED = os.path.abspath(os.environ.get("MSKIT_SHARED", "../shared"))
 FIELDS = "shape n effort start cells delivered seconds D".split()
@@ -132,17 +134,10 @@ def planned(arguments):
 
 def add_runs(judge, arguments):
     there = {(row["shape"], int(row["n"]), int(row["effort"]), row["start"]) for row in read_runs(arguments.runs)}
-    new = not os.path.exists(arguments.runs)
-    with open(arguments.runs, "a", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, FIELDS, lineterminator="\n")
-        if new:
-            writer.writeheader()
-        for body, *what, cells, judged in planned(arguments):
-            row = (name_of(body), *what) not in there and judge.try_method(body, *what, cells, judged,
-                                                                           arguments.timeout)
-            if row:
-                writer.writerow(row)
-                stream.flush()
+    for body, *what, cells, judged in planned(arguments):
+        row = (name_of(body), *what) not in there and judge.try_method(body, *what, cells, judged, arguments.timeout)
+        if row:
+            tables.add_row(arguments.runs, FIELDS, row)
 
 
 def expect(judge, body):

@@ -1,6 +1,7 @@
 """Tables in Markdown, and a document's parts between <!-- NAME --> and <!-- end -->, for the scripts beside this
 one."""
 import csv
+import os
 import re
 import sys
 
@@ -8,6 +9,16 @@ import sys
 def read(path):
     with open(path, newline="", encoding="utf-8") as stream:
         return list(csv.DictReader(stream))
+
+
+def add_row(path, columns, row):
+    """At the end of a CSV file, with the head of a new one."""
+    new = not os.path.exists(path)
+    with open(path, "a", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, columns, lineterminator="\n")
+        if new:
+            writer.writeheader()
+        writer.writerow(row)
 
 
 def markdown(head, rows):

@@ -7,7 +7,6 @@ Rows are added to contact-impacts.csv, contact-masses.csv and contact-steps.csv 
 are not run again. `tables` puts the tables of these files between the marks of docs/behaviour.md. Takes liggghts, lmp
 and yade; some ten CPU minutes for all of it.
 """
-import csv
 import json
 import math
 import os
@@ -34,10 +33,7 @@ class Table:
 
     def __init__(self, name, fields, keys):
         self.path, self.fields, self.keys = os.path.join(HERE, name), fields.split(), keys
-        self.rows = []
-        if os.path.exists(self.path):
-            with open(self.path, encoding="ascii") as f:
-                self.rows = list(csv.DictReader(f))
+        self.rows = contact_tables.tables.read(self.path) if os.path.exists(self.path) else []
         self.seen = {self.key(row) for row in self.rows}
 
     def key(self, row):
@@ -52,12 +48,7 @@ class Table:
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         row = dict(zip(self.fields, [*key, *values, f"{cpu:.2f}"]))
-        is_new = not os.path.exists(self.path)
-        with open(self.path, "a", encoding="ascii", newline="") as f:
-            writer = csv.DictWriter(f, self.fields, lineterminator="\n")
-            if is_new:
-                writer.writeheader()
-            writer.writerow(row)
+        contact_tables.tables.add_row(self.path, self.fields, row)
         self.rows.append(row)
         print(*row.values(), flush=True)
 

@@ -23,8 +23,6 @@ import argparse
 import math
 import os
 import re
-import resource
-import subprocess
 import sys
 import time
 
@@ -33,7 +31,8 @@ import numpy
 import contrasts_cells as cells
 import contrasts_chart
 import contrasts_tables
-from packing import LIGGGHTS, MSKIT, REST, SEEDS, read_spheres
+from packing import ENERGY, MATERIAL, REST, SEEDS, SETTLE, ask_version, read_spheres, run_to_rest
+from tables import add_row
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TABLE = os.path.join(HERE, "contrasts.csv")
@@ -41,6 +40,14 @@ COLUMNS = ["cell", "seed", "step", "rate", "particles", "height", "fraction", "s
            "kinetic_over_m_g_d", "seconds", "cpu_seconds", "version"]
 COUNT, SIDE, PASS = 250, 60.0, 0.01  # particles, mm, s between two looks at the velocity
 MOVES, FLOWS, STANDS = 0.01, 0.05, 0.002  # m/s
+
+TILT = """variable angle equal ${{next}}
+variable x equal sin(${{angle}}*PI/180)
+variable z equal -cos(${{angle}}*PI/180)
+fix gravity all gravity 9.81 vector ${{x}} 0 ${{z}}
+run {each}
+variable now equal ${{speed}}
+"""
 
 SCRIPT = """atom_style granular
 atom_modify map array
@@ -52,11 +59,7 @@ region box block 0 0.06 0 0.06 -0.01 0.55 units box
 create_box 2 box
 neighbor 0.001 bin
 neigh_modify delay 0
-hard_particles yes
-fix young all property/global youngsModulus peratomtype 5e7 5e7
-fix poisson all property/global poissonsRatio peratomtype 0.29 0.29
-fix restitution all property/global coefficientRestitution peratomtypepair 2 0.5 0.5 0.5 0.5
-fix friction all property/global coefficientFriction peratomtypepair 2 0.35 0.35 0.35 0.35
+""" + MATERIAL + """fix friction all property/global coefficientFriction peratomtypepair 2 0.35 0.35 0.35 0.35
 fix rolling all property/global coefficientRollingFriction peratomtypepair 2 {rolling} {rolling} {rolling} {rolling}
 pair_style gran model hertz tangential history {model}
 pair_coeff * *
@@ -74,38 +77,19 @@ fix kinds all particledistribution/discrete 15485867 1 clump 1.0
 region above block 0 0.06 0 0.06 0.012 0.5 volume_limit 1e-300 units box
 fix insert all insert/pack seed {seed} distributiontemplate kinds insert_every once overlapcheck yes &
     orientation random all_in no particles_in_region {count} region above
-fix move all multisphere
-compute moved all ke/multisphere
-compute turned all erotate/multisphere
-variable kinetic equal (c_moved+c_turned)/{count}
-compute along all property/atom vx
+""" + ENERGY + """compute along all property/atom vx
 compute flow all reduce sum c_along
 variable speed equal c_flow/{spheres}
 thermo_style custom step atoms v_kinetic v_speed
 thermo {each}
 run {falling}
-variable k loop 100
-label settle
-run {tenth}
-variable now equal ${{kinetic}}
-if "${{now}} < {rest}" then "jump SELF rest"
-next k
-jump SELF settle
-label rest
-print "at rest: ${{now}} J"
-group candies type 1
+""" + SETTLE + """group candies type 1
 write_dump candies custom settled.dump id type x y z radius modify sort id
 variable angle equal 0
 variable up loop 10000
 label rise
 if "${{angle}} < 15.999" then "variable next equal ${{angle}}+{fast}" else "variable next equal ${{angle}}+{slow}"
-variable angle equal ${{next}}
-variable x equal sin(${{angle}}*PI/180)
-variable z equal -cos(${{angle}}*PI/180)
-fix gravity all gravity 9.81 vector ${{x}} 0 ${{z}}
-run {each}
-variable now equal ${{speed}}
-print "RISE ${{angle}} ${{now}}"
+""" + TILT + """print "RISE ${{angle}} ${{now}}"
 if "${{now}} > {flows} || ${{angle}} > 60" then "jump SELF flows"
 next up
 jump SELF rise
@@ -113,13 +97,7 @@ label flows
 variable down loop 10000
 label fall
 variable next equal ${{angle}}-{slow}
-variable angle equal ${{next}}
-variable x equal sin(${{angle}}*PI/180)
-variable z equal -cos(${{angle}}*PI/180)
-fix gravity all gravity 9.81 vector ${{x}} 0 ${{z}}
-run {each}
-variable now equal ${{speed}}
-print "FALL ${{angle}} ${{now}}"
+""" + TILT + """print "FALL ${{angle}} ${{now}}"
 if "${{now}} < {stands} || ${{angle}} < 0" then "jump SELF stands"
 next down
 jump SELF fall
@@ -158,31 +136,19 @@ def find_angles(rise, fall):
     return rise[first][0], next(angle for angle, speed in fall if speed < MOVES)
 
 
-def write_script(folder, clump, seed, step, rate):
+def make_script(clump, seed, step, rate):
     each, rolling = round(PASS / step), clump["rolling"]
-    with open(os.path.join(folder, "in.bed"), "w", encoding="utf-8") as stream:
-        stream.write(SCRIPT.format(template=clump["template"], spheres=COUNT * clump["members"], rolling=rolling,
-                                   model="rolling_friction epsd2" if rolling else "", seed=seed, step=step, count=COUNT,
-                                   rest=REST, each=each, falling=60 * each, tenth=10 * each, slow=rate * PASS,
-                                   fast=4 * rate * PASS, flows=FLOWS, stands=STANDS))
+    return SCRIPT.format(template=clump["template"], spheres=COUNT * clump["members"], rolling=rolling,
+                         model="rolling_friction epsd2" if rolling else "", seed=seed, step=step, count=COUNT,
+                         rest=REST, each=each, falling=60 * each, tenth=10 * each, slow=rate * PASS,
+                         fast=4 * rate * PASS, flows=FLOWS, stands=STANDS)
 
 
 def run(folder, name, seed, step, rate):
     """One row."""
     clump = cells.make(folder, name)
     work = os.path.join(folder, f"{name}-{seed}-{step:g}-{rate:g}")
-    os.makedirs(work, exist_ok=True)
-    write_script(work, clump, seed, step, rate)
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    with open(os.path.join(work, "out"), "w", encoding="utf-8") as out:
-        done = subprocess.run([LIGGGHTS, "-in", "in.bed", "-log", "none"], cwd=work, stdout=out,
-                              stderr=subprocess.STDOUT, check=False)
-    cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-    with open(os.path.join(work, "out"), encoding="utf-8") as out:
-        text = out.read()
-    rest = re.search(r"^at rest: (\S+) J", text, re.MULTILINE)
-    if done.returncode or not rest or float(rest[1]) >= REST:
-        sys.exit(f"{work}: no rest; see {work}/out")
+    text, kinetic, cpu = run_to_rest(work, make_script(clump, seed, step, rate))
     beds = {when: read_spheres(os.path.join(work, when + ".dump")) for when in ("settled", "flowed")}
     for when, spheres in beds.items():
         if len(spheres) != COUNT * clump["members"]:
@@ -194,11 +160,10 @@ def run(folder, name, seed, step, rate):
         sys.exit(f"{work}: the bed did not flow, or not stand again; see {work}/out")
     height, fraction = measure(beds["settled"])
     steps = int(re.findall(r"^\s*(\d+)\s+\d+\s+\S+\s+\S+\s*$", text, re.MULTILINE)[-1])
-    version = subprocess.run([MSKIT, "--version"], check=True, stdout=subprocess.PIPE, encoding="utf-8").stdout.strip()
     return {"cell": name, "seed": seed, "step": step, "rate": rate, "particles": COUNT, "height": round(height, 3),
             "fraction": round(fraction, 5), "start": round(start, 2), "stop": round(stop, 2),
-            "flowed": round(measure(beds["flowed"])[1], 5), "kinetic_over_m_g_d": f"{float(rest[1]) / REST * 1e-6:.2g}",
-            "seconds": round(steps * step, 2), "cpu_seconds": round(cpu), "version": version}
+            "flowed": round(measure(beds["flowed"])[1], 5), "kinetic_over_m_g_d": kinetic,
+            "seconds": round(steps * step, 2), "cpu_seconds": cpu, "version": ask_version()}
 
 
 def describe_clumps(folder):
@@ -226,7 +191,7 @@ def main():
             if time.time() - begun > 60 * asked.most:
                 break
             row = run(asked.work, name, seed, asked.step, asked.rate)
-            cells.add_row(TABLE, COLUMNS, row)
+            add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in COLUMNS if key not in ("particles", "version")), flush=True)
     contrasts_tables.fill()
     contrasts_chart.draw(contrasts_tables.read_runs(TABLE))

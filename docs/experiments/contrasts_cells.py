@@ -1,12 +1,11 @@
 """The clumps of contrasts.py: for the M&M candy of packing.py, of its volume unless their radii were changed."""
-import csv
 import json
-import math
 import os
 import subprocess
 from collections import namedtuple
 
 from packing import A, C, DENSITY, MASS, MSKIT
+import tables  # of docs, where packing looks
 
 # radii: factor on all of them, with places, mass and inertia as they were; rolling: coefficient of rolling friction
 Cell = namedtuple("Cell", "method n radii rolling", defaults=(1.0, 0.0))
@@ -102,19 +101,9 @@ def describe(folder, name):
 
 def describe_all(folder, path):
     """Adds those that are not in the table yet."""
-    there = set()
-    if os.path.exists(path):
-        with open(path, newline="", encoding="utf-8") as stream:
-            there = {row["cell"] for row in csv.DictReader(stream)}
+    there = {row["cell"] for row in tables.read(path)} if os.path.exists(path) else set()
     for name in CELLS:
         if name not in there:
-            add_row(path, COLUMNS, describe(folder, name))
+            tables.add_row(path, COLUMNS, describe(folder, name))
 
 
-def add_row(path, columns, row):
-    new = not os.path.exists(path)
-    with open(path, "a", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, columns)
-        if new:
-            writer.writeheader()
-        writer.writerow(row)

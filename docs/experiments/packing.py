@@ -15,7 +15,6 @@ What is measured, as fixed before the first run, of the particles at rest (kinet
     fraction         of the cylinder between 1/4 and 3/4 of height_envelope, the part within spheres (voxels of 0.5 mm)
 """
 import argparse
-import csv
 import json
 import math
 import os
@@ -45,6 +44,28 @@ REST = 1e-6 * MASS * 9.81 * 2 * A * 1e-3  # J a particle
 SEEDS = [32452843, 49979687, 67867967, 86028121, 413158511, 104395301, 122949823, 141650939, 160481183, 179424673,
          198491317, 217645177, 236887691, 256203161, 275604541, 295075147, 314606869, 334214459, 353868013, 373587883]
 
+# What the beds of contrasts.py share. Yuan's candies; kinetic energy a particle; and looks at it until all are at rest.
+MATERIAL = """hard_particles yes
+fix young all property/global youngsModulus peratomtype 5e7 5e7
+fix poisson all property/global poissonsRatio peratomtype 0.29 0.29
+fix restitution all property/global coefficientRestitution peratomtypepair 2 0.5 0.5 0.5 0.5
+"""
+ENERGY = """fix move all multisphere
+compute moved all ke/multisphere
+compute turned all erotate/multisphere
+variable kinetic equal (c_moved+c_turned)/{count}
+"""
+SETTLE = """variable k loop 100
+label settle
+run {tenth}
+variable now equal ${{kinetic}}
+if "${{now}} < {rest}" then "jump SELF rest"
+next k
+jump SELF settle
+label rest
+print "at rest: ${{now}} J"
+"""
+
 SCRIPT = """atom_style granular
 atom_modify map array
 communicate single vel yes
@@ -55,11 +76,7 @@ region box block -0.0264 0.0264 -0.0264 0.0264 -0.002 0.26 units box
 create_box 2 box
 neighbor 0.0005 bin
 neigh_modify delay 0
-hard_particles yes
-fix young all property/global youngsModulus peratomtype 5e7 5e7
-fix poisson all property/global poissonsRatio peratomtype 0.29 0.29
-fix restitution all property/global coefficientRestitution peratomtypepair 2 0.5 0.5 0.5 0.5
-fix friction all property/global coefficientFriction peratomtypepair 2 0.35 0.30 0.30 0.30
+""" + MATERIAL + """fix friction all property/global coefficientFriction peratomtypepair 2 0.35 0.30 0.30 0.30
 pair_style gran model hertz tangential history
 pair_coeff * *
 timestep {step}
@@ -72,23 +89,10 @@ region above cylinder z 0 0 0.0254 0.18 0.25 volume_limit 1e-300 units box
 # four at a time fall, as in the paper
 fix insert all insert/rate/region seed {seed} distributiontemplate kinds nparticles {count} particlerate 160 &
     insert_every {every} vel constant 0 0 -0.5 orientation random overlapcheck yes all_in yes region above
-fix move all multisphere
-compute moved all ke/multisphere
-compute turned all erotate/multisphere
-variable kinetic equal (c_moved+c_turned)/{count}
-thermo_style custom step atoms v_kinetic
+""" + ENERGY + """thermo_style custom step atoms v_kinetic
 thermo {every}
 run {filling}
-variable k loop 100
-label settle
-run {tenth}
-variable now equal ${{kinetic}}
-if "${{now}} < {rest}" then "jump SELF rest"
-next k
-jump SELF settle
-label rest
-print "at rest: ${{now}} J"
-write_dump all custom packing.dump id type x y z radius modify sort id
+""" + SETTLE + """write_dump all custom packing.dump id type x y z radius modify sort id
 """
 
 
@@ -134,36 +138,47 @@ def measure(spheres, h=0.5):
     return height, float((spheres[:, 2] + spheres[:, 3]).max()), float(filled[within][:, middle].mean())
 
 
-def pack(folder, n, seed, step):
-    template, said = make_clump(folder, n)
-    work = os.path.join(folder, f"{n}-{seed}-{step:g}")
+def run_to_rest(work, script):
+    """What LIGGGHTS prints, kinetic energy at rest over m g d, CPU seconds. Ends here where there is no rest."""
     os.makedirs(work, exist_ok=True)
-    every = round(4 / 160 / step)
-    with open(os.path.join(work, "in.packing"), "w", encoding="utf-8") as stream:
-        stream.write(SCRIPT.format(step=step, template=template, seed=seed, count=COUNT, every=every, rest=REST,
-                                   filling=round((COUNT / 160 + 0.3) / step), tenth=round(0.1 / step)))
+    with open(os.path.join(work, "in.bed"), "w", encoding="utf-8") as stream:
+        stream.write(script)
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     with open(os.path.join(work, "out"), "w", encoding="utf-8") as out:
-        done = subprocess.run([LIGGGHTS, "-in", "in.packing"], cwd=work, stdout=out, stderr=subprocess.STDOUT,
-                              check=False)
+        done = subprocess.run([LIGGGHTS, "-in", "in.bed", "-log", "none"], cwd=work, stdout=out,
+                              stderr=subprocess.STDOUT, check=False)
     cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
     with open(os.path.join(work, "out"), encoding="utf-8") as out:
         text = out.read()
     rest = re.search(r"^at rest: (\S+) J", text, re.MULTILINE)
     if done.returncode or not rest or float(rest[1]) >= REST:
         sys.exit(f"{work}: no rest; see {work}/out")
+    return text, f"{float(rest[1]) / REST * 1e-6:.2g}", round(cpu)
+
+
+def ask_version():
+    said = subprocess.run([MSKIT, "--version"], check=True, stdout=subprocess.PIPE, encoding="utf-8")
+    return said.stdout.strip()
+
+
+def pack(folder, n, seed, step):
+    template, said = make_clump(folder, n)
+    work = os.path.join(folder, f"{n}-{seed}-{step:g}")
+    every = round(4 / 160 / step)
+    script = SCRIPT.format(step=step, template=template, seed=seed, count=COUNT, every=every, rest=REST,
+                           filling=round((COUNT / 160 + 0.3) / step), tenth=round(0.1 / step))
+    text, kinetic, cpu = run_to_rest(work, script)
     spheres = read_spheres(os.path.join(work, "packing.dump"))
     if len(spheres) % COUNT:
         sys.exit(f"{work}: {len(spheres)} spheres are not those of {COUNT} particles")
     height, top, fraction = measure(spheres)
-    version = subprocess.run([MSKIT, "--version"], check=True, stdout=subprocess.PIPE, encoding="utf-8").stdout.strip()
     steps = re.findall(r"^\s*(\d+)\s+\d+\s+\S+\s*$", text, re.MULTILINE)[-1]
     return {"method": "setcover", "n": len(spheres) // COUNT, "dice": said["scores"]["dice"],
             "coverage": said["scores"]["coverage"],
             "scaled_by": said["equal_volume"]["scale"], "seed": seed, "step": step, "particles": COUNT,
             "height_envelope": round(height, 3), "height_top": round(top, 3), "fraction": round(fraction, 5),
-            "kinetic_over_m_g_d": f"{float(rest[1]) / REST * 1e-6:.2g}", "steps": steps, "cpu_seconds": round(cpu),
-            "version": version}
+            "kinetic_over_m_g_d": kinetic, "steps": steps, "cpu_seconds": cpu,
+            "version": ask_version()}
 
 
 def make_table():
@@ -200,12 +215,7 @@ def main():
         if (asked.spheres, seed, asked.step) in there or time.time() - start > 60 * asked.most:
             continue
         row = pack(asked.work, asked.spheres, seed, asked.step)
-        new = not os.path.exists(TABLE)
-        with open(TABLE, "a", newline="", encoding="utf-8") as stream:
-            writer = csv.DictWriter(stream, COLUMNS)
-            if new:
-                writer.writeheader()
-            writer.writerow(row)
+        tables.add_row(TABLE, COLUMNS, row)
         print(", ".join(f"{name} {row[name]}" for name in ("n", "seed", "height_envelope", "height_top", "fraction",
                                                            "cpu_seconds")), flush=True)
     tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"packing": make_table()})

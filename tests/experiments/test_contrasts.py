@@ -24,6 +24,8 @@ import contrasts_cells as cells  # noqa: E402
 import contrasts_chart as chart  # noqa: E402
 import contrasts_tables as tables  # noqa: E402
 import intervals  # noqa: E402
+import packing  # noqa: E402
+from tables import add_row  # noqa: E402
 
 
 class Beds(unittest.TestCase):
@@ -195,7 +197,7 @@ class Tables(unittest.TestCase):
             return {**dict.fromkeys(cells.COLUMNS, value), "cell": name}
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(cells, "describe", describe):
             path = os.path.join(folder, "clumps.csv")
-            cells.add_row(path, cells.COLUMNS, describe("", "variational-10", 1))
+            add_row(path, cells.COLUMNS, describe("", "variational-10", 1))
             for _ in range(2):
                 cells.describe_all(folder, path)
             with open(path, newline="", encoding="utf-8") as stream:
@@ -233,8 +235,8 @@ class Resumption(unittest.TestCase):
         self.table = os.path.join(self.folder, "contrasts.csv")
         self.write_engine(SAID)
         mskit = self.write("mskit", "#!/bin/sh\necho mskit 0\n")
-        for target, name, value in ((contrasts, "TABLE", self.table), (contrasts, "MSKIT", mskit),
-                                    (contrasts, "LIGGGHTS", os.path.join(self.folder, "engine")),
+        for target, name, value in ((contrasts, "TABLE", self.table), (packing, "MSKIT", mskit),
+                                    (packing, "LIGGGHTS", os.path.join(self.folder, "engine")),
                                     (tables, "fill", lambda: None),
                                     (chart, "draw", lambda rows: None),
                                     (contrasts, "describe_clumps", lambda folder: None)):
