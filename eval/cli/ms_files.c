@@ -50,6 +50,18 @@ int ms_files_is_stream(const char *path)
     return strcmp(path, "-") == 0 || (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode));
 }
 
+ms_status ms_files_take_page(const char **page, const char *flag, const char *path, ms_error *err)
+{
+    char ending[16];
+    ms_file_ending(ending, path);
+    if (strcmp(ending, "html") != 0 || ms_files_is_stream(path)) {
+        return ms_fail(err, MS_ERR_ARG, "--%s '%.200s' is no name of a page; name a file that ends in .html", flag,
+                       path);
+    }
+    *page = path;
+    return MS_OK;
+}
+
 ms_status ms_files_check_standard(const char *const *path, size_t count, ms_error *err)
 {
     size_t found = 0;

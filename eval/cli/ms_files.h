@@ -31,6 +31,9 @@ typedef struct ms_files {
 /** Nonzero for standard output, a device or a pipe: it holds nothing that could be lost. */
 int ms_files_is_stream(const char *path);
 
+/** Takes the path of a page, as of --report. @return MS_OK; MS_ERR_ARG for another ending than .html, and a stream */
+ms_status ms_files_take_page(const char **page, const char *flag, const char *path, ms_error *err);
+
 /**
  * Standard input can be read once: refuses "-" as more than one of the files that a command reads.
  *

@@ -195,6 +195,16 @@ int ms_flags_wrong_usage(const ms_command *command, const char *message)
     return EXIT_USAGE;
 }
 
+int ms_flags_wrong_words(const ms_command *command, const char *takes, int most, int count, char *const *word)
+{
+    ms_error err;
+    if (count <= most) {
+        return ms_flags_wrong_usage(command, takes);
+    }
+    ms_fail(&err, MS_ERR_ARG, "%s; '%.200s' is one too many", takes, word[most]);
+    return ms_flags_wrong_usage(command, err.text);
+}
+
 int ms_flags_refuse(const ms_command *command, ms_status status, const ms_error *err)
 {
     return status == MS_ERR_NOMEM ? ms_flags_fail(command, err) : ms_flags_wrong_usage(command, err->text);

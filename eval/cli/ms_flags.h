@@ -59,6 +59,15 @@ int ms_flags_fail(const ms_command *command, const ms_error *err);
 /** The same with the usage of the command. @return EXIT_USAGE */
 int ms_flags_wrong_usage(const ms_command *command, const char *message);
 
+/**
+ * The same where the number of words is another than the command takes. Names the first of those that are too many.
+ *
+ * @param takes what it takes, as "takes one shape"
+ * @param most  words that it takes at most
+ * @param word  those given, count of them
+ */
+int ms_flags_wrong_words(const ms_command *command, const char *takes, int most, int count, char *const *word);
+
 /** Refuses what the flags say: wrong usage, unless just memory was lacking. @return EXIT_USAGE or EXIT_FAILED */
 int ms_flags_refuse(const ms_command *command, ms_status status, const ms_error *err);
 

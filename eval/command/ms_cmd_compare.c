@@ -117,8 +117,10 @@ static ms_status take_compare_flag(void *context, const char *name, const char *
         *(name[0] == 'r' ? &a->resume : &a->json) = 1;
         return MS_OK;
     }
+    if (strcmp(name, "report") == 0) {
+        return ms_files_take_page(&c->report, name, value, err);
+    }
     const char **const file = strcmp(name, "output") == 0   ? &a->output
-                              : strcmp(name, "report") == 0 ? &c->report
                               : strcmp(name, "charts") == 0 ? &c->charts
                                                             : &c->population;
     *file = value;

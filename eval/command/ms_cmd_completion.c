@@ -64,7 +64,7 @@ static int run_completion(const ms_command *command, const ms_command *const *al
         return EXIT_DONE;
     }
     if (argc - first != 1) {
-        return ms_flags_wrong_usage(command, "takes the name of a shell");
+        return ms_flags_wrong_words(command, "takes the name of a shell", 1, argc - first, argv + first);
     }
     ms_choice choice = {.typed = argv[first]};
     if (ms_choice_offer(&choice, "bash")) {

@@ -60,8 +60,8 @@ static ms_status take_parts(double *list, size_t *count, size_t most, const char
         const ms_word word = {at, strcspn(at, ",")};
         double part;
         if (!ms_text_to_double(&part, &word) || !(part >= range[0] && part <= range[1])) {
-            return ms_fail(err, MS_ERR_ARG, "--%s takes parts of r_eq from %g to %g, as %g,%g, not %s", name, range[0],
-                           range[1], 0.01 * range[1], 0.1 * range[1], value);
+            return ms_fail(err, MS_ERR_ARG, "--%s takes parts of r_eq from %g to %g, as %g,%g, not '%s'", name,
+                           range[0], range[1], 0.01 * range[1], 0.1 * range[1], value);
         }
         if (*count == most) {
             return ms_fail(err, MS_ERR_ARG, "--%s takes %zu parts at most", name, most);
@@ -293,7 +293,7 @@ static int run_contact(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1) {
-        return ms_flags_wrong_usage(command, "takes one clump file");
+        return ms_flags_wrong_words(command, "takes one clump file", 1, argc - first, argv + first);
     }
     a.clump = argv[first];
     const ms_status status = resolve_contact(&a, &err);

@@ -199,7 +199,7 @@ static int run_convert(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1) {
-        return ms_flags_wrong_usage(command, "takes one clump file");
+        return ms_flags_wrong_words(command, "takes one clump file", 1, argc - first, argv + first);
     }
     a.clump = argv[first];
     const char *const inputs[] = {a.clump, a.target};

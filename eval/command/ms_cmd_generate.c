@@ -459,7 +459,7 @@ static int run_generate(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1) {
-        return ms_flags_wrong_usage(command, "takes one shape");
+        return ms_flags_wrong_words(command, "takes one shape", 1, argc - first, argv + first);
     }
     a.shape = argv[first];
     const ms_status status = resolve_generate(&a, &err);

@@ -27,7 +27,7 @@ static int run_generators(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (first < argc) {
-        return ms_flags_wrong_usage(command, "takes no words");
+        return ms_flags_wrong_words(command, "takes no words", 0, argc - first, argv + first);
     }
     json_t *list = json ? json_array() : NULL;
     for (const ms_generator *const *g = ms_generators; *g; g++) {

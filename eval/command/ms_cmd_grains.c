@@ -120,8 +120,7 @@ static ms_status take_grains_value(int *taken, grains_arguments *a, const char *
         return MS_OK;
     }
     if (strcmp(name, "report") == 0) {
-        a->report = value;
-        return ms_files_is_stream(value) ? ms_fail(err, MS_ERR_ARG, "--report is a page; name a file") : MS_OK;
+        return ms_files_take_page(&a->report, name, value, err);
     }
     if (strcmp(name, "choose") == 0) {
         return ms_flags_whole(&a->choose, name, value, 1, MS_POPULATION_MAX_CHOSEN, err);

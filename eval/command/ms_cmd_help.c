@@ -126,7 +126,8 @@ static int run_help(const ms_command *command, const ms_command *const *all, int
         return code;
     }
     if (argc - first != 1) {
-        return ms_flags_wrong_usage(command, "takes the name of one generator or command");
+        return ms_flags_wrong_words(command, "takes the name of one generator or command", 1, argc - first,
+                                    argv + first);
     }
     ms_choice choice = {.typed = argv[first]};
     const ms_command *other = ms_flags_find_command(&choice, all);
@@ -163,7 +164,7 @@ static int run_version(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (first < argc) {
-        return ms_flags_wrong_usage(command, "takes no words");
+        return ms_flags_wrong_words(command, "takes no words", 0, argc - first, argv + first);
     }
     puts("mskit " MS_VERSION);
     return EXIT_DONE;

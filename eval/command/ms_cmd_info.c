@@ -279,7 +279,7 @@ static int run_info(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1) {
-        return ms_flags_wrong_usage(command, "takes one shape");
+        return ms_flags_wrong_words(command, "takes one shape", 1, argc - first, argv + first);
     }
     ms_status status = ms_input_read(&input, argv[first], &a.input, &err);
     if (status != MS_OK) {

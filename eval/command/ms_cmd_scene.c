@@ -159,8 +159,7 @@ static ms_status take_scene_file(int *taken, scene_arguments *a, const char *nam
         return value[0] ? MS_OK : ms_fail(err, MS_ERR_ARG, "--%s '' names no folder", name);
     }
     if (strcmp(name, "report") == 0) {
-        a->report = value;
-        return ms_files_is_stream(value) ? ms_fail(err, MS_ERR_ARG, "--report is a page; name a file") : MS_OK;
+        return ms_files_take_page(&a->report, name, value, err);
     }
     if (strcmp(name, "format") == 0) {
         return take_template_format(a, value, err);
@@ -432,7 +431,8 @@ static int run_scene(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1) {
-        return ms_flags_wrong_usage(command, "takes one manifest (.csv: shape,count) or one shape");
+        return ms_flags_wrong_words(command, "takes one manifest (.csv: shape,count) or one shape", 1, argc - first,
+                                    argv + first);
     }
     if (a.n_formats > 0 && !a.folder) {
         return ms_flags_wrong_usage(command, "--format is that of the templates; give -o DIR beside it");

@@ -164,7 +164,7 @@ static int run_score(const ms_command *command, int argc, char **argv)
         return code;
     }
     if (argc - first != 1 || !a.target) {
-        return ms_flags_wrong_usage(command, "takes one clump file and --target SHAPE");
+        return ms_flags_wrong_words(command, "takes one clump file and --target SHAPE", 1, argc - first, argv + first);
     }
     const ms_status status = resolve_score(&a, argv[first], &err);
     if (status != MS_OK) {

@@ -88,12 +88,15 @@ static ms_status take_stability_flag(void *context, const char *name, const char
     if (strcmp(name, "seed") == 0) {
         return ms_flags_whole(&a->seed, name, value, 0, 9007199254740992.0, err);
     }
+    if (strcmp(name, "report") == 0) {
+        return ms_files_take_page(&a->report, name, value, err);
+    }
     if (strcmp(name, "json") == 0) {
         a->json = 1;
     } else if (strcmp(name, "resume") == 0) {
         a->resume = 1;
     } else {
-        *(name[0] == 'c' ? &a->charts : strcmp(name, "report") == 0 ? &a->report : &a->output) = value;
+        *(name[0] == 'c' ? &a->charts : &a->output) = value;
     }
     return MS_OK;
 }

@@ -248,7 +248,7 @@ ms_status ms_compare_report_write(const ms_csv *csv, const ms_comparison *compar
     }
     free(w.subject);
     free(w.scene);
-    if (status == MS_OK && !ms_file_is_standard(comparison->report)) {
+    if (status == MS_OK) {
         fprintf(comparison->words, "wrote %s\n", comparison->report);
     }
     return status;

@@ -5,12 +5,11 @@
 #include "ms_grains.h"
 
 /**
- * Is the page another file than the tables and clumps of all parts, and it and the files of an assembly others than
- * what is read?
+ * Are the page and the files of an assembly others than what is read?
  *
  * @param words        of the command line that name the sources
  * @param has_assembly nonzero if there will be one
- * @param page         path of the page; NULL: none
+ * @param page         path of the page (ms_files_take_page); NULL: none
  * @return MS_OK; as ms_files_check
  */
 ms_status ms_grain_files_check(const ms_grains *grains, char *const *words, size_t count, int has_assembly,

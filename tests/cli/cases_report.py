@@ -145,15 +145,15 @@ class Report(Case):
         self.write("scene.csv", "shape,count\nc.obj,4\n")
         scene = ("scene", "scene.csv", *GRID, "--budget", "20", "--report")
         grains = ("grains", "c.obj", *GRID, "-n", "2", "-o", "out", "--report")
-        self.assert_refused(*scene, "-", code=2, says=("--report", "file"))
-        self.assert_refused(*scene, "c.obj", code=1, says=("c.obj", "input"))
+        compare = ("compare", "c.obj", *GRID, "-n", "2", "--charts", "charts", "--report")
+        for command in (scene, grains, compare, ("stability", "c.obj", "-n", "2", "--report")):
+            for other in ("", "-", "c.obj", "page", "page.txt", "x.html/page"):
+                self.assert_refused(*command, other, code=2, says=("--report", f"'{other}'", ".html"))
+        os.symlink("c.obj", self.path("c.html"))  # an input by the name of a page
+        for command in (scene, grains, compare):
+            self.assert_refused(*command, "c.html", code=1, says=("c.html", "input"))
         self.assert_refused(*scene, "no/r.html", code=1, says=("no/r.html",))
-        self.assert_refused(*grains, "-", code=2, says=("--report", "file"))
-        self.assert_refused(*grains, "c.obj", code=1, says=("c.obj", "input"))
         self.assert_refused(*grains, "no/r.html", code=1, says=("no/r.html",))
-        for own in ("grains.csv", "assembly.csv", "0000/c.csv"):
-            self.assert_refused(*grains, "out/" + own, "--assembly", code=1, says=("out/" + own,))
-        self.assert_refused(*grains, "out/grains-1-of-2.csv", "--part", "2/2", code=1, says=("out/grains-1-of-2.csv",))
         self.assert_refused(*grains, "r.html", "--format", "vtk", code=1, says=("vtk", "--format csv"))
         self.assert_refused(*grains, "r.html", "--dry-run", code=2, says=("--dry-run", "--report"))
         self.assert_refused("grains", "--merge", "a", "-o", "out", "--report", "r.html", code=2,

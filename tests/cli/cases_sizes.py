@@ -252,5 +252,6 @@ class Sieve(Sizes):
         self.assert_refused("scene", "scene.csv", *quick, "--sieve", "curve.csv", code=2,
                             says=("has sizes", "--sieve curve.csv"))
         self.write("out.csv", self.CURVE)
-        self.assert_refused("scene", "box.obj", *quick, "--sieve", "out.csv", "--particles", "9", "--report", "out.csv",
-                            code=1, says=("out.csv",))
+        os.symlink("out.csv", self.path("out.html"))
+        self.assert_refused("scene", "box.obj", *quick, "--sieve", "out.csv", "--particles", "9",
+                            "--report", "out.html", code=1, says=("out.html", "input"))

@@ -27,7 +27,16 @@ class Help(Case):
     def test_version(self):
         for word in ("--version", "-V", "version"):
             self.assertRegex(self.mskit(word).out, r"^mskit \d+\.\d+\.\d+\n$")
-        self.assert_refused("version", "x", code=2, says=("no words",))
+
+    def test_too_many_words(self):
+        for args, takes in ((("version", "x"), "no words"), (("generators", "x"), "no words"),
+                            (("generate", "a.stl", "x", "y"), "one shape"), (("info", "a.stl", "x"), "one shape"),
+                            (("scene", "a.stl", "x"), "one shape"), (("score", "a.csv", "x"), "one clump file"),
+                            (("correct", "a.csv", "x"), "one clump file"), (("help", "mss", "x"), "one generator"),
+                            (("contact", "a.csv", "x"), "one clump file"), (("completion", "bash", "x"), "a shell"),
+                            (("convert", "a.csv", "x"), "one clump file")):
+            self.assert_refused(*args, code=2, says=(takes, "'x' is one too many"))
+        self.assert_refused("info", code=2, says=("mskit info: takes one shape\n",))
 
     def test_help_of_every_command(self):
         for command in COMMANDS:
