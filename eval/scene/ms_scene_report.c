@@ -176,10 +176,20 @@ static json_t *sieve_json(const ms_sieve *sieve)
     return classes;
 }
 
+static json_t *smallest_json(const ms_scene *scene)
+{
+    const ms_scene_shape *smallest = ms_scene_smallest(scene);
+    json_t *json = json_pack("{s:f,s:o}", "radius", ms_clump_smallest_radius(ms_scene_clump(smallest)), "shape",
+                             ms_report_text(smallest->row->path));
+    if (scene->has_sizes) {
+        ms_json_object_set(&json, "size", ms_report_number(smallest->row->size));
+    }
+    return json;
+}
+
 void ms_scene_add_json(json_t **json, const ms_scene *scene, const ms_goal *goal)
 {
     const ms_allocation *sum = &scene->sum, *even = &scene->even;
-    const ms_scene_shape *smallest = ms_scene_smallest(scene);
     const int together = goal->kind == MS_GOAL_BUDGET || goal->kind == MS_GOAL_MEAN;
     json_t *shapes = json_array();
     for (size_t s = 0; s < scene->count; s++) {
@@ -195,9 +205,7 @@ void ms_scene_add_json(json_t **json, const ms_scene *scene, const ms_goal *goal
                        scene->is_searched ? json_null()
                                           : json_pack("{s:f,s:I,s:f}", "each", scene->even_each, "spheres",
                                                       (json_int_t)even->spheres, "mean_dice", even->error));
-    ms_json_object_set(json, "smallest",
-                       json_pack("{s:f,s:o}", "radius", ms_clump_smallest_radius(ms_scene_clump(smallest)), "shape",
-                                 ms_report_text(smallest->row->path)));
+    ms_json_object_set(json, "smallest", smallest_json(scene));
     if (scene->sieve) {
         ms_json_object_set(json, "sieve", sieve_json(scene->sieve));
     }

@@ -51,8 +51,9 @@ static ms_status read_row(sieve_curve *curve, ms_text *text, ms_error *err)
                             *passing, size[-1], passing[-1]);
     }
     if (at == 0 && *passing > 0) {
-        return ms_text_fail(
-            err, text, "%g of the mass is finer than the first size; begin with a size that nothing passes", *passing);
+        return ms_text_fail(err, text,
+                            "%g of the mass is finer than the first size; sizes ascend from one that nothing passes",
+                            *passing);
     }
     curve->count++;
     return MS_OK;

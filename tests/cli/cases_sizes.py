@@ -50,6 +50,7 @@ class Column(Sizes):
                 for got, want in zip(sphere, its):
                     self.assertAlmostEqual(got, factor * want, delta=1e-14 * factor * 4)
             self.assertEqual(shape["smallest_radius"], min(s[3] for s in spheres))
+        self.assertEqual((scene["smallest"]["shape"], scene["smallest"]["size"]), ("box.obj", 0.5))
         self.assertEqual(scene["particles"], 13)
         self.assertEqual(scene["spheres"], 13 * len(own))
 
