@@ -136,9 +136,11 @@ ms_status ms_files_add(ms_files *files, const char *path, ms_file_use use, ms_er
 ms_status ms_files_make_folder(const char *path, ms_error *err)
 {
     struct stat info;
-    return mkdir(path, 0777) == 0 || (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+    const int made = mkdir(path, 0777) == 0, why = made ? 0 : errno;
+    return made || (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
                ? MS_OK
-               : ms_fail(err, MS_ERR_IO, "%s: this folder cannot be made; does the one above it exist?", path);
+               : ms_fail(err, MS_ERR_IO, "the folder '%s' cannot be made: %s; name one within a folder that exists",
+                         path, strerror(why));
 }
 
 ms_status ms_files_add_folder(ms_files *files, const char *path, ms_error *err)

@@ -113,6 +113,16 @@ static ms_status fail_no_flag(ms_error *err, const flag_tables *t, const char *d
                    near ? "; did you mean --" : "", choice.nearest, near ? "?" : "");
 }
 
+/* Of a method: these stand behind --help. */
+static int is_option(const flag_tables *t, const char *name)
+{
+    size_t f = 0;
+    while (t->longs[f].name != name && t->longs[f].val != 'h') {
+        f++;
+    }
+    return t->longs[f].name != name;
+}
+
 /* A word behind two dashes. */
 static ms_status fail_long(ms_error *err, const flag_tables *t, const char *word)
 {
@@ -120,7 +130,8 @@ static ms_status fail_long(ms_error *err, const flag_tables *t, const char *word
     const char *first = NULL;
     const size_t found = find_flags(&first, t, word, length);
     if (found == 1) {
-        return ms_fail(err, MS_ERR_ARG, "--%s takes no argument", first);
+        return is_option(t, first) ? ms_fail(err, MS_ERR_ARG, "--%s takes no argument; --set %s=0 is off", first, first)
+                                   : ms_fail(err, MS_ERR_ARG, "--%s takes no argument", first);
     }
     return found > 1 ? ms_fail(err, MS_ERR_ARG, "--%.*s may be short for %zu flags, as --%s; write more of it",
                                (int)length, word, found, first)

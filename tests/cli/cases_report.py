@@ -152,6 +152,9 @@ class Report(Case):
         os.symlink("c.obj", self.path("c.html"))  # an input by the name of a page
         for command in (scene, grains, compare):
             self.assert_refused(*command, "c.html", code=1, says=("c.html", "input"))
+        for folder, why in (("", "No such file"), ("no/charts", "No such file"), ("c.obj", "File exists")):
+            self.assert_refused("stability", "c.obj", *GRID, "-n", "2", "--charts", folder, code=1,
+                                says=(f"the folder '{folder}' cannot be made: {why}",))
         self.assert_refused(*scene, "no/r.html", code=1, says=("no/r.html",))
         self.assert_refused(*grains, "no/r.html", code=1, says=("no/r.html",))
         self.assert_refused(*grains, "r.html", "--format", "vtk", code=1, says=("vtk", "--format csv"))

@@ -38,6 +38,10 @@ class Help(Case):
             self.assert_refused(*args, code=2, says=(takes, "'x' is one too many"))
         self.assert_refused("info", code=2, says=("mskit info: takes one shape\n",))
 
+    def test_value_of_a_flag_that_takes_none(self):
+        self.assert_refused("generate", "a.stl", "--connected=0", code=2, says=("--set connected=0 is off",))
+        self.assert_refused("generate", "a.stl", "--json=0", code=2, says=("--json takes no argument (",))
+
     def test_help_of_every_command(self):
         for command in COMMANDS:
             for args in ((command, "--help"), (command, "-h"), ("help", command)):

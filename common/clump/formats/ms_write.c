@@ -1,5 +1,6 @@
 #include "ms_write.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -76,9 +77,9 @@ static ms_status make_folders(char *path, size_t from, ms_error *err)
     for (char *slash = strchr(path + from, '/'); slash; slash = strchr(slash + 1, '/')) {
         *slash = '\0';
         struct stat info;
-        const int made = mkdir(path, 0777) == 0 || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
-        if (!made) {
-            return ms_fail(err, MS_ERR_IO, "%s: this folder cannot be made", path);
+        const int made = mkdir(path, 0777) == 0, why = made ? 0 : errno;
+        if (!made && (stat(path, &info) != 0 || !S_ISDIR(info.st_mode))) {
+            return ms_fail(err, MS_ERR_IO, "the folder '%s' cannot be made: %s", path, strerror(why));
         }
         *slash = '/';
     }
