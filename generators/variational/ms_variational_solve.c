@@ -306,15 +306,15 @@ static ms_status try_bulk(ms_variational_solver *s, ms_error *err)
 }
 
 /* What is left is said where scaling it away would cost more of D than voxels hide. */
-static ms_status hold_volume(ms_variational_solver *s, const ms_run *run, ms_error *err)
+static ms_status hold_volume(ms_variational_solver *s, ms_error *err)
 {
     double lack;
-    const ms_status status = ms_volume_hold(&lack, s->ball, s->count, &s->fit, err);
+    const ms_status status = ms_volume_hold(&lack, s->ball, s->count, &s->fit, s->run, err);
     if (status == MS_OK && fabs(lack) > LACKING) {
-        ms_generator_remark(run,
+        ms_generator_remark(s->run,
                             "the fit leaves %zu spheres with %.3g times the volume of the shape, so that the rest is "
                             "left to scaling; more spheres or cells may hold it",
-                            s->count, 1 - lack);
+                            ms_variational_solver_count(s), 1 - lack);
     }
     return status;
 }
@@ -336,8 +336,8 @@ ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
     if (status == MS_OK) {
         status = try_bulk(&s, err);
     }
-    if (status == MS_OK && settings->hold_volume) {
-        status = hold_volume(&s, run, err);
+    if (status == MS_OK && settings->hold_volume && s.count > 0) {
+        status = hold_volume(&s, err);
     }
     if (status == MS_OK) {
         *count = ms_variational_solver_expand(&s);
