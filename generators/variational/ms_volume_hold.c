@@ -105,15 +105,10 @@ static ms_status seek_price(price_search *s, ms_error *err)
     return status;
 }
 
-ms_status ms_volume_hold(double *lack, ms_ball *ball, size_t count, ms_surface_fit *fit, const ms_run *run,
-                         ms_error *err)
+ms_status ms_volume_hold(ms_ball *ball, size_t count, ms_surface_fit *fit, const ms_run *run, ms_error *err)
 {
     price_search s = {.run = run, .fit = fit, .ball = ball, .count = count, .part = 1};
-    ms_status status = find_state(&s.now, ball, count, fit, err);
+    const ms_status status = find_state(&s.now, ball, count, fit, err);
     s.price = s.now.dice; /* at which D is least (Dinkelbach) */
-    if (status == MS_OK) {
-        status = seek_price(&s, err);
-    }
-    *lack = find_volume_lack(&s.now, run->target);
-    return status;
+    return status == MS_OK ? seek_price(&s, err) : status;
 }

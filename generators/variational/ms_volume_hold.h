@@ -12,7 +12,6 @@
  *
  * What is left of the difference, 1e-3 and less as a rule, is the caller's to scale away.
  *
- * @param[out]    lack 1 - |U| / |S| in the end
  * @param[in,out] ball `count` spheres of the least |S xor U| or D, in voxels; nothing but a least radius, equal radii
  *                     or symmetry may bind them
  * @param         run   is told of each fit
@@ -22,7 +21,6 @@
  * the sign changes (Kesten, Ann. Math. Stat. 29 (1958) 41). Cost: 48 to 176 steps of the fit, and
  * one of ms_bulk_dice for each eight of them.
  */
-ms_status ms_volume_hold(double *lack, ms_ball *ball, size_t count, ms_surface_fit *fit, const ms_run *run,
-                         ms_error *err);
+ms_status ms_volume_hold(ms_ball *ball, size_t count, ms_surface_fit *fit, const ms_run *run, ms_error *err);
 
 #endif

@@ -146,28 +146,50 @@ static void its_fits_can_be_interrupted(void **state)
     }
 }
 
-/* Spheres as the user counts them, with their images; of none there is nothing to say. */
+/* Counts the remarks, too. */
+typedef struct remarks {
+    char last[512];
+    int count;
+} remarks;
+
+static void count_remark(void *context, const char *sentence)
+{
+    remarks *r = context;
+    keep_remark(r->last, sentence);
+    r->count++;
+}
+
+/* Spheres as the user counts them, with their images; of those that a measure is sought by, the ones that have it; of
+ * none there is nothing to say. */
 static void what_is_left_is_said(void **state)
 {
     ms_mesh mesh;
     ms_target target;
     ms_clump clump;
     ms_stop_reason reason;
-    char remark[512] = "";
+    remarks said = {0};
     (void)state;
     make_shape(&mesh, "plate", "");
     make_target(&target, &mesh, 6, MS_VOXEL_CENTRE);
     assert_int_equal(try_generator(&clump, &reason, &ms_generator_variational, &target, (ms_stop){.spheres = 4},
-                                   "hold-volume symmetry=xy", keep_remark, remark, NULL),
+                                   "hold-volume symmetry=xy", count_remark, &said, NULL),
                      MS_OK);
     assert_int_equal(clump.n_spheres, 4);
-    assert_non_null(strstr(remark, "leaves 4 spheres"));
+    assert_int_equal(said.count, 1);
+    assert_non_null(strstr(said.last, "leaves 4 spheres"));
     ms_clump_free(&clump);
-    remark[0] = '\0';
+    said.count = 0;
     assert_int_equal(try_generator(&clump, &reason, &ms_generator_variational, &target,
-                                   (ms_stop){.spheres = 4, .radius = 100}, "hold-volume", keep_remark, remark, NULL),
+                                   (ms_stop){.spheres = 3, .dice = 1e-3}, "hold-volume", count_remark, &said, NULL),
+                     MS_OK);
+    assert_int_equal(clump.n_spheres, 3);
+    assert_int_equal(said.count, 1);
+    assert_non_null(strstr(said.last, "leaves 3 spheres"));
+    ms_clump_free(&clump);
+    assert_int_equal(try_generator(&clump, &reason, &ms_generator_variational, &target,
+                                   (ms_stop){.spheres = 4, .radius = 100}, "hold-volume", count_remark, &said, NULL),
                      MS_ERR_SHAPE);
-    assert_string_equal(remark, "");
+    assert_int_equal(said.count, 1);
     ms_target_free(&target);
     ms_mesh_free(&mesh);
 }
