@@ -9,6 +9,7 @@
 #include <stdlib.h>
 
 #include "base/ms_vector.h"
+#include "clump/ms_union.h"
 #include "ms_gap.h"
 #include "ms_variational_solve.h"
 #include "shared/ms_bisect_count.h"
@@ -123,7 +124,7 @@ static ms_status check_gap(const ms_clump *clump, const ms_run *run, ms_error *e
         ball[s] = ms_grid_ball(&run->target->grid, &clump->sphere[s]);
     }
     const ms_status status = ms_gap_largest(&largest, NULL, run->target, ball, clump->n_spheres, bound, err);
-    if (status == MS_OK && clump->n_spheres > 0 && largest > bound) {
+    if (status == MS_OK && largest > bound) {
         ms_generator_remark(run,
                             "gap=%g cannot be held by %zu spheres within their other bounds: part of the surface is "
                             "%.2f voxels from them, the least that was found; more spheres or a larger protrusion help",
@@ -133,10 +134,11 @@ static ms_status check_gap(const ms_clump *clump, const ms_run *run, ms_error *e
     return status;
 }
 
-/* Says if the spheres are not one piece, or fewer so that they are. */
-static ms_status check_connected(const ms_clump *clump, size_t asked, const ms_run *run, ms_error *err)
+/* Says if the spheres are not one piece, or fewer than a number that is asked for so that they are. */
+static ms_status check_connected(const ms_clump *clump, const ms_run *run, ms_error *err)
 {
     size_t pieces;
+    const size_t asked = ms_stop_has_measure(&run->stop) ? 0 : run->stop.spheres;
     const ms_status status = ms_clump_pieces(&pieces, clump, err);
     if (status == MS_OK && pieces > 1) {
         ms_generator_remark(run,
@@ -152,6 +154,36 @@ static ms_status check_connected(const ms_clump *clump, size_t asked, const ms_r
     return status;
 }
 
+/* Says how far the volume is from that of the shape, where scaling to it would cost more of D than voxels hide. */
+static ms_status check_volume(const ms_clump *clump, const ms_run *run, ms_error *err)
+{
+    const double told = 0.01;
+    double volume = 0, area;
+    const ms_status status = ms_union_measure(&volume, &area, clump, err);
+    const double part = volume / run->target->body.volume;
+    if (status == MS_OK && fabs(part - 1) > told) {
+        ms_generator_remark(run,
+                            "the fit leaves %zu spheres with %.3g times the volume of the shape, so that the rest is "
+                            "left to scaling; more spheres or cells may hold it",
+                            clump->n_spheres, part);
+    }
+    return status;
+}
+
+/* Says what of the bounds the spheres do not keep; those that were found on the way do not matter. */
+static ms_status tell_shortfalls(const ms_clump *clump, const ms_run *run, ms_error *err)
+{
+    const ms_variational_settings settings = read_settings(run);
+    ms_status status = MS_OK;
+    if (settings.gap < HUGE_VAL) {
+        status = check_gap(clump, run, err);
+    }
+    if (status == MS_OK && settings.connected) {
+        status = check_connected(clump, run, err);
+    }
+    return status == MS_OK && settings.hold_volume ? check_volume(clump, run, err) : status;
+}
+
 /* Each number of spheres is a run of its own, since the best n spheres are not among the best n + 1. */
 static ms_status generate_for(void *context, ms_clump *clump, ms_stop_reason *reason, size_t n, ms_error *err)
 {
@@ -162,12 +194,6 @@ static ms_status generate_for(void *context, ms_clump *clump, ms_stop_reason *re
     ms_status status = ms_variational_solve(&ball, &count, run, &settings, n, err);
     if (status == MS_OK) {
         status = to_clump(clump, ball, count, run, err);
-    }
-    if (status == MS_OK && settings.gap < HUGE_VAL) {
-        status = check_gap(clump, run, err);
-    }
-    if (status == MS_OK && settings.connected) {
-        status = check_connected(clump, n, run, err);
     }
     if (status == MS_OK) {
         status = judge_clump(reason, clump, n, run, err);
@@ -242,6 +268,9 @@ static ms_status generate_by_variational(ms_clump *clump, ms_stop_reason *reason
     if (status == MS_OK) {
         status = ms_stop_has_measure(&run->stop) ? ms_bisect_count(clump, reason, most, generate_for, &each, err)
                                                  : generate_for(&each, clump, reason, most, err);
+    }
+    if (status == MS_OK && clump->n_spheres > 0) {
+        status = tell_shortfalls(clump, run, err);
     }
     ms_clump_free(&settings.clump);
     return status;

@@ -16,9 +16,6 @@
 #include "ms_variational_solver.h"
 #include "ms_volume_hold.h"
 
-/* Difference of the volumes, as part of that of the shape, that is told. */
-static const double LACKING = 0.01;
-
 /* Part of the surplus that is dropped at a time: what goes at once is chosen without knowing of the rest. */
 static const double DROP = 0.1;
 
@@ -305,20 +302,6 @@ static ms_status try_bulk(ms_variational_solver *s, ms_error *err)
     return status;
 }
 
-/* What is left is said where scaling it away would cost more of D than voxels hide. */
-static ms_status hold_volume(ms_variational_solver *s, const ms_run *run, ms_error *err)
-{
-    double lack;
-    const ms_status status = ms_volume_hold(&lack, s->ball, s->count, &s->fit, err);
-    if (status == MS_OK && fabs(lack) > LACKING) {
-        ms_generator_remark(run,
-                            "the fit leaves %zu spheres with %.3g times the volume of the shape, so that the rest is "
-                            "left to scaling; more spheres or cells may hold it",
-                            s->count, 1 - lack);
-    }
-    return status;
-}
-
 ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
                                const ms_variational_settings *settings, size_t n, ms_error *err)
 {
@@ -337,7 +320,7 @@ ms_status ms_variational_solve(ms_ball **ball, size_t *count, const ms_run *run,
         status = try_bulk(&s, err);
     }
     if (status == MS_OK && settings->hold_volume) {
-        status = hold_volume(&s, run, err);
+        status = ms_volume_hold(s.ball, s.count, &s.fit, run, err);
     }
     if (status == MS_OK) {
         *count = ms_variational_solver_expand(&s);

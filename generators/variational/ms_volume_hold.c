@@ -61,6 +61,7 @@ static double find_rise(const state *now, const ms_target *target)
 
 /* A search under way. */
 typedef struct price_search {
+    const ms_run *run; /* is told of each fit */
     ms_surface_fit *fit;
     ms_ball *ball;
     size_t count;
@@ -72,11 +73,15 @@ typedef struct price_search {
 static ms_status fit_at_price(price_search *s, double from, double to, ms_error *err)
 {
     const double damping[2] = {from, to};
-    const ms_target *target = s->fit->field->target;
+    const ms_target *target = s->run->target;
     const double before = find_volume_lack(&s->now, target);
+    ms_status status = ms_generator_stage(s->run, "fit to the volume", (double)NAN, err);
+    if (status != MS_OK) {
+        return status;
+    }
     s->price = fmin(fmax(s->price + s->part * find_rise(&s->now, target), -MOST), MOST);
     s->fit->slant = s->price;
-    ms_status status = ms_surface_fit_steps(s->fit, s->ball, s->count, STEPS, damping, err);
+    status = ms_surface_fit_steps(s->fit, s->ball, s->count, STEPS, damping, err);
     s->fit->slant = 0;
     if (status == MS_OK) {
         status = find_state(&s->now, s->ball, s->count, s->fit, err);
@@ -90,8 +95,7 @@ static ms_status fit_at_price(price_search *s, double from, double to, ms_error 
 static ms_status seek_price(price_search *s, ms_error *err)
 {
     ms_status status = MS_OK;
-    for (int f = 0; f < FITS && status == MS_OK && fabs(find_volume_lack(&s->now, s->fit->field->target)) > CLOSE;
-         f++) {
+    for (int f = 0; f < FITS && status == MS_OK && fabs(find_volume_lack(&s->now, s->run->target)) > CLOSE; f++) {
         status = fit_at_price(s, FIRST, FIRST, err);
     }
     for (int f = 0; f < LAST_FITS && status == MS_OK; f++) {
@@ -101,14 +105,10 @@ static ms_status seek_price(price_search *s, ms_error *err)
     return status;
 }
 
-ms_status ms_volume_hold(double *lack, ms_ball *ball, size_t count, ms_surface_fit *fit, ms_error *err)
+ms_status ms_volume_hold(ms_ball *ball, size_t count, ms_surface_fit *fit, const ms_run *run, ms_error *err)
 {
-    price_search s = {.fit = fit, .ball = ball, .count = count, .part = 1};
-    ms_status status = find_state(&s.now, ball, count, fit, err);
+    price_search s = {.run = run, .fit = fit, .ball = ball, .count = count, .part = 1};
+    const ms_status status = find_state(&s.now, ball, count, fit, err);
     s.price = s.now.dice; /* at which D is least (Dinkelbach) */
-    if (status == MS_OK) {
-        status = seek_price(&s, err);
-    }
-    *lack = find_volume_lack(&s.now, fit->field->target);
-    return status;
+    return status == MS_OK ? seek_price(&s, err) : status;
 }

@@ -111,6 +111,89 @@ static void beside_other_bounds(void **state)
     }
 }
 
+/* What a listener has heard of the volume. */
+typedef struct heard {
+    size_t stages, most; /* fits, and after how many the run is to end; 0: any number */
+} heard;
+
+static int hear_volume(void *context, const char *stage, double share)
+{
+    heard *h = context;
+    (void)share;
+    h->stages += strstr(stage, "volume") != NULL;
+    return h->most > 0 && h->stages == h->most;
+}
+
+/* Before the first of them, and before the last. */
+static void its_fits_can_be_interrupted(void **state)
+{
+    ms_clump clump;
+    ms_stop_reason reason;
+    ms_error err;
+    heard h = {0};
+    const ms_run run = {.target = *state, .stop = {.spheres = 5}, .seed = 1, .stage = hear_volume, .stage_context = &h};
+    assert_int_equal(try_run(&clump, &reason, &ms_generator_variational, run, "hold-volume", &err), MS_OK);
+    assert_true(h.stages >= 6);
+    ms_clump_free(&clump);
+    for (size_t most = 1; most <= h.stages; most += h.stages - 1) {
+        heard early = {.most = most};
+        ms_run ended = run;
+        ended.stage_context = &early;
+        assert_int_equal(try_run(&clump, &reason, &ms_generator_variational, ended, "hold-volume", &err),
+                         MS_ERR_INTERRUPTED);
+        assert_int_equal(early.stages, most);
+        assert_int_equal(clump.n_spheres, 0);
+    }
+}
+
+/* Counts the remarks, too. */
+typedef struct remarks {
+    char last[512];
+    int count;
+} remarks;
+
+static void count_remark(void *context, const char *sentence)
+{
+    remarks *r = context;
+    keep_remark(r->last, sentence);
+    r->count++;
+}
+
+/* Spheres as the user counts them, with their images; of those that a measure is sought by, the ones that have it; of
+ * none there is nothing to say. */
+static void what_is_left_is_said(void **state)
+{
+    ms_mesh mesh;
+    ms_target target;
+    ms_clump clump;
+    ms_stop_reason reason;
+    remarks said = {0};
+    (void)state;
+    make_shape(&mesh, "plate", "");
+    make_target(&target, &mesh, 6, MS_VOXEL_CENTRE);
+    assert_int_equal(try_generator(&clump, &reason, &ms_generator_variational, &target, (ms_stop){.spheres = 4},
+                                   "hold-volume symmetry=xy", count_remark, &said, NULL),
+                     MS_OK);
+    assert_int_equal(clump.n_spheres, 4);
+    assert_int_equal(said.count, 1);
+    assert_non_null(strstr(said.last, "leaves 4 spheres"));
+    ms_clump_free(&clump);
+    said.count = 0;
+    assert_int_equal(try_generator(&clump, &reason, &ms_generator_variational, &target,
+                                   (ms_stop){.spheres = 3, .dice = 1e-3}, "hold-volume", count_remark, &said, NULL),
+                     MS_OK);
+    assert_int_equal(clump.n_spheres, 3);
+    assert_int_equal(said.count, 1);
+    assert_non_null(strstr(said.last, "leaves 3 spheres"));
+    ms_clump_free(&clump);
+    assert_int_equal(try_generator(&clump, &reason, &ms_generator_variational, &target,
+                                   (ms_stop){.spheres = 4, .radius = 100}, "hold-volume", count_remark, &said, NULL),
+                     MS_ERR_SHAPE);
+    assert_int_equal(said.count, 1);
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
 /* What a generator says of itself is true. */
 static void the_option_is_there(void **state)
 {
@@ -130,8 +213,10 @@ static void the_option_is_there(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(of_a_grain), cmocka_unit_test(of_a_thin_wall),      cmocka_unit_test(with_symmetry),
-        cmocka_unit_test(of_a_ball),  cmocka_unit_test(beside_other_bounds), cmocka_unit_test(the_option_is_there),
+        cmocka_unit_test(of_a_grain),           cmocka_unit_test(of_a_thin_wall),
+        cmocka_unit_test(with_symmetry),        cmocka_unit_test(of_a_ball),
+        cmocka_unit_test(beside_other_bounds),  cmocka_unit_test(its_fits_can_be_interrupted),
+        cmocka_unit_test(what_is_left_is_said), cmocka_unit_test(the_option_is_there),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
