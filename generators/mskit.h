@@ -25,6 +25,7 @@
 #include "clump/ms_template.h"
 #include "clump/ms_union.h"
 #include "contact/ms_contact.h"
+#include "contact/ms_envelope.h"
 #include "contact/ms_factors.h"
 #include "contact/ms_support.h"
 #include "expect/ms_expect.h"

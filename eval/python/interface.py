@@ -262,6 +262,11 @@ ms_status ms_contact_study(ms_contact *contact, const ms_clump *clump, const ms_
                            const ms_contact_options *options, ms_error *err);
 const ms_pose *ms_contact_nearest(double *angle, const ms_contact_form *from, const double *direction);
 void ms_contact_free(ms_contact *contact);
+typedef struct { double volume, error; } ms_envelope;
+ms_status ms_envelope_clump(ms_envelope *out, double *volume, const ms_clump *clump, const double *radius, size_t count,
+                            ms_error *err);
+ms_status ms_envelope_mesh(ms_envelope *out, const ms_mesh *mesh, double volume, const double *radius, size_t count,
+                           ms_error *err);
 ms_factors ms_factors_of(const ms_contact *contact, const ms_contact_row *row, double single);
 ms_status ms_support_from_mesh(ms_support *body, const ms_mesh *mesh, const double *centre, ms_error *err);
 ms_status ms_support_from_grid(ms_support *body, const ms_grid *grid, const double *centre, ms_error *err);

@@ -235,7 +235,9 @@ class Refusals(PythonCase):
                                ({"overlap": []}, "overlap=[]"),
                                ({"overlap": [0.01] * 17}, "nor 1 to 16 of them"), ({"overlap": "x"}, "overlap='x'"),
                                ({"restitution": 0}, "restitution=0"), ({"seed": -1}, "seed=-1"),
-                               ({"factors": 2}, "factors=2"),
+                               ({"factors": 2}, "factors=2"), ({"envelope": 0}, "envelope=0.0 is not a number from"),
+                               ({"envelope": [1] * 17}, "nor 1 to 16 of them"), ({"envelope": "x"}, "envelope='x'"),
+                               ({"envelope": 1, "shape": mskit.volume(labelled(), label=3)}, "envelope takes a mesh"),
                                ({"shape": 3}, "is no shape"), ({"threads": 0}, "threads=0"),
                                ({"shape": mskit.mesh(CORNERS, FACES[1:], allow_open=True)}, "is not closed"),
                                ({"shape": mskit.mesh(numpy.array(CORNERS) * 1e-4, FACES)}, "check units and frame")]:

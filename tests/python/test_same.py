@@ -205,6 +205,8 @@ class Same(PythonCase):
         numpy.save(self.path("v.npy"), labelled())
         clump = mskit.generate(self.path(self.grain), "mss", spheres=6, cells=20)
         clump.write(self.path("c.csv"))
+        self.shape("cube", "a=2", "fineness=1", name="cube.stl")
+        cube = mskit.read(self.path("cube.stl"))
         in_voxels = mskit.generate(mskit.volume(labelled(), label=3), "mss", spheres=3)
         in_voxels.write(self.path("v.csv"))
         mskit.correct(clump, density=2650, unit="mm").write(self.path("m.json"))
@@ -213,7 +215,11 @@ class Same(PythonCase):
                  ("c.csv", "--target", self.grain, "--overlap", 0.001, "--factors", "--restitution", 0.7, "--seed", 3)),
                 (mskit.contact(in_voxels, poses=20), ("v.csv", "--target", "v.npy", "--label", 3)),
                 (mskit.contact(self.path("m.json"), poses=20, threads=1), ("m.json",)),
-                (mskit.contact(clump.spheres, poses=20, overlap=[0.002, 0.1]), ("c.csv", "--overlap", "0.002,0.1"))]:
+                (mskit.contact(clump.spheres, poses=20, overlap=[0.002, 0.1]), ("c.csv", "--overlap", "0.002,0.1")),
+                (mskit.contact(clump.spheres, poses=20, overlap=0.01, envelope=0.3),
+                 ("c.csv", "--overlap", 0.01, "--envelope", 0.3)),
+                (mskit.contact(clump, cube, poses=20, overlap=0.01, envelope=[0.1, 2]),
+                 ("c.csv", "--target", "cube.stl", "--overlap", 0.01, "--envelope", "0.1,2"))]:
             told = self.mskit("contact", *flags, "--poses", 20, "--json").json
             for name in ("path", "target", "spheres", "orientations", "single_restitution", "seed"):
                 del told[name]
