@@ -43,6 +43,7 @@
 #include "ms_generator.h"
 #include "ms_option.h"
 #include "ms_stop.h"
+#include "ms_templates.h"
 #include "shape/ms_shape.h"
 #include "volume/ms_components.h"
 #include "volume/ms_labels.h"
