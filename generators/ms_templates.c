@@ -104,16 +104,16 @@ ms_status ms_templates_make(ms_templates *templates, const ms_templates_how *how
 }
 
 /* A search for the least number of spheres that reaches a measure, by runs of their own. */
-typedef struct search {
+typedef struct template_search {
     ms_templates *t;
     const ms_templates_how *how;
     const ms_measure *measure;
     ms_run run;
     double value; /* to be reached */
-} search;
+} template_search;
 
 /* The template of n spheres. */
-static ms_status run_number(search *s, size_t n, ms_error *err)
+static ms_status run_number(template_search *s, size_t n, ms_error *err)
 {
     ms_stop_reason reason;
     s->run.stop.spheres = n;
@@ -129,7 +129,7 @@ static ms_status run_number(search *s, size_t n, ms_error *err)
 }
 
 /* A search before may have run it. @param[out] reached does it reach the value? */
-static ms_status try_number(int *reached, search *s, size_t n, ms_error *err)
+static ms_status try_number(int *reached, template_search *s, size_t n, ms_error *err)
 {
     const ms_status status = s->t->clump[n - 1].n_spheres > 0 ? MS_OK : run_number(s, n, err);
     if (status == MS_OK) {
@@ -140,7 +140,7 @@ static ms_status try_number(int *reached, search *s, size_t n, ms_error *err)
 
 /* Numbers of which the lower one does not reach the value (0: none is known) and the higher one does, in steps of a
  * fifth from the one that is expected. */
-static ms_status bracket_number(size_t *lo, size_t *hi, search *s, size_t first, ms_error *err)
+static ms_status bracket_number(size_t *lo, size_t *hi, template_search *s, size_t first, ms_error *err)
 {
     size_t n = first;
     int reached = 0;
@@ -167,7 +167,7 @@ ms_status ms_templates_search(ms_templates *templates, size_t *reached, const ms
 {
     const size_t most = templates->most;
     size_t lo = 0, hi = 0;
-    search s = {.t = templates, .how = how, .measure = measure, .run = *how->run, .value = value};
+    template_search s = {.t = templates, .how = how, .measure = measure, .run = *how->run, .value = value};
     s.run.stage = NULL; /* that of one run is no share of the search */
     ms_status status = bracket_number(&lo, &hi, &s, first < 1 ? 1 : first < most ? first : most, err);
     while (status == MS_OK && hi > 0 && hi - lo > 1) {

@@ -16,6 +16,7 @@
 #include "base/ms_sphere.h"
 #include "base/ms_version.h"
 #include "clump/formats/ms_read.h"
+#include "clump/formats/ms_scene_script.h"
 #include "clump/formats/ms_write.h"
 #include "clump/ms_carriers.h"
 #include "clump/ms_clump.h"

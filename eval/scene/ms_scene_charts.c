@@ -16,7 +16,7 @@ static const ms_measure *find_measure(const ms_goal *goal)
 static void name_chart(char name[NAME_SIZE], const ms_manifest_row *row, size_t number, const ms_goal *goal)
 {
     size_t length;
-    const char *stem = ms_files_stem(&length, row->path);
+    const char *stem = ms_file_stem(&length, row->path);
     snprintf(name, NAME_SIZE, "%zu-%.*s-%s", number, (int)(length < 250 ? length : 250), stem,
              find_measure(goal)->name);
     ms_escape_file_name(name);
