@@ -85,15 +85,18 @@ class Refusals(PythonCase):
                  "contact": "poses overlap restitution factors seed threads", "volume": "spacing origin label "
                  "threshold connectivity", "grains": "spacing min_voxels border", "mesh": "weld fill_holes drop_bodies",
                  "read": "label weld", "Clump": "masses", "body": "r", "equal_volume": "", "read_clump": "",
-                 "write": "format"}
+                 "write": "format",
+                 "scene": "budget tolerance tolerance_length mean_dice knee max_spheres min_radius equal_volume cells"}
         usual = {"generate": [grain, "mss"], "volume": [labelled()], "grains": [labelled()], "mesh": [CORNERS, FACES],
                  "read": [self.path(self.grain)], "Clump": [[(0, 0, 0)], [1]], "body": ["ball"],
-                 "read_clump": ["none.csv"], "expect": [grain], "write": [clump, self.path("c.csv")]}
+                 "read_clump": ["none.csv"], "expect": [grain], "scene": [[(grain, 2)]],
+                 "write": [clump, self.path("c.csv")]}
         refused = 0
         for name, options in given.items():
             first = usual.get(name, [clump])
             least = {"generate": {"spheres": 1, "cells": 6}, "correct": {"density": 1},
-                     "contact": {"poses": 1, "overlap": 0.01}}.get(name, {})
+                     "contact": {"poses": 1, "overlap": 0.01},
+                     "scene": {"knee": 1, "generator": "mss", "cells": 6, "max_spheres": 2}}.get(name, {})
             for thing in things:
                 calls = [(first[:k] + [thing] + first[k + 1:], least) for k in range(len(first))]
                 calls += [(first, {**least, option: thing}) for option in options.split()]
