@@ -216,6 +216,19 @@ ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share
 ms_status ms_allocate_error(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count, double error,
                             ms_error *err);
 size_t ms_allocate_knee(const ms_share *share, double part);
+typedef struct { char *path; uint64_t particles; double tolerance, size; ...; } ms_manifest_row;
+typedef struct { ms_manifest_row *row; size_t count; ...; } ms_manifest;
+typedef struct { double size, share; uint64_t count; double mass; ...; } ms_sieve_class;
+typedef struct { size_t count; ms_sieve_class *of; ...; } ms_sieve;
+enum { MS_MANIFEST_MAX_SHAPES, MS_MANIFEST_MAX_PARTICLES, MS_SIEVE_MAX_CLASSES, ... };
+static const double MS_MANIFEST_LEAST_SIZE;
+static const double MS_MANIFEST_MOST_SIZE;
+ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *err);
+void ms_manifest_free(ms_manifest *manifest);
+ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_error *err);
+ms_status ms_sieve_parse(ms_sieve *sieve, const ms_bytes *bytes, const char *name, size_t classes, ms_error *err);
+ms_status ms_sieve_apply(ms_manifest *made, ms_sieve *sieve, const ms_manifest *manifest, ms_error *err);
+void ms_sieve_free(ms_sieve *sieve);
 typedef struct { size_t most; ms_clump *clump; ms_score *score; double *dice; ms_error *remarks; } ms_templates;
 typedef struct {
     const ms_generator *generator;

@@ -19,7 +19,7 @@ from support_python import PythonCase
 
 DOCS = os.environ["MSKIT_DOCS"]
 NAMES = ("_allocate", "_clumps", "_contact", "_errors", "_expect", "_generate", "_measures", "_meshes", "_methods",
-         "_scene", "_scene_files", "_shapes", "_sources", "_view", "_volumes")
+         "_scene", "_scene_files", "_scene_rows", "_shapes", "_sources", "_view", "_volumes")
 
 
 def document(name):

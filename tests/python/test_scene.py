@@ -75,6 +75,33 @@ class Scenes(PythonCase):
         self.expect_same(scene, "shape,count,tolerance\ngrain.ply,3,0.2\ntorus.ply,2,0.4\n", "-g", "mss",
                          "--max-spheres", 9, "--cells", 10)
 
+    def test_sieve(self):
+        """By a curve in a file and in memory, and rows likewise."""
+        self.write("curve.csv", "size,passing\n0.5,0\n1,0.3\n2.2,1\n")
+        self.write("scene.csv", "shape,count\ngrain.ply,100\ntorus.ply,9\n")
+        flags = ("--tolerance-length", 0.3, "-g", "mss", "--max-spheres", 9, "--cells", 10)
+        for classes, more in ((None, ()), (3, ("--classes", 3))):
+            found = mskit.sieve([(self.grain, 100), (self.torus, 9)], [(0.5, 0), (1, 0.3), (2.2, 1)], classes)
+            again = mskit.sieve(self.path("scene.csv"), self.path("curve.csv"), classes)
+            scene = mskit.scene(found.rows, tolerance_length=0.3, generator="mss", max_spheres=9, cells=10)
+            told = self.mskit("scene", "scene.csv", "--sieve", "curve.csv", *flags, *more, "--json").json
+            for one in (found, again):
+                self.assertEqual([list(row) for row in zip(*(each.tolist() for each in one[1:]))],
+                                 [[of[name] for name in ("size", "particles", "asked", "have")]
+                                  for of in told["sieve"]])
+            self.assertEqual([(kind.particles, kind.size, len(kind.clump)) for kind in scene.kinds],
+                             [(of["particles"], of["size"], of["scores"]["spheres"]) for of in told["shapes"]])
+        self.expect_same(mskit.scene(self.path("scene.csv"), knee=1, generator="mss", cells=8, max_spheres=3),
+                         "shape,count\ngrain.ply,100\ntorus.ply,9\n", "--knee", 1, "-g", "mss", "--cells", 8,
+                         "--max-spheres", 3)
+        for rows, curve, words in [
+                ([(self.grain, 1)], [(1, 0.5), (2, 1)], "the sieve curve: line 2: 0.5 of the mass is finer"),
+                ([(self.grain, 1)], [1, 2], "neither rows size, passing"), ([(self.grain, 1)], "none.csv", "none.csv"),
+                ([(self.grain, 10**9 + 1)], [(1, 0), (2, 1)], "row 0: count=1000000001"),
+                ([(self.grain, 10**9), (self.torus, 1)], [(1, 0), (2, 1)], "1000000001 particles of 2 shapes"),
+                ([{"shape": self.grain, "count": 1, "size": 1}], [(1, 0), (2, 1)], "rows have sizes")]:
+            self.refused(mskit.Error, words, mskit.sieve, rows, curve)
+
     def test_what_is_made_in_memory(self):
         """By its name; in another process, too."""
         grains = list(mskit.grains(labelled()))
@@ -92,8 +119,11 @@ class Scenes(PythonCase):
 
     def test_refusals(self):
         cube = mskit.body("cube", fineness=1)
+        self.write("bad.csv", "shape,count\ngrain.ply,3\ntorus.ply,0\n")
         for rows, words in [
-                ([], "is no list of 1 to 1000 rows"), ("scene.csv", "is no list"), ([3], "row 0: 3 is neither"),
+                ([], "rows=[] is neither a list"), (3, "rows=3 is neither"), ([3], "row 0: 3 is neither"),
+                ("none.csv", "none.csv"),
+                (self.path("bad.csv"), "bad.csv: line 3: the count '0' is not a whole number"),
                 ([(cube, 0)], "row 0: count=0 is not a number from 1"), ([(cube, 1), ("none.stl", 2)], "row 1: "),
                 ([(cube, 1.5)], "row 0: count=1.5 is not a whole number"),
                 ([{"shape": cube}], "row 0 has no count"),

@@ -14,13 +14,11 @@ from ._generate import Listener, Run, give_masses, read_masses, watched
 from ._library import ffi, lib
 from ._methods import DEFAULT, find_generator
 from ._scene_files import Kind, write_scene
+from ._scene_rows import Row, Rows, read_rows
 from ._shapes import Shape, make_grid, voxels_within
-from ._sources import as_shape
 
-_MOST_SHAPES, _MOST_SPHERES, _MOST_PARTICLES = 1000, 1000, 10**9
-_SIZES = (1e-50, 1e50)  # their fifth powers are numbers
+_MOST_SPHERES = 1000
 _TINY = 2.2250738585072014e-308
-_COLUMNS = ("shape", "count", "tolerance", "size")
 
 
 class Scene(NamedTuple):
@@ -67,21 +65,9 @@ class _Goal(NamedTuple):
     length: float = 0  # of tolerance: mean distance of the surfaces; 0: none is given
 
 
-class _Row(NamedTuple):
-    """One kind of particles, as it was asked for."""
-    shape: Shape
-    particles: int
-    tolerance: float  # NaN: none is given
-    size: float  # NaN: as the shape is
-
-    @property
-    def name(self) -> str:
-        return self.shape.name if math.isnan(self.size) else f"{self.shape.name}, size {self.size:g}"
-
-
 class _Made(NamedTuple):
     """What was made of a row."""
-    row: _Row
+    row: Row
     run: Run
     c: Any  # ms_templates, which rows of one shape share
     factor: float  # from the shape's own size to that of the row
@@ -89,58 +75,6 @@ class _Made(NamedTuple):
 
     def dice(self) -> numpy.ndarray:
         return numpy.frombuffer(ffi.buffer(self.c.dice, 8 * self.c.most)).copy()
-
-
-def _named(row: Any, at: int) -> Dict[str, Any]:
-    """A row by its columns."""
-    if hasattr(row, "keys"):
-        fields = dict(row)
-    elif isinstance(row, (tuple, list)) and len(row) == 2:
-        fields = {"shape": row[0], "count": row[1]}
-    else:
-        raise ArgumentError(f"row {at}: {show(row)} is neither (shape, count) nor a dict of shape, count, tolerance, "
-                            "size")
-    for name in fields:
-        if name not in _COLUMNS:
-            raise ArgumentError(f"row {at}: there is no column {show(name)}, but {', '.join(_COLUMNS)}")
-    for name in _COLUMNS[:2]:
-        if name not in fields:
-            raise ArgumentError(f"row {at} has no {name}")
-    return fields
-
-
-def _read_row(row: Any, at: int, known: List[Tuple[Any, Shape]]) -> _Row:
-    """known: sources before and their shapes; what stands in several rows is one shape."""
-    fields = _named(row, at)
-    source, count = fields["shape"], whole(f"row {at}: count", fields["count"], 1, _MOST_PARTICLES)
-    tolerance, size = fields.get("tolerance"), fields.get("size")
-    tolerance = math.nan if tolerance is None else number(f"row {at}: tolerance", tolerance, 0, 1)
-    size = math.nan if size is None else number(f"row {at}: size", size, *_SIZES)
-    for before, shape in known:
-        if source is before or (isinstance(source, (str, bytes)) and isinstance(before, type(source))
-                                and source == before):
-            return _Row(shape, count, tolerance, size)
-    try:
-        shape = as_shape(source)
-    except Error as failure:
-        raise type(failure)(f"row {at}: {failure}") from None
-    known.append((source, shape))
-    return _Row(shape, count, tolerance, size)
-
-
-def _read_rows(rows: Any) -> List[_Row]:
-    if isinstance(rows, (str, bytes)) or not isinstance(rows, Sequence) or not 1 <= len(rows) <= _MOST_SHAPES:
-        raise ArgumentError(f"rows={show(rows)} is no list of 1 to {_MOST_SHAPES} rows (shape, count)")
-    known: List[Tuple[Any, Shape]] = []
-    read: List[_Row] = []
-    for at, row in enumerate(rows):
-        one = _read_row(row, at, known)
-        for other in read:
-            if other.shape is one.shape and (other.size == one.size or math.isnan(other.size) and math.isnan(one.size)):
-                raise ArgumentError(f"row {at}: {one.shape.name} stands twice"
-                                    f"{'' if math.isnan(one.size) else ' in this size'}; add up the counts")
-        read.append(one)
-    return read
 
 
 def _read_tolerance(tolerance: Any) -> _Goal:
@@ -151,7 +85,7 @@ def _read_tolerance(tolerance: Any) -> _Goal:
                  find(lib.ms_measure_find_goal, word("tolerance", name)))
 
 
-def _read_goal(rows: List[_Row], **given: Any) -> _Goal:
+def _read_goal(rows: List[Row], **given: Any) -> _Goal:
     """What keywords and rows say together."""
     asked = {name: value for name, value in given.items() if value is not None}
     tolerances = sum(not math.isnan(row.tolerance) for row in rows)
@@ -214,7 +148,7 @@ def _knee(made: _Made, part: float) -> int:
     return knee
 
 
-def _make(rows: List[_Row], run: Run, goal: _Goal, equal_volume: bool, progress: Listener) -> List[_Made]:
+def _make(rows: List[Row], run: Run, goal: _Goal, equal_volume: bool, progress: Listener) -> List[_Made]:
     """The templates of one shape, which stands in all these rows; and what the goal says of each row alone."""
     shape, searched = rows[0].shape, goal.kind == "tolerance" and not run.nested
     templates = ffi.gc(ffi.new("ms_templates *"), lib.ms_templates_free)
@@ -282,7 +216,7 @@ def _kind(made: _Made, n: int) -> Kind:
     return Kind(made.row.shape, made.row.particles, made.row.size, clump, made.dice(), made.factor, made.run.grid, said)
 
 
-def scene(rows: Sequence[Any], *, budget: Optional[int] = None, tolerance: Optional[Dict[str, float]] = None,
+def scene(rows: Rows, *, budget: Optional[int] = None, tolerance: Optional[Dict[str, float]] = None,
           tolerance_length: Optional[float] = None, mean_dice: Optional[float] = None, knee: Optional[float] = None,
           generator: str = DEFAULT, max_spheres: int = 100, min_radius: Optional[float] = None,
           equal_volume: bool = False, cells: Optional[int] = None, deq: Optional[float] = None,
@@ -293,7 +227,8 @@ def scene(rows: Sequence[Any], *, budget: Optional[int] = None, tolerance: Optio
 
     rows: for each kind of particles (shape, count), or a dict of shape, count and, if wanted, size: diameter of the
     ball of the particle's volume, in the unit of the shape, to which it is scaled about the origin of its frame; and
-    tolerance, of this row. A shape is what `generate` takes; in several sizes it is one object, or one path.
+    tolerance, of this row. A shape is what `generate` takes; in several sizes it is one object, or one path. Or rows is
+    the path of a manifest; `sieve` makes rows by a sieve curve.
     One of: budget, spheres in the whole scene, for the least mean D that they pay for; tolerance, as {"dice": 0.05},
     for the fewest spheres of each row that reach it; tolerance_length, mean distance of the surfaces of template and
     particle, likewise; mean_dice, over all particles, for the fewest spheres in the whole scene; knee, the part of its
@@ -307,7 +242,7 @@ def scene(rows: Sequence[Any], *, budget: Optional[int] = None, tolerance: Optio
     >>> [(kind.particles, len(kind.clump)) for kind in found.kinds], found.spheres
     ([(1000, 1), (10, 4), (10, 11)], 1150)
     """
-    read = _read_rows(rows)
+    read = read_rows(rows)
     goal = _read_goal(read, budget=budget, tolerance=tolerance, tolerance_length=tolerance_length, mean_dice=mean_dice,
                       knee=knee)
     grid = make_grid(cells, deq, voxel_size, max_voxels, rule, max_memory)
