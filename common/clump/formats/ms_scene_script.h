@@ -31,9 +31,8 @@ MS_API ms_status ms_scene_script_check(const ms_scene_kind *kind, size_t count, 
                                        ms_error *err);
 
 /**
- * Writes the script, FOLDER/scene.ENDING and the suffix of the format's scripts, which inserts all particles, the kinds
- * of the largest first, which find no room among small ones.
- * The templates are to stand beside it (ms_write_clump).
+ * Writes the script, FOLDER/scene.ENDING and the suffix of the format's scripts, which inserts all particles: the
+ * largest first, since they find no room among small ones. The templates are to stand beside it (ms_write_clump).
  *
  * @param count  of kinds, at least 1
  * @param vessel with room for each (ms_scene_script_check)
