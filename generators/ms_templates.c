@@ -24,6 +24,49 @@ ms_status ms_templates_alloc(ms_templates *t, size_t most, ms_error *err)
     return MS_OK;
 }
 
+/* The listener of a run that is one of several. It is told of spheres and not of stages, whose shares are those of this
+ * run alone; but a method may ask at either whether it is to end. */
+typedef struct part_listener {
+    const ms_run *all;
+    int is_over;
+} part_listener;
+
+static int tell_spheres(void *context, size_t spheres, double dice)
+{
+    part_listener *listener = context;
+    const ms_run *all = listener->all;
+    listener->is_over |= all->progress && all->progress(all->progress_context, spheres, dice) != 0;
+    return listener->is_over;
+}
+
+static int ask_listener(void *context, const char *stage, double share)
+{
+    const part_listener *listener = context;
+    (void)stage;
+    (void)share;
+    return listener->is_over;
+}
+
+/* The clump of so many spheres. A run that its listener ends gives none. */
+static ms_status run_once(ms_clump *clump, ms_error *remarks, const ms_templates_how *how, size_t spheres,
+                          ms_error *err)
+{
+    ms_run one = *how->run;
+    part_listener listener = {how->run, 0};
+    ms_stop_reason reason;
+    one.stop.spheres = spheres;
+    one.progress = tell_spheres;
+    one.stage = ask_listener;
+    one.progress_context = one.stage_context = &listener;
+    ms_generator_keep_remarks(&one, remarks);
+    const ms_status status = ms_generator_run(clump, &reason, how->generator, &one, err);
+    if (status != MS_OK || reason != MS_STOP_INTERRUPTED) {
+        return status;
+    }
+    ms_clump_free(clump);
+    return ms_fail(err, MS_ERR_INTERRUPTED, "interrupted at %zu spheres", spheres);
+}
+
 /* Scaled, where that is asked for, and judged. */
 static ms_status judge_template(ms_templates *t, size_t n, const ms_templates_how *how, ms_error *err)
 {
@@ -85,14 +128,10 @@ static ms_status fill_templates(ms_templates *t, const ms_clump *clump, const ms
 
 ms_status ms_templates_make(ms_templates *templates, const ms_templates_how *how, ms_error *err)
 {
-    ms_run first = *how->run;
-    ms_stop_reason reason;
     ms_clump clump;
     ms_error remarks = {""};
     *templates = (ms_templates){0};
-    first.stage = NULL;
-    ms_generator_keep_remarks(&first, &remarks);
-    ms_status status = ms_generator_run(&clump, &reason, how->generator, &first, err);
+    ms_status status = run_once(&clump, &remarks, how, how->run->stop.spheres, err);
     if (status == MS_OK) {
         status = fill_templates(templates, &clump, &remarks, how, err);
         ms_clump_free(&clump);
@@ -108,17 +147,13 @@ typedef struct template_search {
     ms_templates *t;
     const ms_templates_how *how;
     const ms_measure *measure;
-    ms_run run;
     double value; /* to be reached */
 } template_search;
 
 /* The template of n spheres. */
 static ms_status run_number(template_search *s, size_t n, ms_error *err)
 {
-    ms_stop_reason reason;
-    s->run.stop.spheres = n;
-    ms_generator_keep_remarks(&s->run, &s->t->remarks[n - 1]);
-    ms_status status = ms_generator_run(&s->t->clump[n - 1], &reason, s->how->generator, &s->run, err);
+    ms_status status = run_once(&s->t->clump[n - 1], &s->t->remarks[n - 1], s->how, n, err);
     if (status == MS_OK) {
         status = judge_template(s->t, n, s->how, err);
     }
@@ -167,8 +202,7 @@ ms_status ms_templates_search(ms_templates *templates, size_t *reached, const ms
 {
     const size_t most = templates->most;
     size_t lo = 0, hi = 0;
-    template_search s = {.t = templates, .how = how, .measure = measure, .run = *how->run, .value = value};
-    s.run.stage = NULL; /* that of one run is no share of the search */
+    template_search s = {.t = templates, .how = how, .measure = measure, .value = value};
     ms_status status = bracket_number(&lo, &hi, &s, first < 1 ? 1 : first < most ? first : most, err);
     while (status == MS_OK && hi > 0 && hi - lo > 1) {
         int is_reached;

@@ -30,7 +30,8 @@ typedef struct ms_templates_how {
  * spheres than asked for, the better of both clumps stands at their number.
  *
  * @param[out] templates ms_templates_free frees them; empty on failure
- * @return MS_OK; as ms_generator_run, ms_curve_clumps, ms_equal_volume_scale, ms_metrics_compute
+ * @return MS_OK; MS_ERR_INTERRUPTED where the run's listener ends a run; as ms_generator_run, ms_curve_clumps,
+ *         ms_equal_volume_scale, ms_metrics_compute
  */
 MS_API ms_status ms_templates_make(ms_templates *templates, const ms_templates_how *how, ms_error *err);
 

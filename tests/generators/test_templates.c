@@ -7,7 +7,7 @@
 
 enum { MOST = 40 };
 
-static int n_runs[MOST + 1];
+static int n_runs[MOST + 1], is_interrupted;
 
 /* n balls in one place, the first of which grows with n until it is the ball of the target, of radius 10 voxels. */
 static ms_status grow(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
@@ -19,7 +19,7 @@ static ms_status grow(ms_clump *clump, ms_stop_reason *reason, const ms_run *run
         const ms_sphere sphere = {{0, 0, 0}, s == 0 ? 10 * pow((double)n / MOST, 0.25) : 1};
         status = ms_clump_add(clump, &sphere, err);
     }
-    *reason = MS_STOP_SPHERES;
+    *reason = is_interrupted ? MS_STOP_INTERRUPTED : MS_STOP_SPHERES;
     return status;
 }
 
@@ -102,6 +102,34 @@ static void where_none_reaches_it(void **state)
     ms_mesh_free(&mesh);
 }
 
+static void an_interrupted_run_ends_it(void **state)
+{
+    ms_target target;
+    ms_mesh mesh;
+    ms_templates some;
+    size_t found;
+    ms_error err;
+    (void)state;
+    make_ball(&target, &mesh, 1);
+    const ms_run run = {.target = &target, .stop = {.spheres = 12}};
+    const ms_templates_how how = {.generator = &GROWING, .run = &run, .max_voxels = 1u << 24};
+    memset(n_runs, 0, sizeof n_runs);
+    assert_int_equal(ms_templates_alloc(&some, 12, NULL), MS_OK);
+    is_interrupted = 1;
+    const ms_status searched = ms_templates_search(&some, &found, &how, &ms_measures[MS_MEASURE_DICE], 0.1, 4, &err);
+    const int runs = count_runs();
+    ms_templates_free(&some);
+    const ms_status made = ms_templates_make(&some, &how, NULL);
+    is_interrupted = 0;
+    assert_int_equal(searched, MS_ERR_INTERRUPTED);
+    assert_int_equal(runs, 1);
+    assert_non_null(strstr(err.text, "interrupted at 4 spheres"));
+    assert_int_equal(made, MS_ERR_INTERRUPTED);
+    assert_int_equal(some.most, 0);
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
 /* Each has the volume asked for before it is judged: here they are all the ball itself. */
 static void templates_of_equal_volume(void **state)
 {
@@ -177,11 +205,9 @@ static void a_body_in_its_size(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_search_finds_the_least_number),
-        cmocka_unit_test(where_none_reaches_it),
-        cmocka_unit_test(templates_of_equal_volume),
-        cmocka_unit_test(a_length_is_a_mismatch),
-        cmocka_unit_test(a_body_in_its_size),
+        cmocka_unit_test(a_search_finds_the_least_number), cmocka_unit_test(where_none_reaches_it),
+        cmocka_unit_test(an_interrupted_run_ends_it),      cmocka_unit_test(templates_of_equal_volume),
+        cmocka_unit_test(a_length_is_a_mismatch),          cmocka_unit_test(a_body_in_its_size),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

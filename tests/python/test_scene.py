@@ -102,6 +102,25 @@ class Scenes(PythonCase):
                 ([{"shape": self.grain, "count": 1, "size": 1}], [(1, 0), (2, 1)], "rows have sizes")]:
             self.refused(mskit.Error, words, mskit.sieve, rows, curve)
 
+    def test_progress(self):
+        """It is told of each shape's runs, and what the listener raises ends them."""
+        rows, told = [(self.grain, 2), (self.torus, 3)], []
+
+        def end(now):
+            told.append(now)
+            raise KeyboardInterrupt
+
+        for method in ("mss", "fcm"):
+            told.clear()
+            with self.assertRaises(KeyboardInterrupt):
+                mskit.scene(rows, tolerance={"dice": 0.05}, generator=method, max_spheres=20, cells=10,
+                            progress=end)
+            self.assertEqual(len(told), 1)
+            mskit.scene(rows, tolerance={"dice": 0.8}, generator=method, max_spheres=4, cells=8, progress=told.append)
+            self.assertGreater(len(told), 2)
+            self.assertIsInstance(told[-1], mskit.Progress)
+        self.refused(mskit.ArgumentError, "progress=3", mskit.scene, rows, knee=1, progress=3)
+
     def test_what_is_made_in_memory(self):
         """By its name; in another process, too."""
         grains = list(mskit.grains(labelled()))
