@@ -81,7 +81,7 @@ class Refusals(PythonCase):
         given = {"generate": "spheres until min_radius cells deq voxel_size max_voxels rule max_memory seed threads "
                              "progress spacing plane refine variant",
                  "score": "cells cut threads rule", "curve": "cells progress",
-                 "correct": "density unit scale axes least_mass carriers carrier_depth", "expect": "threads",
+                 "correct": "density unit scale properties axes least_mass carriers carrier_depth", "expect": "threads",
                  "contact": "poses overlap restitution factors seed threads", "volume": "spacing origin label "
                  "threshold connectivity", "grains": "spacing min_voxels border", "mesh": "weld fill_holes drop_bodies",
                  "read": "label weld", "Clump": "masses", "body": "r", "equal_volume": "", "read_clump": "",
@@ -231,6 +231,12 @@ class Refusals(PythonCase):
                 ((curves,), {"mean_dice": 2}, "mean_dice=2"), ((curves,), {"knee": 0}, "knee=0"),
                 ((curves,), {"knee": 0.01}, "curve 0: up to the last of 2 spheres")]:
             self.refused(mskit.Error, words, mskit.allocate, *arguments, **options)
+
+    def test_masses_of_a_shape_or_a_union(self):
+        clump = mskit.generate(self.path(self.grain), "mss", spheres=3, cells=12)
+        for options, words in [({"properties": "both"}, "properties='both' is none of 'shape', 'union'"),
+                               ({"properties": "union", "shape": self.path(self.grain)}, "either a shape or")]:
+            self.refused(mskit.ArgumentError, words, mskit.correct, clump, density=1, **options)
 
     def test_contact(self):
         clump = mskit.generate(self.path(self.grain), "mss", spheres=3, cells=12)

@@ -133,6 +133,8 @@ class Same(PythonCase):
         heavy = mskit.correct(clump[:6], density=2650, scale=0.001, axes="input", least_mass=0.01)
         clump[:6].write(self.path("c.csv"))
         self.expect_same(heavy, *common, "--axes", "input", "--least-mass", 0.01)
+        self.expect_same(mskit.correct(self.path("c.csv"), density=2650, unit="mm", properties="union"), "correct",
+                         "c.csv", "--density", 2650, "--unit", "mm", "--properties", "union")
         self.assertAlmostEqual(heavy.masses.sum() / heavy.particle.mass, 1, delta=1e-12)
         self.assertAlmostEqual(heavy.particle.mass / (2650e-9 * clump.shape.volume), 1, delta=1e-12)
 

@@ -22,7 +22,7 @@ class Scenes(PythonCase):
     def files(self, folder):
         return {name: self.read(os.path.join(folder, name)) for name in os.listdir(self.path(folder))}
 
-    def expect_same(self, scene, manifest, *flags, **vessel):
+    def expect_same(self, scene, manifest, *flags, masses=(), **vessel):
         """Figures, curves and all files."""
         self.write("scene.csv", manifest)
         told = self.mskit("scene", "scene.csv", *flags, "-o", "program", "--density", 2650, "--unit", "mm", "--json",
@@ -32,7 +32,7 @@ class Scenes(PythonCase):
                           told["slack"] or 0))
         for kind, shape in zip(scene.kinds, told["shapes"]):
             self.assertEqual([None if math.isnan(dice) else dice for dice in kind.dice], shape["curve"])
-        written = scene.correct(**HEAVY).write(self.path("module"), ENGINES, **vessel)
+        written = scene.correct(**HEAVY, **dict(masses)).write(self.path("module"), ENGINES, **vessel)
         mine, theirs = self.files("module"), self.files("program")
         self.assertEqual(sorted(mine), sorted(theirs))
         for name in theirs:
@@ -93,7 +93,7 @@ class Scenes(PythonCase):
                              [(of["particles"], of["size"], of["scores"]["spheres"]) for of in told["shapes"]])
         self.expect_same(mskit.scene(self.path("scene.csv"), knee=1, generator="mss", cells=8, max_spheres=3),
                          "shape,count\ngrain.ply,100\ntorus.ply,9\n", "--knee", 1, "-g", "mss", "--cells", 8,
-                         "--max-spheres", 3)
+                         "--max-spheres", 3, "--properties", "union", masses={"properties": "union"})
         for rows, curve, words in [
                 ([(self.grain, 1)], [(1, 0.5), (2, 1)], "the sieve curve: line 2: 0.5 of the mass is finer"),
                 ([(self.grain, 1)], [1, 2], "neither rows size, passing"), ([(self.grain, 1)], "none.csv", "none.csv"),

@@ -8,8 +8,9 @@ import numpy
 
 from ._clumps import Clump, as_clump, lend
 from ._errors import ArgumentError, ShapeError, as_floats, call, flag, number, show, use_threads, whole
+from ._generate import union_body
 from ._library import ffi, lib
-from ._shapes import Grid, Shape, voxels_within
+from ._shapes import Shape
 from ._sources import as_shape
 
 _AGAINST = {lib.MS_CONTACT_PLANE: "plane", lib.MS_CONTACT_PARTICLE: "particle"}
@@ -141,7 +142,7 @@ def _read_body(body: Any, c: Any, clump: Clump) -> None:
         body.volume = particle.mass / particle.density / particle.scale**3
         body.centroid = particle.centre.tolist()
     else:
-        call(lib.ms_particle_union, body, c, voxels_within(Grid(), ffi.new("ms_target_need *")[0]))
+        body[0] = union_body(c)[0]
 
 
 def contact(clump: Any, shape: Any = None, *, poses: int = 1000,

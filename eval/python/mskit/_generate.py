@@ -266,15 +266,16 @@ def _body_for(clump: Clump, shape: Any) -> Tuple[Shape, Any]:
 
 
 def correct(clump: Any, shape: Any = None, *, density: float, unit: str = "m", scale: Optional[float] = None,
-            axes: str = "principal", least_mass: Optional[float] = None, most_mass: Optional[float] = None,
-            centre_tolerance: Optional[float] = None, carriers: bool = False,
+            properties: str = "shape", axes: str = "principal", least_mass: Optional[float] = None,
+            most_mass: Optional[float] = None, centre_tolerance: Optional[float] = None, carriers: bool = False,
             carrier_depth: Optional[float] = None) -> Clump:
     """The clump with masses that sum to mass, centre and inertia of the particle, as `mskit correct`.
 
-    density: kg/m^3. unit: of length, "m", "mm" or "um"; or scale: metres in one. axes: of the equations, "principal" or
-    "input". least_mass, most_mass: of a sphere / that of the particle. centre_tolerance: how far the centre may be
-    off / radius of gyration. carriers: small spheres inside others, of mass and without contact, make all sums exact;
-    carrier_depth: below the surface, in the unit of the clump.
+    density: kg/m^3. unit: of length, "m", "mm" or "um"; or scale: metres in one. properties: the particle is the
+    "shape", or the "union" of the spheres, which takes no shape. axes: of the equations, "principal" or "input".
+    least_mass, most_mass: of a sphere / that of the particle. centre_tolerance: how far the centre may be off / radius
+    of gyration. carriers: small spheres inside others, of mass and without contact, make all sums exact; carrier_depth:
+    below the surface, in the unit of the clump.
 
     >>> clump = mskit.generate(mskit.body("grain", fineness=12), "mss", spheres=40, cells=30)
     >>> heavy = mskit.correct(clump, density=2650, unit="mm")
@@ -282,7 +283,12 @@ def correct(clump: Any, shape: Any = None, *, density: float, unit: str = "m", s
     True
     """
     clump = as_clump(clump)
-    how = read_masses(density, unit, scale, axes, least_mass, most_mass, centre_tolerance, carriers, carrier_depth)
+    how = read_masses(density, unit, scale, properties, axes, least_mass, most_mass, centre_tolerance, carriers,
+                      carrier_depth)
+    if how.of_union and shape is not None:
+        raise ArgumentError("correct takes either a shape or properties='union'")
+    if how.of_union:
+        return give_masses(clump, ffi.NULL, how)
     chosen, solid = _body_for(clump, shape)
     done = give_masses(clump, ffi.addressof(solid), how)
     done.shape = chosen
@@ -293,14 +299,16 @@ class Masses(NamedTuple):
     """How masses are given."""
     density: float
     metres: float  # in a unit of length
+    of_union: bool  # and not of the shape
     options: Any  # ms_carriers_options
     carriers: bool
 
 
-def read_masses(density: float, unit: str, scale: Optional[float], axes: str, least_mass: Optional[float],
-                most_mass: Optional[float], centre_tolerance: Optional[float], carriers: bool,
-                carrier_depth: Optional[float]) -> Masses:
+def read_masses(density: float, unit: str, scale: Optional[float], properties: str, axes: str,
+                least_mass: Optional[float], most_mass: Optional[float], centre_tolerance: Optional[float],
+                carriers: bool, carrier_depth: Optional[float]) -> Masses:
     """Checks what `correct` is given."""
+    choice("properties", properties, ("shape", "union"))
     choice("axes", axes, ("principal", "input"))
     if not flag("carriers", carriers) and carrier_depth is not None:
         raise ArgumentError("carrier_depth takes carriers=True beside it")
@@ -314,12 +322,21 @@ def read_masses(density: float, unit: str, scale: Optional[float], axes: str, le
         "most": bound("most_mass", most_mass, _TINY, 1),
         "centre_tolerance": bound("centre_tolerance", centre_tolerance, 0, 1e300)},
         "depth": bound("carrier_depth", carrier_depth, _TINY, 1e300)})
-    return Masses(number("density", density, _TINY, 1e300), metres, options, carriers)
+    return Masses(number("density", density, _TINY, 1e300), metres, properties == "union", options, carriers)
+
+
+def union_body(c: Any) -> Any:
+    """The ms_body of the union of the spheres of an ms_clump."""
+    body = ffi.new("ms_body *")
+    call(lib.ms_particle_union, body, c, voxels_within(Grid(), ffi.new("ms_target_need *")[0]))
+    return body
 
 
 def give_masses(clump: Clump, body: Any, how: Masses, name: str = "") -> Clump:
     """Those of the particle with this ms_body."""
     particle, report, made = ffi.new("ms_particle *"), ffi.new("ms_density_report *"), own(clump)
+    if how.of_union:
+        body = union_body(made)
     call(lib.ms_particle_from_body, particle, body, how.density, how.metres, name=name)
     if how.carriers:
         call(lib.ms_carriers_solve, made, report, particle, how.options, name=name)

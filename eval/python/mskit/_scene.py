@@ -30,12 +30,13 @@ class Scene(NamedTuple):
     least_gain: float  # the least that each sphere of the scene given back adds to the sum of D over the particles
     slack: float  # no other choice is better by more, of a budget in mean D, of mean_dice in spheres; 0: the best
 
-    def correct(self, *, density: float, unit: str = "m", scale: Optional[float] = None, axes: str = "principal",
-                least_mass: Optional[float] = None, most_mass: Optional[float] = None,
+    def correct(self, *, density: float, unit: str = "m", scale: Optional[float] = None, properties: str = "shape",
+                axes: str = "principal", least_mass: Optional[float] = None, most_mass: Optional[float] = None,
                 centre_tolerance: Optional[float] = None, carriers: bool = False,
                 carrier_depth: Optional[float] = None) -> "Scene":
         """The scene with masses in each template, as engines take them: as `mskit.correct` of each."""
-        how = read_masses(density, unit, scale, axes, least_mass, most_mass, centre_tolerance, carriers, carrier_depth)
+        how = read_masses(density, unit, scale, properties, axes, least_mass, most_mass, centre_tolerance, carriers,
+                          carrier_depth)
         kinds = []
         for kind in self.kinds:
             body = ffi.new("ms_body *", kind.shape.c_body(kind.grid))
