@@ -1,6 +1,7 @@
 """Scenes: templates, scripts and figures are those of `mskit scene`, byte for byte."""
 import math
 import os
+import pathlib
 import pickle
 import unittest
 
@@ -69,7 +70,7 @@ class Scenes(PythonCase):
             self.expect_same(scene, manifest, *flags, "-g", method, "--max-spheres", 9, "--cells", 10)
 
     def test_tolerances_of_rows(self):
-        rows = [{"shape": self.grain, "count": 3, "tolerance": 0.2},
+        rows = [{"shape": pathlib.Path(self.grain), "count": 3, "tolerance": 0.2},
                 {"shape": self.torus, "count": 2, "tolerance": 0.4}]
         scene = mskit.scene(rows, generator="mss", max_spheres=9, cells=10)
         self.expect_same(scene, "shape,count,tolerance\ngrain.ply,3,0.2\ntorus.ply,2,0.4\n", "-g", "mss",
@@ -101,6 +102,14 @@ class Scenes(PythonCase):
                 ([(self.grain, 10**9), (self.torus, 1)], [(1, 0), (2, 1)], "1000000001 particles of 2 shapes"),
                 ([{"shape": self.grain, "count": 1, "size": 1}], [(1, 0), (2, 1)], "rows have sizes")]:
             self.refused(mskit.Error, words, mskit.sieve, rows, curve)
+
+    def test_voxels_stay_with_shapes_that_were_given(self):
+        grain = mskit.read(self.grain)
+        scene = mskit.scene([(grain, 2), (self.torus, 3)], knee=1, generator="mss", cells=8, max_spheres=2)
+        self.assertEqual([kind.shape._made is None for kind in scene.kinds], [False, True])
+        before = scene.kinds[1].clump.scores
+        scene.kinds[1].shape.drop_voxels()
+        self.assertEqual(repr(mskit.score(scene.kinds[1].clump)), repr(before))
 
     def test_progress(self):
         """It is told of each shape's runs, and what the listener raises ends them."""
@@ -150,7 +159,8 @@ class Scenes(PythonCase):
                 ([{"shape": cube, "count": 1, "size": 0}], "row 0: size=0 is not"),
                 ([{"shape": cube, "count": 1, "tolerance": 2}], "row 0: tolerance=2"),
                 ([(cube, 1), (cube, 2)], "row 1: cube stands twice; add up the counts"),
-                ([{"shape": cube, "count": n, "size": 2} for n in (1, 2)], "twice in this size")]:
+                ([{"shape": cube, "count": n, "size": 2} for n in (1, 2)], "twice in this size"),
+                ([(pathlib.Path(self.grain), n) for n in (1, 2)], "grain.ply stands twice")]:
             self.refused(mskit.Error, words, mskit.scene, rows, budget=99)
         sized, tolerated = [{"shape": cube, "count": 1, "size": 2}], [{"shape": cube, "count": 1, "tolerance": 0.2}]
         for rows, options, words in [

@@ -264,6 +264,8 @@ def scene(rows: Rows, *, budget: Optional[int] = None, tolerance: Optional[Dict[
             if first not in made:
                 places = [at for at in range(first, len(read)) if read[at].shape is read[first].shape]
                 made.update(zip(places, _make([read[at] for at in places], run, goal, equal_volume, progress)))
+                if not read[first].given:
+                    read[first].shape.drop_voxels()
         in_order = [made[at] for at in range(len(read))]
         n, done, gain = _choose(in_order, goal)
     kinds = [_kind(one, k) for one, k in zip(in_order, n)]

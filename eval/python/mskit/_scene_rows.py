@@ -24,6 +24,7 @@ class Row(NamedTuple):
     particles: int
     tolerance: float  # NaN: none is given
     size: float  # NaN: as the shape is
+    given: bool  # as a Shape, with which its voxels stay
 
     @property
     def name(self) -> str:
@@ -57,15 +58,15 @@ def _read_row(row: Any, at: int, known: List[Tuple[Any, Shape]]) -> Row:
     size = math.nan if size is None else number(f"row {at}: size", size, lib.MS_MANIFEST_LEAST_SIZE,
                                                                        lib.MS_MANIFEST_MOST_SIZE)
     for before, shape in known:
-        if source is before or (isinstance(source, (str, bytes)) and isinstance(before, type(source))
+        if source is before or (isinstance(source, (str, bytes, os.PathLike)) and type(before) is type(source)
                                 and source == before):
-            return Row(shape, count, tolerance, size)
+            return Row(shape, count, tolerance, size, shape is source)
     try:
         shape = as_shape(source)
     except Error as failure:
         raise type(failure)(f"row {at}: {failure}") from None
     known.append((source, shape))
-    return Row(shape, count, tolerance, size)
+    return Row(shape, count, tolerance, size, shape is source)
 
 
 def _read_manifest(path: Path) -> List[Dict[str, Any]]:
