@@ -8,6 +8,7 @@
 
 #include "base/ms_vector.h"
 #include "ms_cut_left.h"
+#include "ms_window.h"
 
 /* From a voxel's centre to the farthest of its samples, sqrt(3) 3/8, and what ON_SURFACE may add: a ball whose surface
  * is farther from the centre holds no sample. */
@@ -240,19 +241,6 @@ static int clamp_index(double value, int lo, int hi)
     return value < lo ? lo : value > hi ? hi : (int)value;
 }
 
-/* The least whole number not below the value, from 0 to n. */
-static int round_up(double value, int n)
-{
-    const int whole = clamp_index(value, 0, n);
-    return whole + (whole < value && whole < n);
-}
-
-/* One more than the largest whole number not above the value, from 0 to n. */
-static int round_above(double value, int n)
-{
-    return value < 0 ? 0 : value < n ? (int)value + 1 : n;
-}
-
 /* Bits from..to-1 of a word that begins with voxel `base`. */
 static uint64_t word_mask(int base, int from, int to)
 {
@@ -283,8 +271,9 @@ static void cover_row(worker *w, size_t b, int j, int k, double outer, double in
     const uint8_t *inside = raster->grid->inside + start;
     uint64_t *vacant = find_vacant(raster, j, k);
     row_sums sums = {.lo = INT_MAX, .hi = INT_MIN};
-    const int from = round_up(x - outer, n), to = round_above(x + outer, n);
-    const int full_from = inner < 0 ? to : round_up(x - inner, n), full_to = inner < 0 ? to : round_above(x + inner, n);
+    const int from = ms_window_first(x - outer, n), to = ms_window_end(x + outer, n);
+    const int full_from = inner < 0 ? to : ms_window_first(x - inner, n),
+              full_to = inner < 0 ? to : ms_window_end(x + inner, n);
     for (int base = from / WORD * WORD; base < to; base += WORD) {
         uint64_t *word = vacant + base / WORD;
         for (uint64_t bits = *word & word_mask(base, from, to); bits; bits &= bits - 1) {
@@ -311,8 +300,9 @@ static void cover_plane(worker *w, size_t b, int k)
         return;
     }
     const int *n = w->raster->grid->n;
-    const int from = round_up(ball->centre[1] - reach, n[1]), to = round_above(ball->centre[1] + reach, n[1]);
-    const int first = round_up(ball->centre[0] - reach, n[0]), end = round_above(ball->centre[0] + reach, n[0]);
+    const int from = ms_window_first(ball->centre[1] - reach, n[1]), to = ms_window_end(ball->centre[1] + reach, n[1]);
+    const int first = ms_window_first(ball->centre[0] - reach, n[0]),
+              end = ms_window_end(ball->centre[0] + reach, n[0]);
     for (int j = from; j < to; j++) {
         if (is_vacant(w->raster, j, k, first, end)) {
             const double dy = j - ball->centre[1], away = dy * dy + dz * dz;

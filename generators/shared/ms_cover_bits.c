@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "voxel/ms_window.h"
+
 enum { WORD = 64, TILE = 8 };
 
 /* What is done with what a row of a ball holds of the set. */
@@ -16,24 +18,6 @@ static inline size_t popcount(uint64_t x)
     x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
     x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
     return (size_t)(x * 0x0101010101010101u >> 56);
-}
-
-/* The least whole number not below the value, from 0 to n. */
-static int round_up(double value, int n)
-{
-    if (!(value > 0)) {
-        return 0;
-    }
-    return value >= n ? n : (int)value + ((int)value < value);
-}
-
-/* One more than the largest whole number not above the value, from 0 to n. */
-static int round_above(double value, int n)
-{
-    if (!(value >= 0)) {
-        return 0;
-    }
-    return value >= n ? n : (int)value + 1;
 }
 
 /* The whole numbers between two places, as bits of a window of at most 64 that begins with `base`. */
@@ -87,7 +71,7 @@ static inline uint64_t find_rows_left(const walk *w, int k, int g, double reach)
 {
     const ms_cover_bits *set = w->set;
     const double x = w->ball->centre[0], y = w->ball->centre[1];
-    const int above = round_above(x + reach, w->end), below = round_up(x - reach, w->end);
+    const int above = ms_window_end(x + reach, w->end), below = ms_window_first(x - reach, w->end);
     uint64_t rows = 0;
     for (int tile = (below > w->base ? below : w->base) / TILE; tile * TILE < above; tile++) {
         rows |= set->tiles[((size_t)k * set->columns + (size_t)tile) * set->groups + (size_t)g];
@@ -132,8 +116,8 @@ static inline void walk_plane(walk *w, walk_purpose purpose, int k)
     }
     const double reach = sqrt(disc);
     const uint64_t near = window_mask(x - reach, x + reach, w->base, w->end);
-    const int end = round_above(y + reach, set->n[1]);
-    for (int g = round_up(y - reach, set->n[1]) / WORD; g * WORD < end; g++) {
+    const int end = ms_window_end(y + reach, set->n[1]);
+    for (int g = ms_window_first(y - reach, set->n[1]) / WORD; g * WORD < end; g++) {
         for (uint64_t rows = find_rows_left(w, k, g, reach) & EVERY[w->step]; rows; rows &= rows - 1) {
             const int j = g * WORD + __builtin_ctzll(rows);
             const size_t row = (size_t)j + (size_t)set->n[1] * (size_t)k;
@@ -146,9 +130,9 @@ static inline void walk_plane(walk *w, walk_purpose purpose, int k)
 static inline void walk_ball(walk *w, walk_purpose purpose)
 {
     const double x = w->ball->centre[0], z = w->ball->centre[2], r = w->ball->radius;
-    const int end = round_above(x + r, w->set->n[0]), planes = round_above(z + r, w->set->n[2]);
-    const int first = (round_up(z - r, w->set->n[2]) + w->step - 1) / w->step * w->step;
-    for (w->base = round_up(x - r, w->set->n[0]); w->base < end; w->base += WORD) {
+    const int end = ms_window_end(x + r, w->set->n[0]), planes = ms_window_end(z + r, w->set->n[2]);
+    const int first = (ms_window_first(z - r, w->set->n[2]) + w->step - 1) / w->step * w->step;
+    for (w->base = ms_window_first(x - r, w->set->n[0]); w->base < end; w->base += WORD) {
         w->end = end_window(w->base, w->set->n[0]);
         for (int k = first; k < planes; k += w->step) {
             walk_plane(w, purpose, k);
