@@ -216,7 +216,7 @@ static void planes_are_not_crossed(void **state)
 static void row_is_filled(void **state)
 {
     (void)state;
-    enum { SPHERES = 40 };
+    enum { SPHERES = 60 };
     ms_mesh mesh;
     ms_target target;
     make_shape(&mesh, "ellipsoid", "a=2 b=1 c=1 fineness=100");
