@@ -20,7 +20,7 @@ static char *find_place(const char *path)
     if (folder && !real && strcmp(folder, path) != 0) {
         real = find_place(folder);
     }
-    const char *name = slash ? slash + 1 : path;
+    const char *name = ms_file_base_name(path);
     place = real ? malloc(strlen(real) + strlen(name) + 2) : NULL;
     if (place) {
         sprintf(place, "%s/%s", real, name);
