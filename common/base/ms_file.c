@@ -19,6 +19,9 @@ ms_status ms_file_fail_open(ms_error *err, const char *path, int why)
     if (ms_file_is_standard(path)) {
         return ms_fail(err, MS_ERR_IO, "standard input is not read here; name a file");
     }
+    if (path[0] == '\0') {
+        return ms_fail(err, MS_ERR_IO, "the name of the file to read is empty; name a file");
+    }
     const ms_hint hint = why == ENOENT ? ms_choice_file_hint(path) : (ms_hint){""};
     return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s%s", path, strerror(why),
                    hint.text[0] ? hint.text : "; check the path");

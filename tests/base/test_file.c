@@ -214,6 +214,8 @@ static void what_cannot_be_read_is_refused(void **state)
     expect_message(&err, "is a folder");
     assert_int_equal(ms_file_read(&bytes, "/dev/null", &err), MS_ERR_IO);
     expect_message(&err, "is a device or a pipe");
+    assert_int_equal(ms_file_read(&bytes, "", &err), MS_ERR_IO);
+    expect_message(&err, "the name of the file to read is empty");
     assert_int_equal(mkfifo(path, 0600), 0);
     assert_int_equal(ms_file_read(&bytes, path, &err), MS_ERR_IO);
     expect_message(&err, "is a device or a pipe");
