@@ -1,9 +1,11 @@
 #include "ms_sieve.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_file.h"
 #include "base/ms_text.h"
 #include "ms_sieve_counts.h"
 
@@ -26,37 +28,69 @@ static ms_status read_sieve_header(ms_text *text, ms_error *err)
                : ms_text_fail(err, text, "the header is '%s', not size,passing", ms_text_quote(&line).text);
 }
 
+/* What a size and a share are called in messages. */
+typedef struct row_quote {
+    ms_quote size, passing;
+} row_quote;
+
+/* Is the row one that may stand behind those before? Then it does. */
+static ms_status add_sieve_row(sieve_curve *curve, double size, double passing, const row_quote *said, ms_error *err)
+{
+    const size_t at = curve->count;
+    if (at == MS_SIEVE_MAX_ROWS) {
+        return ms_fail(err, MS_ERR_FORMAT, "more than %d rows", MS_SIEVE_MAX_ROWS);
+    }
+    if (!(size >= MS_MANIFEST_LEAST_SIZE && size <= MS_MANIFEST_MOST_SIZE)) {
+        return ms_fail(err, MS_ERR_FORMAT, "the size '%s' is not a number from %g to %g", said->size.text,
+                       MS_MANIFEST_LEAST_SIZE, MS_MANIFEST_MOST_SIZE);
+    }
+    if (!(passing >= 0 && passing <= 1)) {
+        return ms_fail(err, MS_ERR_FORMAT, "the share '%s' is not a number from 0 to 1", said->passing.text);
+    }
+    if (at > 0 && !(size > curve->size[at - 1] && passing >= curve->passing[at - 1])) {
+        return ms_fail(err, MS_ERR_FORMAT,
+                       "size %g with share %g stands behind %g with %g; sizes ascend, shares do not fall", size,
+                       passing, curve->size[at - 1], curve->passing[at - 1]);
+    }
+    if (at == 0 && passing > 0) {
+        return ms_fail(err, MS_ERR_FORMAT,
+                       "%g of the mass is finer than the first size; sizes ascend from one that nothing passes",
+                       passing);
+    }
+    curve->size[at] = size;
+    curve->passing[at] = passing;
+    curve->count++;
+    return MS_OK;
+}
+
+/* A number, or NAN. */
+static double read_number(const ms_word *word)
+{
+    double number;
+    return ms_text_to_double(&number, word) ? number : (double)NAN;
+}
+
 static ms_status read_sieve_row(sieve_curve *curve, ms_text *text, ms_error *err)
 {
     ms_word field[2];
-    const size_t at = curve->count;
+    ms_error cause;
     const ms_word line = ms_text_rest(text);
-    if (at == MS_SIEVE_MAX_ROWS) {
-        return ms_text_fail(err, text, "more than %d rows", MS_SIEVE_MAX_ROWS);
-    }
     if (ms_text_split(field, 2, &line) != 2) {
         return ms_text_fail(err, text, "'%s' is not a size and a share", ms_text_quote(&line).text);
     }
-    double *size = &curve->size[at], *passing = &curve->passing[at];
-    if (!ms_text_to_double(size, &field[0]) || !(*size >= MS_MANIFEST_LEAST_SIZE && *size <= MS_MANIFEST_MOST_SIZE)) {
-        return ms_text_fail(err, text, "the size '%s' is not a number from %g to %g", ms_text_quote(&field[0]).text,
-                            MS_MANIFEST_LEAST_SIZE, MS_MANIFEST_MOST_SIZE);
-    }
-    if (!ms_text_to_double(passing, &field[1]) || !(*passing >= 0 && *passing <= 1)) {
-        return ms_text_fail(err, text, "the share '%s' is not a number from 0 to 1", ms_text_quote(&field[1]).text);
-    }
-    if (at > 0 && !(*size > size[-1] && *passing >= passing[-1])) {
-        return ms_text_fail(err, text,
-                            "size %g with share %g stands behind %g with %g; sizes ascend, shares do not fall", *size,
-                            *passing, size[-1], passing[-1]);
-    }
-    if (at == 0 && *passing > 0) {
-        return ms_text_fail(err, text,
-                            "%g of the mass is finer than the first size; sizes ascend from one that nothing passes",
-                            *passing);
-    }
-    curve->count++;
-    return MS_OK;
+    const row_quote said = {ms_text_quote(&field[0]), ms_text_quote(&field[1])};
+    const ms_status status = add_sieve_row(curve, read_number(&field[0]), read_number(&field[1]), &said, &cause);
+    return status == MS_OK ? MS_OK : ms_text_fail(err, text, "%s", cause.text);
+}
+
+/* Is the curve whole? */
+static ms_status check_sieve_end(const sieve_curve *curve, const char *name, ms_error *err)
+{
+    const double passing = curve->count > 0 ? curve->passing[curve->count - 1] : 0;
+    return passing < 1 ? ms_fail(err, MS_ERR_FORMAT,
+                                 "%s: the last size lets %g of the mass pass, not 1; add the size of the largest", name,
+                                 passing)
+                       : MS_OK;
 }
 
 static ms_status read_curve(sieve_curve *curve, const ms_bytes *bytes, const char *path, ms_error *err)
@@ -71,12 +105,23 @@ static ms_status read_curve(sieve_curve *curve, const ms_bytes *bytes, const cha
     while (status == MS_OK && ms_text_seek(&text)) {
         status = read_sieve_row(curve, &text, err);
     }
-    if (status == MS_OK && (curve->count == 0 || curve->passing[curve->count - 1] < 1)) {
-        status = ms_fail(err, MS_ERR_FORMAT,
-                         "%s: the last size lets %g of the mass pass, not 1; add the size of the largest", path,
-                         curve->count > 0 ? curve->passing[curve->count - 1] : 0);
+    return status == MS_OK ? check_sieve_end(curve, path, err) : status;
+}
+
+static ms_status take_curve(sieve_curve *curve, const double *size, const double *passing, size_t count, ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t r = 0; r < count && status == MS_OK; r++) {
+        ms_error cause;
+        row_quote said;
+        snprintf(said.size.text, sizeof said.size.text, "%g", size[r]);
+        snprintf(said.passing.text, sizeof said.passing.text, "%g", passing[r]);
+        status = add_sieve_row(curve, size[r], passing[r], &said, &cause);
+        if (status != MS_OK) {
+            status = ms_fail(err, status, "the sieve curve: row %zu: %s", r, cause.text);
+        }
     }
-    return status;
+    return status == MS_OK ? check_sieve_end(curve, "the sieve curve", err) : status;
 }
 
 /* The mean of size^-3 over the shares from lo to hi. Between two rows size = a exp(L t), t growing with the share from
@@ -119,12 +164,22 @@ static ms_status make_classes(ms_sieve *sieve, const sieve_curve *curve, size_t 
     return MS_OK;
 }
 
-ms_status ms_sieve_parse(ms_sieve *sieve, const ms_bytes *bytes, const char *name, size_t classes, ms_error *err)
+/* No rows yet. The caller frees it; NULL without memory. */
+static sieve_curve *make_curve(ms_error *err)
+{
+    sieve_curve *curve = calloc(1, sizeof *curve);
+    if (!curve) {
+        ms_fail(err, MS_ERR_NOMEM, "no memory for the sieve curve");
+    }
+    return curve;
+}
+
+ms_status ms_sieve_make(ms_sieve *sieve, const double *size, const double *passing, size_t count, size_t classes,
+                        ms_error *err)
 {
     *sieve = (ms_sieve){0};
-    sieve_curve *curve = calloc(1, sizeof *curve);
-    ms_status status =
-        curve ? read_curve(curve, bytes, name, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the sieve curve");
+    sieve_curve *curve = make_curve(err);
+    ms_status status = curve ? take_curve(curve, size, passing, count, err) : MS_ERR_NOMEM;
     if (status == MS_OK) {
         status = make_classes(sieve, curve, classes, err);
     }
@@ -136,11 +191,16 @@ ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_er
 {
     ms_bytes bytes;
     *sieve = (ms_sieve){0};
-    ms_status status = ms_file_read(&bytes, path, err);
+    sieve_curve *curve = make_curve(err);
+    ms_status status = curve ? ms_file_read(&bytes, path, err) : MS_ERR_NOMEM;
     if (status == MS_OK) {
-        status = ms_sieve_parse(sieve, &bytes, path, classes, err);
+        status = read_curve(curve, &bytes, path, err);
         ms_file_free(&bytes);
     }
+    if (status == MS_OK) {
+        status = make_classes(sieve, curve, classes, err);
+    }
+    free(curve);
     return status;
 }
 

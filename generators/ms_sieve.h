@@ -3,7 +3,6 @@
 #ifndef MS_SIEVE_H
 #define MS_SIEVE_H
 
-#include "base/ms_file.h"
 #include "ms_manifest.h"
 
 MS_C_BEGIN
@@ -36,16 +35,16 @@ typedef struct ms_sieve {
  */
 MS_API ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_error *err);
 
-/** The same from memory. @param name what messages call it */
-MS_API ms_status ms_sieve_parse(ms_sieve *sieve, const ms_bytes *bytes, const char *name, size_t classes,
-                                ms_error *err);
+/** The same of a curve in memory, whose rows messages count from 0. @param size, passing count values each */
+MS_API ms_status ms_sieve_make(ms_sieve *sieve, const double *size, const double *passing, size_t count, size_t classes,
+                               ms_error *err);
 
 /**
  * Gives the particles of each row sizes: the row becomes one for each class that it has particles of. The numbers of
  * rows are kept, those of classes are the best whole ones for all rows together (ms_sieve_counts.h).
  *
  * @param[out]    made     the rows, one of the manifest after the other; the caller frees it; empty on failure
- * @param[in,out] sieve    gets the counts of its classes, and their shares of the mass
+ * @param[in,out] sieve    not empty; gets the counts of its classes, and their shares of the mass
  * @param         manifest without sizes
  * @return MS_OK; MS_ERR_LIMIT for more than MS_SIEVE_MAX_KINDS kinds or MS_MANIFEST_MAX_PARTICLES particles;
  *         MS_ERR_NOMEM

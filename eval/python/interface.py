@@ -226,7 +226,8 @@ static const double MS_MANIFEST_MOST_SIZE;
 ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *err);
 void ms_manifest_free(ms_manifest *manifest);
 ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_error *err);
-ms_status ms_sieve_parse(ms_sieve *sieve, const ms_bytes *bytes, const char *name, size_t classes, ms_error *err);
+ms_status ms_sieve_make(ms_sieve *sieve, const double *size, const double *passing, size_t count, size_t classes,
+                        ms_error *err);
 ms_status ms_sieve_apply(ms_manifest *made, ms_sieve *sieve, const ms_manifest *manifest, ms_error *err);
 void ms_sieve_free(ms_sieve *sieve);
 typedef struct { size_t most; ms_clump *clump; ms_score *score; double *dice; ms_error *remarks; } ms_templates;

@@ -245,6 +245,30 @@ static void test_refused(void **state)
     free(many);
 }
 
+/* Of the same rows the same classes; what is wrong is said by the row. */
+static void test_curves_in_memory(void **state)
+{
+    static const double SIZE[] = {0.1, 0.3, 0.9, 1.7}, PASSING[] = {0, 0.15, 0.8, 1}, FALLING[] = {0, 0.15, 0.1, 1};
+    ms_sieve read, made;
+    ms_error err;
+    (void)state;
+    for (size_t classes = 0; classes < 9; classes++) {
+        assert_int_equal(read_text(&read, "size,passing\n0.1,0\n0.3,0.15\n0.9,0.8\n1.7,1\n", classes, &err), MS_OK);
+        assert_int_equal(ms_sieve_make(&made, SIZE, PASSING, 4, classes, &err), MS_OK);
+        assert_int_equal(made.count, read.count);
+        assert_memory_equal(made.of, read.of, read.count * sizeof *read.of);
+        ms_sieve_free(&read);
+        ms_sieve_free(&made);
+    }
+    assert_int_equal(ms_sieve_make(&made, SIZE, FALLING, 4, 0, &err), MS_ERR_FORMAT);
+    assert_non_null(strstr(err.text, "row 2: size 0.9 with share 0.1 stands behind 0.3"));
+    assert_int_equal(ms_sieve_make(&made, SIZE, PASSING, 0, 0, &err), MS_ERR_FORMAT);
+    assert_non_null(strstr(err.text, "lets 0 of the mass pass"));
+    assert_int_equal(ms_sieve_make(&made, FALLING, PASSING, 4, 0, &err), MS_ERR_FORMAT);
+    assert_non_null(strstr(err.text, "row 0: the size '0' is not a number"));
+    assert_null(made.of);
+}
+
 /* Rows keep their numbers, and all together have those of the classes. */
 static void test_apply(void **state)
 {
@@ -300,6 +324,7 @@ int main(void)
         cmocka_unit_test(test_classes_of_equal_mass),
         cmocka_unit_test(test_classes_of_next_to_nothing),
         cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_curves_in_memory),
         cmocka_unit_test(test_apply),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

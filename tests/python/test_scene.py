@@ -96,7 +96,9 @@ class Scenes(PythonCase):
                          "shape,count\ngrain.ply,100\ntorus.ply,9\n", "--knee", 1, "-g", "mss", "--cells", 8,
                          "--max-spheres", 3, "--properties", "union", masses={"properties": "union"})
         for rows, curve, words in [
-                ([(self.grain, 1)], [(1, 0.5), (2, 1)], "the sieve curve: line 2: 0.5 of the mass is finer"),
+                ([(self.grain, 1)], [(1, 0.5), (2, 1)], "the sieve curve: row 0: 0.5 of the mass is finer"),
+                ([(self.grain, 1)], [(1, 0), (2, math.nan)], "row 1: the share 'nan'"),
+                ([(self.grain, 1)], numpy.empty((0, 2)), "lets 0 of the mass pass"),
                 ([(self.grain, 1)], [1, 2], "neither rows size, passing"), ([(self.grain, 1)], "none.csv", "none.csv"),
                 ([(self.grain, 10**9 + 1)], [(1, 0), (2, 1)], "row 0: count=1000000001"),
                 ([(self.grain, 10**9), (self.torus, 1)], [(1, 0), (2, 1)], "1000000001 particles of 2 shapes"),

@@ -9,7 +9,7 @@ import numpy
 
 from ._errors import ArgumentError, Error, Path, as_floats, call, encode, number, show, whole
 from ._library import ffi, lib
-from ._shapes import Bytes, Shape
+from ._shapes import Shape
 from ._sources import as_shape
 
 _COLUMNS = ("shape", "count", "tolerance", "size")
@@ -115,7 +115,7 @@ class Sieved(NamedTuple):
 
 
 def _read_curve(curve: Any, classes: int) -> Any:
-    """Arrays go the way of files: one set of checks."""
+    """An ms_sieve."""
     made = ffi.gc(ffi.new("ms_sieve *"), lib.ms_sieve_free)
     if isinstance(curve, (str, bytes, os.PathLike)):
         call(lib.ms_sieve_read, made, encode(curve), classes)
@@ -123,9 +123,8 @@ def _read_curve(curve: Any, classes: int) -> Any:
     pairs = as_floats(curve)
     if pairs.ndim != 2 or pairs.shape[1] != 2:
         raise ArgumentError(f"curve={show(curve)} is neither rows size, passing nor the path of a sieve curve")
-    lines = "".join(f"{size!r},{passing!r}\n" for size, passing in pairs.tolist())
-    data = Bytes(numpy.frombuffer(f"size,passing\n{lines}\0".encode(), numpy.uint8))
-    call(lib.ms_sieve_parse, made, data.c, b"the sieve curve", classes)
+    size, passing = pairs.T.tolist()
+    call(lib.ms_sieve_make, made, size, passing, len(size), classes)
     return made
 
 
