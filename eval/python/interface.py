@@ -331,6 +331,10 @@ const ms_format *ms_write_format_find(const char *name, ms_error *err);
 const ms_format *ms_write_format_of_path(const char *path, ms_error *err);
 ms_status ms_write_remark(char *text, const ms_content *content, const ms_format *format, ms_error *err);
 ms_status ms_write_check(const ms_content *content, const ms_format *format, ms_error *err);
+ms_status ms_write_list(const char *path, const ms_format *format,
+                        ms_status (*take)(void *context, const char *path, int is_frame, ms_error *err), void *context,
+                        ms_error *err);
+extern "Python" ms_status take_file(void *context, const char *path, int is_frame, ms_error *err);
 ms_status ms_write_check_path(const char *path, const ms_format *format, ms_error *err);
 char *ms_write_path(const char *folder, const char *source, const char *behind, const ms_format *format);
 char *ms_scene_script_path(const char *folder, const ms_format *format);

@@ -22,13 +22,21 @@ static ms_status check_template(const ms_outputs *outputs, const ms_manifest *ma
                                 ms_error *err)
 {
     const char *path = outputs[r].file[f].path;
-    for (size_t before = 0; before < r; before++) {
-        if (strcmp(outputs[before].file[f].path, path) == 0) {
-            return ms_fail(err, MS_ERR_ARG, "the templates of %s and %s would both be %s; rename one of the shapes",
-                           manifest->row[before].path, manifest->row[r].path, path);
-        }
+    const ms_manifest_row *row = &manifest->row[r];
+    size_t before = 0;
+    while (before < r && strcmp(outputs[before].file[f].path, path) != 0) {
+        before++;
     }
-    return MS_OK;
+    if (before < r && ms_manifest_first(manifest, before) == ms_manifest_first(manifest, r)) {
+        return ms_fail(err, MS_ERR_ARG,
+                       "%s in the sizes %.17g and %.17g: the templates would both be %s; sizes of one shape have to "
+                       "differ within six digits",
+                       row->path, manifest->row[before].size, row->size, path);
+    }
+    return before < r
+               ? ms_fail(err, MS_ERR_ARG, "the templates of %s and %s would both be %s; rename one of the shapes",
+                         manifest->row[before].path, row->path, path)
+               : MS_OK;
 }
 
 ms_status ms_scene_files_plan(ms_outputs *outputs, const ms_scene_files *asked, const ms_manifest *manifest,

@@ -119,7 +119,8 @@ class Column(Sizes):
             ("shape,size,count", "box.obj,1,2", ("line 1", "header")),
             ("shape,count,size,size", "box.obj,1,2,2", ("line 1", "header")),
             ("shape,count,tolerance,size,size", "box.obj,1,1,2,2", ("line 1", "header")),
-            ("shape,count,size", "box.obj,1,1.2345678\nbox.obj,3,1.2345679", ("would both be out/box-1.23457.csv",)),
+            ("shape,count,size", "box.obj,1,1.2345678\nbox.obj,3,1.2345679",
+             ("in the sizes 1.2345678", "would both be out/box-1.23457.csv")),
         ):
             with self.subTest(header=header, row=row):
                 self.manifest(row, header=header)

@@ -235,7 +235,8 @@ class Refusals(PythonCase):
     def test_masses_of_a_shape_or_a_union(self):
         clump = mskit.generate(self.path(self.grain), "mss", spheres=3, cells=12)
         for options, words in [({"properties": "both"}, "properties='both' is none of 'shape', 'union'"),
-                               ({"properties": "union", "shape": self.path(self.grain)}, "either a shape or")]:
+                               ({"properties": "union", "shape": self.path(self.grain)}, "either a shape or"),
+                               ({"unit": "mm", "scale": 2}, "unit and scale exclude one another")]:
             self.refused(mskit.ArgumentError, words, mskit.correct, clump, density=1, **options)
 
     def test_contact(self):

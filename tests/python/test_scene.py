@@ -198,6 +198,21 @@ class Scenes(PythonCase):
                 ("yade", {"cylinder": 0}, "cylinder=0"), ("yade", {"box": (9, 9), "cylinder": 9}, "one vessel"),
                 ("csv", {"cylinder": 9}, "box and cylinder are of scripts")]:
             self.refused(mskit.ArgumentError, words, scene.write, self.path("out"), format, **options)
+        for name, format, words in [
+                ("scene", "yade", "scene.yade.py; rename the shape"), (3, "csv", "3 is no path"),
+                ("\ud800", "csv", "is no path")]:
+            other.name = name
+            self.refused(mskit.ArgumentError, words, scene.write, self.path("out"), format)
+        other.name, cube.name = "a.frame.json", "a.x"  # the stem of the first is a.frame
+        self.refused(mskit.ArgumentError, "a.frame.json; rename one of the shapes", scene.write, self.path("out"),
+                     ["json", "yade"])
+        near = mskit.scene([{"shape": cube, "count": 1, "size": size} for size in (1.2345678, 1.2345679)], knee=1,
+                           generator="mss", max_spheres=8, cells=8)
+        self.refused(mskit.ArgumentError, "in the sizes 1.2345678 and 1.2345679", near.write, self.path("out"))
+        for format in ("csv", "yade"):
+            self.refused(mskit.ArgumentError, "no kinds of particles", scene._replace(kinds=[]).write,
+                         self.path("out"), format)
+        self.refused(mskit.ArgumentError, "is no path", scene.write, "\ud800")
         self.assertFalse(os.path.exists(self.path("out")))
         self.write("file", "")
         self.refused(mskit.FileError, "cannot be made", scene.write, self.path("file/out"), "yade")

@@ -86,7 +86,7 @@ def encode(path: Path) -> bytes:
     """A path as the library takes it."""
     try:
         name = os.fsencode(path)
-    except TypeError:
+    except (TypeError, UnicodeEncodeError):
         raise ArgumentError(f"{show(path)} is no path") from None
     if not name or b"\0" in name:
         raise ArgumentError(f"{show(path)} names no file")

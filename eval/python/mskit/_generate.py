@@ -312,7 +312,9 @@ def read_masses(density: float, unit: str, scale: Optional[float], properties: s
     choice("axes", axes, ("principal", "input"))
     if not flag("carriers", carriers) and carrier_depth is not None:
         raise ArgumentError("carrier_depth takes carriers=True beside it")
-    metres = _UNITS[choice("unit", unit, _UNITS)] if scale is None else number("scale", scale, _TINY, 1e300)
+    if choice("unit", unit, _UNITS) != "m" and scale is not None:
+        raise ArgumentError("unit and scale exclude one another")
+    metres = _UNITS[unit] if scale is None else number("scale", scale, _TINY, 1e300)
 
     def bound(name: str, value: Optional[float], low: float, high: float) -> float:
         return 0 if value is None else max(_TINY, number(name, value, low, high))

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Any, List, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, NamedTuple, NoReturn, Optional, Sequence, Tuple
 
 import numpy
 
@@ -78,22 +78,48 @@ def _take(path: Any) -> bytes:
 
 
 def _path(kind: Kind, folder: bytes, format: Any) -> bytes:
+    """Of its template."""
     size = "" if math.isnan(kind.size) else f"-{kind.size:.6g}"
-    return _take(lib.ms_write_path(folder, os.fsencode(kind.shape.name), size.encode(), format))
+    path = _take(lib.ms_write_path(folder, encode(kind.shape.name), size.encode(), format))
+    call(lib.ms_write_check_path, path, format)
+    return path
 
 
-def _name_files(kinds: List[Kind], folder: bytes, format: Any) -> List[bytes]:
-    """The template of each kind."""
-    paths: List[bytes] = []
-    for kind in kinds:
-        path = _path(kind, folder, format)
-        if path in paths:
-            other = kinds[paths.index(path)].shape.name
-            raise ArgumentError(f"the templates of {other} and {kind.shape.name} would both be {os.fsdecode(path)}; "
-                                "rename one of the shapes")
-        call(lib.ms_write_check_path, path, format)
-        paths.append(path)
-    return paths
+@ffi.def_extern(error=lib.MS_ERR_NOMEM)
+def take_file(context: Any, path: Any, is_frame: int, err: Any) -> int:
+    ffi.from_handle(context).append((bytes(ffi.string(path)), bool(is_frame)))
+    return int(lib.MS_OK)
+
+
+def _list_files(path: bytes, format: Any) -> List[Tuple[bytes, bool]]:
+    """Those of a template: name, and is it the frame beside it?"""
+    found: List[Tuple[bytes, bool]] = []
+    handle = ffi.new_handle(found)
+    call(lib.ms_write_list, path, format, lib.take_file, handle)
+    return found
+
+
+def _refuse_twice(path: bytes, before: Optional[Kind], kind: Kind) -> NoReturn:
+    file, name = os.fsdecode(path), kind.shape.name
+    if before is None:
+        raise ArgumentError(f"the script of the scene and a file of {name} would both be {file}; rename the shape")
+    if before.shape is kind.shape:
+        raise ArgumentError(f"{name} in the sizes {before.size!r} and {kind.size!r}: the templates would both be "
+                            f"{file}; sizes of one shape have to differ within six digits")
+    raise ArgumentError(f"the templates of {before.shape.name} and {name} would both be {file}; rename one of the "
+                        "shapes")
+
+
+def _check_files(kinds: List[Kind], formats: List[Any], paths: List[List[bytes]], scripts: List[bytes]) -> None:
+    """Is none written twice? The frame is that of the kind in all formats."""
+    taken: Dict[bytes, Tuple[Optional[Kind], bool]] = {script: (None, False) for script in scripts}
+    for format, files in zip(formats, paths):
+        for kind, path in zip(kinds, files):
+            for file, is_frame in _list_files(path, format):
+                mine = (kind, is_frame)
+                before = taken.setdefault(file, mine)
+                if before is not mine and not (before[0] is kind and before[1] and is_frame):
+                    _refuse_twice(file, before[0], kind)
 
 
 class _Lent:
@@ -103,7 +129,7 @@ class _Lent:
         lent = [lend(kind.clump) for kind in kinds]
         self.kinds, self.clumps = kinds, [clump for clump, _ in lent]
         self.particles = [c_particle_of(kind.clump.particle) for kind in kinds]
-        self.names = [ffi.new("char[]", os.fsencode(kind.name)) for kind in kinds]
+        self.names = [ffi.new("char[]", encode(kind.name)) for kind in kinds]
         self._kept = [kept for _, kept in lent]
 
     def check(self, format: Any) -> None:
@@ -123,8 +149,13 @@ class _Lent:
 def write_scene(kinds: List[Kind], folder: Path, names: Any, box: Optional[Any], cylinder: Any) -> List[str]:
     """As Scene.write."""
     place, formats = encode(folder), _find_formats(names)
+    if not kinds:
+        raise ArgumentError("the scene has no kinds of particles; there is nothing to write")
     vessel, lent = _vessel(formats, box, cylinder), _Lent(kinds)
-    paths = [_name_files(kinds, place, format) for format in formats]
+    paths = [[_path(kind, place, format) for kind in kinds] for format in formats]
+    scripts = [_take(lib.ms_scene_script_path(place, format)) for format in formats
+               if format.scene.suffix != ffi.NULL]
+    _check_files(kinds, formats, paths, scripts)
     for format, files in zip(formats, paths):
         lent.check(format)
         if format.scene.suffix != ffi.NULL:
@@ -141,5 +172,4 @@ def write_scene(kinds: List[Kind], folder: Path, names: Any, box: Optional[Any],
     for format, files in zip(formats, paths):
         if format.scene.suffix != ffi.NULL:
             call(lib.ms_scene_script_write, lent.as_scene(files), len(kinds), vessel, place, format)
-            written.append(_take(lib.ms_scene_script_path(place, format)))
-    return [os.fsdecode(path) for path in written]
+    return [os.fsdecode(path) for path in written + scripts]
