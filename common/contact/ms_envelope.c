@@ -12,6 +12,9 @@
 /* Cells along the longest side of the box; of the coarser lattice, which tells the error, half as many. */
 enum { CELLS = 64 };
 
+/* Of a ball, over the longest side of the box: beside a larger one the body is lost in rounding. */
+static const double MOST_RADIUS = 1e9;
+
 /* Of pushes away from the body, and of moves along the border. */
 enum { PUSHES = 12, MOVES = 3 };
 
@@ -222,15 +225,21 @@ static double find_bridged(const envelope_cells *c, size_t cell)
     return is_filled(c, cell) ? 0 : fmin(fmax(part / c->h, 0), 1);
 }
 
-/* Cells about the box, so many along its longest side. */
-static ms_status open_cells(envelope_cells *out, const ms_envelope_body *body, double radius, int cells, ms_error *err)
+/* Longest side of the box. */
+static double find_longest(const ms_envelope_body *body)
 {
     double longest = 0;
-    *out = (envelope_cells){.body = body, .radius = radius, .count = 1};
     for (int k = 0; k < 3; k++) {
         longest = fmax(longest, body->hi[k] - body->lo[k]);
     }
-    out->h = longest / cells;
+    return longest;
+}
+
+/* Cells about the box, so many along its longest side. */
+static ms_status open_cells(envelope_cells *out, const ms_envelope_body *body, double radius, int cells, ms_error *err)
+{
+    *out = (envelope_cells){.body = body, .radius = radius, .count = 1};
+    out->h = find_longest(body) / cells;
     for (int k = 0; k < 3; k++) {
         out->n[k] = (int)fmax(ceil((body->hi[k] - body->lo[k]) / out->h - 1e-9), 1);
         out->origin[k] = (body->lo[k] + body->hi[k] - out->n[k] * out->h) / 2;
@@ -267,7 +276,11 @@ static ms_status measure_between(double *volume, const ms_envelope_body *body, d
 ms_status ms_envelope_compute(ms_envelope *out, const ms_envelope_body *body, double radius, ms_error *err)
 {
     double coarse, fine;
+    const double most = MOST_RADIUS * find_longest(body);
     *out = (ms_envelope){0};
+    if (!(radius > 0 && radius <= most)) {
+        return ms_fail(err, MS_ERR_ARG, "a ball of radius %g; it is above 0 and at most %g", radius, most);
+    }
     ms_status status = measure_between(&coarse, body, radius, CELLS / 2, err);
     if (status == MS_OK) {
         status = measure_between(&fine, body, radius, CELLS, err);

@@ -33,8 +33,8 @@ typedef struct ms_envelope {
  * and by moving the best along the border of where centres may be. The body's own volume is given, so that only
  * what is between body and envelope is summed, over cells cut by both surfaces.
  *
- * @param radius of the ball, above 0
- * @return MS_OK; MS_ERR_NOMEM
+ * @param radius of the ball, above 0 and at most 1e9 times the longest side of the box
+ * @return MS_OK; MS_ERR_ARG for another radius; MS_ERR_NOMEM
  *
  * Source: closing, Serra, Image Analysis and Mathematical Morphology (1982); of a molecule's atoms it is the
  * solvent-excluded volume (Connolly, J. Appl. Cryst. 16 (1983) 548). Cost: some 10^6 distances; all cores, the same
@@ -48,7 +48,7 @@ MS_API ms_status ms_envelope_compute(ms_envelope *out, const ms_envelope_body *b
  * @param[out] out    count values, of the balls of these radii
  * @param[out] volume of the union
  * @param      clump  with spheres
- * @return MS_OK; MS_ERR_ARG for an empty clump; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for an empty clump; as ms_envelope_compute
  */
 MS_API ms_status ms_envelope_clump(ms_envelope *out, double *volume, const ms_clump *clump, const double *radius,
                                    size_t count, ms_error *err);
@@ -58,7 +58,7 @@ MS_API ms_status ms_envelope_clump(ms_envelope *out, double *volume, const ms_cl
  *
  * @param[out] out    count values, of the balls of these radii
  * @param      volume of the mesh
- * @return MS_OK; MS_ERR_ARG for a mesh without triangles; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for a mesh without triangles; as ms_envelope_compute
  */
 MS_API ms_status ms_envelope_mesh(ms_envelope *out, const ms_mesh *mesh, double volume, const double *radius,
                                   size_t count, ms_error *err);

@@ -165,6 +165,29 @@ static void what_there_is_none_of(void **state)
     assert_int_equal(ms_envelope_mesh(&out, &(const ms_mesh){0}, 1, &radius, 1, &err), MS_ERR_ARG);
 }
 
+/* Nor a ball of no size, or of one beside which the body is nothing; up to there it is the hull: a cylinder between two
+ * halves of a ball. */
+static void balls_of_all_sizes(void **state)
+{
+    static const double NONE[] = {0, -1, (double)NAN, (double)INFINITY, 4.1e9};
+    const double most = 4e9;
+    ms_clump two = {0};
+    ms_envelope out;
+    ms_error err;
+    double volume;
+    (void)state;
+    add_sphere(&two, 0, 0, 0, 1);
+    add_sphere(&two, 2, 0, 0, 1);
+    for (size_t r = 0; r < sizeof NONE / sizeof *NONE; r++) {
+        assert_int_equal(ms_envelope_clump(&out, &volume, &two, &NONE[r], 1, &err), MS_ERR_ARG);
+        assert_non_null(strstr(err.text, "it is above 0 and at most 4e+09"));
+        assert_true(out.volume == 0);
+    }
+    out = envelope_of_clump(&volume, &two, most);
+    expect_close(out.volume, ball_volume(1) + 2 * pi, 0.01 * (2 * pi - ball_volume(1)));
+    ms_clump_free(&two);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -174,6 +197,7 @@ int main(void)
         cmocka_unit_test(the_hole_of_a_ring),
         cmocka_unit_test(a_cavity),
         cmocka_unit_test(what_there_is_none_of),
+        cmocka_unit_test(balls_of_all_sizes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
