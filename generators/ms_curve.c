@@ -86,6 +86,9 @@ static ms_status run_each(ms_score *curve, ms_clump *each, ms_error *remarks, co
         ms_clump_free(&last);
         last = next;
         larger = &last;
+        if (status == MS_OK && reason == MS_STOP_INTERRUPTED) {
+            status = ms_fail(err, MS_ERR_INTERRUPTED, "interrupted at %zu spheres", n - 1);
+        }
         if (status == MS_OK) {
             status = ms_metrics_score_clump(&score, NULL, run->target, larger, max_voxels, err);
         }

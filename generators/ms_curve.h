@@ -18,7 +18,7 @@ MS_C_BEGIN
  * @param      clump      what the same run gave
  * @param      run        of its stop rule the least radius is heeded
  * @param      max_voxels as for ms_metrics_compute
- * @return MS_OK; as ms_generator_run and ms_metrics_compute
+ * @return MS_OK; MS_ERR_INTERRUPTED where the run's listener ends one; as ms_generator_run and ms_metrics_compute
  *
  * Cost: one ms_metrics_compute; unless nested, a run and one of those for each number of spheres.
  */

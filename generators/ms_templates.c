@@ -9,6 +9,10 @@
 
 ms_status ms_templates_alloc(ms_templates *t, size_t most, ms_error *err)
 {
+    *t = (ms_templates){0};
+    if (most == 0) {
+        return ms_fail(err, MS_ERR_ARG, "templates have one sphere at least");
+    }
     *t = (ms_templates){.most = most,
                         .clump = calloc(most, sizeof *t->clump),
                         .score = calloc(most, sizeof *t->score),

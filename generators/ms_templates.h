@@ -35,7 +35,8 @@ typedef struct ms_templates_how {
  */
 MS_API ms_status ms_templates_make(ms_templates *templates, const ms_templates_how *how, ms_error *err);
 
-/** Room for a search, nothing run. @param[out] templates as above @param most spheres @return MS_OK; MS_ERR_NOMEM */
+/** Room for a search, nothing run. @param[out] templates as above @param most spheres, at least 1 @return MS_OK;
+ * MS_ERR_ARG for none; MS_ERR_NOMEM */
 MS_API ms_status ms_templates_alloc(ms_templates *templates, size_t most, ms_error *err);
 
 /**
@@ -52,8 +53,8 @@ MS_API ms_status ms_templates_alloc(ms_templates *templates, size_t most, ms_err
 MS_API ms_status ms_templates_search(ms_templates *templates, size_t *reached, const ms_templates_how *how,
                                      const ms_measure *measure, double value, size_t first, ms_error *err);
 
-/** The least number of spheres of those that were run that reaches a measure; 0: none does. @param[out] best of all
- * those before it */
+/** The least number of spheres of those that were run that reaches a measure; 0: none does. @param[out] best the best
+ * value of those with fewer spheres; NAN where none was run */
 MS_API size_t ms_templates_least(double *best, const ms_templates *templates, const ms_measure *measure, double value);
 
 /**

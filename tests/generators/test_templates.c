@@ -7,7 +7,7 @@
 
 enum { MOST = 40 };
 
-static int n_runs[MOST + 1], is_interrupted;
+static int n_runs[MOST + 1], is_interrupted; /* are the runs of so many spheres and of fewer */
 
 /* n balls in one place, the first of which grows with n until it is the ball of the target, of radius 10 voxels. */
 static ms_status grow(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
@@ -19,7 +19,7 @@ static ms_status grow(ms_clump *clump, ms_stop_reason *reason, const ms_run *run
         const ms_sphere sphere = {{0, 0, 0}, s == 0 ? 10 * pow((double)n / MOST, 0.25) : 1};
         status = ms_clump_add(clump, &sphere, err);
     }
-    *reason = is_interrupted ? MS_STOP_INTERRUPTED : MS_STOP_SPHERES;
+    *reason = (int)n <= is_interrupted ? MS_STOP_INTERRUPTED : MS_STOP_SPHERES;
     return status;
 }
 
@@ -89,8 +89,10 @@ static void where_none_reaches_it(void **state)
     const ms_run run = {.target = &target, .stop = {.spheres = 12}};
     const ms_templates_how how = {.generator = &GROWING, .run = &run, .max_voxels = 1u << 24};
     memset(n_runs, 0, sizeof n_runs);
+    assert_int_equal(ms_templates_alloc(&some, 0, NULL), MS_ERR_ARG);
     assert_int_equal(ms_templates_alloc(&some, 12, NULL), MS_OK);
     assert_true(isnan(some.dice[3]));
+    assert_true(ms_templates_least(&best, &some, coverage, 0) == 0 && isnan(best)); /* nothing was run */
     assert_int_equal(ms_templates_search(&some, &found, &how, coverage, 0.9, 4, NULL), MS_OK);
     assert_int_equal(found, 0);
     assert_int_equal(ms_templates_least(&best, &some, coverage, 0.9), 0);
@@ -115,12 +117,19 @@ static void an_interrupted_run_ends_it(void **state)
     const ms_templates_how how = {.generator = &GROWING, .run = &run, .max_voxels = 1u << 24};
     memset(n_runs, 0, sizeof n_runs);
     assert_int_equal(ms_templates_alloc(&some, 12, NULL), MS_OK);
-    is_interrupted = 1;
+    is_interrupted = 12;
     const ms_status searched = ms_templates_search(&some, &found, &how, &ms_measures[MS_MEASURE_DICE], 0.1, 4, &err);
     const int runs = count_runs();
     ms_templates_free(&some);
     const ms_status made = ms_templates_make(&some, &how, NULL);
+    is_interrupted = 5; /* the first run is whole, and of the others seven are */
+    memset(n_runs, 0, sizeof n_runs);
+    ms_error later;
+    const ms_status made_in_part = ms_templates_make(&some, &how, &later);
     is_interrupted = 0;
+    assert_int_equal(made_in_part, MS_ERR_INTERRUPTED);
+    assert_non_null(strstr(later.text, "interrupted at 5 spheres"));
+    assert_int_equal(count_runs(), 8);
     assert_int_equal(searched, MS_ERR_INTERRUPTED);
     assert_int_equal(runs, 1);
     assert_non_null(strstr(err.text, "interrupted at 4 spheres"));
