@@ -57,11 +57,25 @@ static ms_status fill_packing(ms_packing *packing, const ms_scene_kind *kind, si
     return status;
 }
 
+/* The least width that is given; HUGE_VAL: none is. */
+static ms_status find_width(double *width, const ms_scene_vessel *vessel, ms_error *err)
+{
+    *width = HUGE_VAL;
+    for (int k = 0; k < 2; k++) {
+        if (!(vessel->width[k] >= 0 && vessel->width[k] < HUGE_VAL)) {
+            return ms_fail(err, MS_ERR_ARG, "a vessel %g wide; give a width above 0, or 0 for one that is chosen",
+                           vessel->width[k]);
+        }
+        *width = vessel->width[k] > 0 ? fmin(*width, vessel->width[k]) : *width;
+    }
+    return MS_OK;
+}
+
 ms_status ms_scene_script_check(const ms_scene_kind *kind, size_t count, const ms_scene_vessel *vessel, ms_error *err)
 {
-    const double width = fmin(vessel->width[0], vessel->width[1]);
-    ms_status status = MS_OK;
-    for (size_t n = 0; n < count && width > 0 && status == MS_OK; n++) {
+    double width;
+    ms_status status = find_width(&width, vessel, err);
+    for (size_t n = 0; n < count && width < HUGE_VAL && status == MS_OK; n++) {
         ms_template made;
         status = ms_template_make(&made, kind[n].clump, kind[n].particle, err);
         if (status != MS_OK) {
@@ -94,13 +108,36 @@ char *ms_scene_script_path(const char *folder, const ms_format *format)
     return join_path(folder, format, format->scene.suffix);
 }
 
+/* Is there what a script names? */
+static ms_status check_kinds(const ms_scene_kind *kind, size_t count, const ms_format *format, ms_error *err)
+{
+    ms_status status = MS_OK;
+    if (count == 0 || !format->scene.suffix) {
+        return ms_fail(err, MS_ERR_ARG, "no script for %s is written of %zu kinds of particles; %s", format->name,
+                       count, count == 0 ? "give one at least" : "liggghts, lammps and yade have such scripts");
+    }
+    for (size_t n = 0; n < count && status == MS_OK; n++) {
+        const ms_content content = {.clump = kind[n].clump, .particle = kind[n].particle};
+        ms_error cause;
+        status = ms_write_check(&content, format, &cause);
+        if (status != MS_OK) {
+            status = ms_fail(err, status, "%s: %s", kind[n].name, cause.text);
+        }
+    }
+    return status;
+}
+
 ms_status ms_scene_script_write(const ms_scene_kind *kind, size_t count, const ms_scene_vessel *vessel,
                                 const char *folder, const ms_format *format, ms_error *err)
 {
     ms_packing packing;
+    ms_status status = check_kinds(kind, count, format, err);
+    if (status != MS_OK) {
+        return status;
+    }
     char *path = join_path(folder, format, "");
-    ms_status status = path ? fill_packing(&packing, kind, count, vessel, err)
-                            : ms_fail(err, MS_ERR_NOMEM, "no memory for the name of a script");
+    status = path ? fill_packing(&packing, kind, count, vessel, err)
+                  : ms_fail(err, MS_ERR_NOMEM, "no memory for the name of a script");
     if (path) {
         if (status == MS_OK) {
             qsort(packing.placed, packing.count, sizeof *packing.placed, order_of_kinds);

@@ -11,7 +11,7 @@ MS_C_BEGIN
 typedef struct ms_scene_kind {
     const ms_clump *clump;       /* as in the ms_content of its template: in the unit of the shape */
     const ms_particle *particle; /* likewise, with its mass; the scale is that of all kinds */
-    const char *path;            /* of its template, which stands in the folder of the script */
+    const char *path;            /* of its template, which stands in the folder of the script (ms_write_path) */
     const char *name;            /* what messages call it */
     size_t count;                /* of particles */
 } ms_scene_kind;
@@ -25,7 +25,8 @@ typedef struct ms_scene_vessel {
 /**
  * Has the vessel room for each particle, however it is turned?
  *
- * @return MS_OK; MS_ERR_ARG where it has not; MS_ERR_NOMEM; as ms_template_make
+ * @return MS_OK; MS_ERR_ARG where it has not, or for a width that is neither 0 nor a number above; MS_ERR_NOMEM; as
+ *         ms_template_make
  */
 MS_API ms_status ms_scene_script_check(const ms_scene_kind *kind, size_t count, const ms_scene_vessel *vessel,
                                        ms_error *err);
@@ -37,7 +38,8 @@ MS_API ms_status ms_scene_script_check(const ms_scene_kind *kind, size_t count, 
  * @param count  of kinds, at least 1
  * @param vessel with room for each (ms_scene_script_check)
  * @param format one with a script of scenes (ms_format.scene)
- * @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM; as ms_template_make
+ * @return MS_OK; MS_ERR_ARG for no kinds, a particle without mass or another format; MS_ERR_IO; MS_ERR_NOMEM; as
+ *         ms_template_make
  */
 MS_API ms_status ms_scene_script_write(const ms_scene_kind *kind, size_t count, const ms_scene_vessel *vessel,
                                        const char *folder, const ms_format *format, ms_error *err);
