@@ -36,11 +36,13 @@ typedef struct ms_manifest {
  * @param[out] manifest the caller frees it; empty on failure
  * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line: another header, a shape that cannot be read or stands twice in
  *         one size, a count that is no whole number from 1 to MS_MANIFEST_MAX_PARTICLES, a tolerance that is none from
- *         0 to 1, a size that is none above 0, no shape or too many; MS_ERR_NOMEM
+ *         0 to 1, a size that is none from MS_MANIFEST_LEAST_SIZE to MS_MANIFEST_MOST_SIZE, no shape or more than
+ *         MS_MANIFEST_MAX_SHAPES; MS_ERR_NOMEM
  */
 MS_API ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *err);
 
-/** Particles of one shape. @return MS_OK; MS_ERR_NOMEM */
+/** One row: particles of one shape, in its own size. @param[out] manifest as above @param shape path, copied and not
+ * looked at @return MS_OK; MS_ERR_NOMEM */
 MS_API ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, uint64_t particles, ms_error *err);
 
 /** What messages call it: "grain.stl", or "grain.stl, size 0.5". */

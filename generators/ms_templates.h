@@ -32,6 +32,8 @@ typedef struct ms_templates_how {
  * @param[out] templates ms_templates_free frees them; empty on failure
  * @return MS_OK; MS_ERR_INTERRUPTED where the run's listener ends a run; as ms_generator_run, ms_curve_clumps,
  *         ms_equal_volume_scale, ms_metrics_compute
+ *
+ * Cost: a run and ms_curve_clumps; with `equal` as many ms_metrics_compute more.
  */
 MS_API ms_status ms_templates_make(ms_templates *templates, const ms_templates_how *how, ms_error *err);
 
@@ -60,6 +62,7 @@ MS_API size_t ms_templates_least(double *best, const ms_templates *templates, co
 /**
  * Area over volume of a shape, by which a distance of surfaces is a D.
  *
+ * @param[out] surface 1 / the unit of the shape
  * @return MS_OK; MS_ERR_SHAPE where the area is not known; as ms_descriptors_of_target
  */
 MS_API ms_status ms_templates_surface(double *surface, const ms_target *target, ms_error *err);
@@ -68,6 +71,7 @@ MS_API ms_status ms_templates_surface(double *surface, const ms_target *target, 
  * D of a template whose surface is at a mean distance L from that of its shape, of volume V and area A: the volume
  * between them, some A L, is that of S xor U, and D = |S xor U| / (|S| + |U|), where the latter is some 2 V.
  *
+ * @param length  L, in the unit of the shape
  * @param surface of ms_templates_surface
  * @param factor  by which the shape is scaled
  */

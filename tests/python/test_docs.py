@@ -42,6 +42,12 @@ class Docs(PythonCase):
             tried += said.attempted
         self.assertGreater(tried, 15)
 
+    def test_fields_of_results(self):
+        """help(mskit.Kind) says what each field is."""
+        for kind in (mskit.Allocation, mskit.Kind, mskit.Particle, mskit.Progress, mskit.Scene, mskit.Sieved):
+            for field in kind._fields:
+                self.assertRegex(kind.__doc__, rf"(?m)^    {field}: .", kind)
+
     def test_page(self):
         code = "\n".join(re.findall(r"```python\n(.*?)```", document("python.md"), re.S))
         with contextlib.redirect_stdout(io.StringIO()) as said:

@@ -114,6 +114,8 @@ MS_API ms_status ms_write_check_path(const char *path, const ms_format *format, 
  * name of a file, or the script of the format, cannot hold becomes '_'.
  *
  * @param folder "" for none
+ * @param source the other file; "-" is "stdin"
+ * @param behind what stands behind its stem, as "-2.5"; "" for nothing
  * @return the caller frees it; NULL without memory
  */
 MS_API char *ms_write_path(const char *folder, const char *source, const char *behind, const ms_format *format);

@@ -12,12 +12,19 @@ _MOST_PARTICLES = 10**9
 
 
 class Allocation(NamedTuple):
-    """Numbers of spheres, and what they come to."""
-    spheres: numpy.ndarray  # (k,): of the template of each shape
-    total: int  # in the whole scene
-    mean_dice: float  # over the particles
-    least_gain: float  # the least that each sphere of the scene given back adds to the sum of D over the particles
-    slack: float  # no other choice is better by more, of a budget in mean D, of mean_dice in spheres; 0: the best
+    """Numbers of spheres, and what they come to.
+
+    spheres: (k,): of the template of each shape.
+    total: spheres in the whole scene.
+    mean_dice: over the particles.
+    least_gain: the least that each sphere of the scene given back adds to the sum of D over the particles.
+    slack: no other choice is better by more, of a budget in mean D, of mean_dice in spheres; 0: the best.
+    """
+    spheres: numpy.ndarray
+    total: int
+    mean_dice: float
+    least_gain: float
+    slack: float
 
 
 def _read_curves(curves: Any, particles: Any) -> Tuple[Any, List[numpy.ndarray]]:

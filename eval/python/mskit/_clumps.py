@@ -15,12 +15,19 @@ if TYPE_CHECKING:
 
 
 class Particle(NamedTuple):
-    """What a clump stands for, in SI but for its centre."""
-    mass: float  # kg
-    centre: numpy.ndarray  # (3,): of mass, in the unit and frame of the clump
-    inertia: numpy.ndarray  # (3, 3): about the centre, along the axes of the clump, kg m^2
-    density: float  # kg/m^3; 0 where it is not known
-    scale: float  # metres in a unit of length of the clump
+    """What a clump stands for, in SI but for its centre.
+
+    mass: kg.
+    centre: (3,): of mass, in the unit and frame of the clump.
+    inertia: (3, 3): about the centre, along the axes of the clump, kg m^2.
+    density: kg/m^3; 0 where it is not known.
+    scale: metres in a unit of length of the clump.
+    """
+    mass: float
+    centre: numpy.ndarray
+    inertia: numpy.ndarray
+    density: float
+    scale: float
 
 
 def _particle_of(c: Any) -> Optional[Particle]:

@@ -23,11 +23,17 @@ _TINY = 2.2250738585072014e-308  # the least normal double: 0, where it is allow
 
 
 class Progress(NamedTuple):
-    """How far a run has come."""
-    stage: str  # what it is at
-    share: float  # of it all that is done, from 0 to 1; NaN where that is not known
-    spheres: int  # so far, of methods that choose one after the other
-    dice: float  # mismatch D of those; NaN where it is not known
+    """How far a run has come.
+
+    stage: what the run is at.
+    share: of it all that is done, from 0 to 1; NaN where that is not known.
+    spheres: so many so far, of methods that choose one after the other.
+    dice: mismatch D of those; NaN where it is not known.
+    """
+    stage: str
+    share: float
+    spheres: int
+    dice: float
 
 
 Listener = Union[None, bool, Callable[[Progress], Any]]

@@ -22,13 +22,21 @@ _TINY = 2.2250738585072014e-308
 
 
 class Scene(NamedTuple):
-    """The templates chosen, and what they come to."""
-    kinds: List[Kind]  # of particles, one for each row
-    particles: int  # in the whole scene, as the next ones
+    """The templates chosen, and what they come to.
+
+    kinds: of particles, a `Kind` for each row.
+    particles: in the whole scene.
+    spheres: of all particles.
+    mean_dice: over the particles.
+    least_gain: the least that each sphere of the scene given back adds to the sum of D over the particles.
+    slack: no other choice is better by more, of a budget in mean D, of mean_dice in spheres; 0: the best.
+    """
+    kinds: List[Kind]
+    particles: int
     spheres: int
-    mean_dice: float  # over the particles
-    least_gain: float  # the least that each sphere of the scene given back adds to the sum of D over the particles
-    slack: float  # no other choice is better by more, of a budget in mean D, of mean_dice in spheres; 0: the best
+    mean_dice: float
+    least_gain: float
+    slack: float
 
     def correct(self, *, density: float, unit: str = "m", scale: Optional[float] = None, properties: str = "shape",
                 axes: str = "principal", least_mass: Optional[float] = None, most_mass: Optional[float] = None,

@@ -11,26 +11,37 @@ from ._clumps import Clump, c_particle_of, lend, write_as
 from ._errors import (ArgumentError, FileError, OutOfMemoryError, Path, as_floats, call, encode, find, number, remark,
                       show, word)
 from ._library import ffi, lib
+from ._scene_rows import name_row
 from ._shapes import Grid, Shape
 
 _WIDEST = 1e100  # of a vessel, so that the area of its floor is a number
 
 
 class Kind(NamedTuple):
-    """One kind of particles of a scene."""
+    """One kind of particles of a scene.
+
+    shape: of which they are; its name is that of the files, and may be set before `Scene.write`.
+    particles: how many in the scene.
+    size: diameter of the ball of its volume, in the unit of the shape; NaN: as the shape is.
+    clump: its template, in its size.
+    dice: (m,): D of the templates of 1, 2, ... spheres; NaN where a search has not made them.
+    factor: its size / that of the shape.
+    grid: on which the templates were made.
+    remarks: of the method on the template; "" without.
+    """
     shape: Shape
     particles: int
-    size: float  # diameter of the ball of its volume, in the unit of the shape; NaN: as the shape is
-    clump: Clump  # its template, in its size
-    dice: numpy.ndarray  # (m,): D of the templates of 1, 2, ... spheres; NaN where a search has not made them
-    factor: float  # its size / that of the shape
-    grid: Grid  # on which the templates were made
-    remarks: str  # of the method on the template; "" without
+    size: float
+    clump: Clump
+    dice: numpy.ndarray
+    factor: float
+    grid: Grid
+    remarks: str
 
     @property
     def name(self) -> str:
         """What messages call it."""
-        return self.shape.name if math.isnan(self.size) else f"{self.shape.name}, size {self.size:g}"
+        return name_row(self.shape, self.size)
 
     def tell(self) -> None:
         """Warns of what the method remarks."""
@@ -102,12 +113,13 @@ def _list_files(path: bytes, format: Any) -> List[Tuple[bytes, bool]]:
 def _refuse_twice(path: bytes, before: Optional[Kind], kind: Kind) -> NoReturn:
     file, name = os.fsdecode(path), kind.shape.name
     if before is None:
-        raise ArgumentError(f"the script of the scene and a file of {name} would both be {file}; rename the shape")
+        raise ArgumentError(f"the script of the scene and a file of {name} would both be {file}; rename the shape "
+                            "(shape.name)")
     if before.shape is kind.shape:
         raise ArgumentError(f"{name} in the sizes {before.size!r} and {kind.size!r}: the templates would both be "
                             f"{file}; sizes of one shape have to differ within six digits")
     raise ArgumentError(f"the templates of {before.shape.name} and {name} would both be {file}; rename one of the "
-                        "shapes")
+                        "shapes (shape.name)")
 
 
 def _check_files(kinds: List[Kind], formats: List[Any], paths: List[List[bytes]], scripts: List[bytes]) -> None:

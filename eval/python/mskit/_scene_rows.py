@@ -18,6 +18,11 @@ _COLUMNS = ("shape", "count", "tolerance", "size")
 Rows = Union[Path, Sequence[Any]]
 
 
+def name_row(shape: Shape, size: float) -> str:
+    """What messages call it."""
+    return shape.name if math.isnan(size) else f"{shape.name}, size {size:g}"
+
+
 class Row(NamedTuple):
     """One kind of particles, as it was asked for."""
     shape: Shape
@@ -28,7 +33,7 @@ class Row(NamedTuple):
 
     @property
     def name(self) -> str:
-        return self.shape.name if math.isnan(self.size) else f"{self.shape.name}, size {self.size:g}"
+        return name_row(self.shape, self.size)
 
 
 def _named(row: Any, at: int) -> Dict[str, Any]:
@@ -106,12 +111,19 @@ def read_rows(rows: Rows) -> List[Row]:
 
 
 class Sieved(NamedTuple):
-    """The rows of a scene by a sieve curve, and its classes by ascending size."""
-    rows: List[Dict[str, Any]]  # for `scene`
-    sizes: numpy.ndarray  # (k,): diameter of the ball of a particle's volume
-    counts: numpy.ndarray  # (k,): of particles of each class
-    asked: numpy.ndarray  # (k,): its share of the mass, by the curve
-    have: numpy.ndarray  # (k,): the share that its whole number of particles has
+    """The rows of a scene by a sieve curve, and its classes by ascending size.
+
+    rows: for `scene`.
+    sizes: (k,): diameter of the ball of a particle's volume.
+    counts: (k,): of particles of each class.
+    asked: (k,): its share of the mass, by the curve.
+    have: (k,): the share that its whole number of particles has.
+    """
+    rows: List[Dict[str, Any]]
+    sizes: numpy.ndarray
+    counts: numpy.ndarray
+    asked: numpy.ndarray
+    have: numpy.ndarray
 
 
 def _read_curve(curve: Any, classes: int) -> Any:
