@@ -213,6 +213,8 @@ class Scenes(PythonCase):
             self.refused(mskit.ArgumentError, "no kinds of particles", scene._replace(kinds=[]).write,
                          self.path("out"), format)
         self.refused(mskit.ArgumentError, "is no path", scene.write, "\ud800")
+        cube.name = 300 * "a"
+        self.refused(mskit.FileError, "aaa.csv: ", scene.write, self.path("out"))
         self.assertFalse(os.path.exists(self.path("out")))
         self.write("file", "")
         self.refused(mskit.FileError, "cannot be made", scene.write, self.path("file/out"), "yade")

@@ -3,7 +3,8 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Any, Dict, List, NamedTuple, NoReturn, Optional, Sequence, Tuple
+from contextlib import contextmanager
+from typing import Any, Dict, Iterator, List, NamedTuple, NoReturn, Optional, Sequence, Tuple
 
 import numpy
 
@@ -158,6 +159,21 @@ class _Lent:
                                                          self._paths)])
 
 
+@contextmanager
+def _open_folder(folder: bytes) -> Iterator[None]:
+    """Makes it if it is not there; then it does not stay if nothing could be written."""
+    is_there = os.path.isdir(folder)
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except OSError as failure:
+        raise FileError(f"the folder '{os.fsdecode(folder)}' cannot be made: {failure.strerror}") from None
+    try:
+        yield
+    finally:
+        if not is_there and not os.listdir(folder):
+            os.rmdir(folder)
+
+
 def write_scene(kinds: List[Kind], folder: Path, names: Any, box: Optional[Any], cylinder: Any) -> List[str]:
     """As Scene.write."""
     place, formats = encode(folder), _find_formats(names)
@@ -172,16 +188,11 @@ def write_scene(kinds: List[Kind], folder: Path, names: Any, box: Optional[Any],
         lent.check(format)
         if format.scene.suffix != ffi.NULL:
             call(lib.ms_scene_script_check, lent.as_scene(files), len(kinds), vessel)
-    try:
-        os.makedirs(place, exist_ok=True)
-    except OSError as failure:
-        raise FileError(f"the folder '{os.fsdecode(place)}' cannot be made: {failure.strerror}") from None
-    written: List[bytes] = []
-    for at, kind in enumerate(kinds):
+    with _open_folder(place):
+        for at, kind in enumerate(kinds):
+            for format, files in zip(formats, paths):
+                write_as(kind.clump, files[at], format)
         for format, files in zip(formats, paths):
-            write_as(kind.clump, files[at], format)
-            written.append(files[at])
-    for format, files in zip(formats, paths):
-        if format.scene.suffix != ffi.NULL:
-            call(lib.ms_scene_script_write, lent.as_scene(files), len(kinds), vessel, place, format)
-    return [os.fsdecode(path) for path in written + scripts]
+            if format.scene.suffix != ffi.NULL:
+                call(lib.ms_scene_script_write, lent.as_scene(files), len(kinds), vessel, place, format)
+    return [os.fsdecode(files[at]) for at in range(len(kinds)) for files in paths] + list(map(os.fsdecode, scripts))
