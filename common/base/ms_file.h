@@ -50,6 +50,11 @@ MS_API ms_status ms_file_read_standard(ms_bytes *bytes, size_t most, ms_error *e
 /** What a file is called in messages: its path, or "standard input". */
 MS_API const char *ms_file_name(const char *path);
 
+/** How the name of a file that is made from this one begins: its name without folder and ending, and without the one
+ * before .gz; "stdin" for "-". It need not be a name that a file may have (ms_escape_file_name). @param[out] length of
+ * it; it ends with no 0 byte */
+MS_API const char *ms_file_stem(size_t *length, const char *path);
+
 /** Says why a file cannot be opened and, of one that is not there, which name in its folder is near. @param why errno
  * @return MS_ERR_IO */
 MS_API ms_status ms_file_fail_open(ms_error *err, const char *path, int why);

@@ -75,38 +75,6 @@ ms_status ms_files_check_standard(const char *const *path, size_t count, ms_erro
                                found);
 }
 
-/* How many characters of a name are not its ending, .gz and what is before that included. */
-static size_t measure_stem(const char *base, size_t length)
-{
-    for (int packed = 0; packed < 2; packed++) {
-        size_t dot = length > 0 ? length - 1 : 0;
-        while (dot > 0 && base[dot] != '.') {
-            dot--;
-        }
-        const int is_packed = length - dot == 3 && strncmp(base + dot, ".gz", 3) == 0;
-        length = dot > 0 ? dot : length;
-        if (!is_packed) {
-            break;
-        }
-    }
-    return length;
-}
-
-const char *ms_files_stem(size_t *length, const char *path)
-{
-    const char *whole = ms_file_is_standard(path) ? "stdin" : path;
-    size_t end = strlen(whole);
-    while (end > 1 && whole[end - 1] == '/') { /* a folder of slices */
-        end--;
-    }
-    size_t begin = end;
-    while (begin > 0 && whole[begin - 1] != '/') {
-        begin--;
-    }
-    *length = measure_stem(whole + begin, end - begin);
-    return whole + begin;
-}
-
 static ms_status make_room(ms_files *files, ms_error *err)
 {
     const size_t capacity = files->capacity ? 2 * files->capacity : 64;

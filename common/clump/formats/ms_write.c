@@ -200,6 +200,23 @@ ms_status ms_write_check_path(const char *path, const ms_format *format, ms_erro
                           path, format->name);
 }
 
+char *ms_write_path(const char *folder, const char *source, const char *behind, const ms_format *format)
+{
+    size_t length;
+    const char *stem = ms_file_stem(&length, source);
+    const size_t room = strlen(folder) + length + strlen(behind) + strlen(format->ending) + 3;
+    char *path = malloc(room);
+    if (path) {
+        const int start = snprintf(path, room, "%s%s", folder, folder[0] ? "/" : "");
+        snprintf(path + start, room - (size_t)start, "%.*s%s.%s", (int)length, stem, behind, format->ending);
+        ms_escape_file_name(path + start);
+        if (ms_write_check_path(path, format, NULL) != MS_OK) {
+            ms_escape_script_name(path + start);
+        }
+    }
+    return path;
+}
+
 ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err)
 {
     const char *slash = strrchr(path, '/');
