@@ -19,6 +19,9 @@ ms_status ms_file_fail_open(ms_error *err, const char *path, int why)
     if (ms_file_is_standard(path)) {
         return ms_fail(err, MS_ERR_IO, "standard input is not read here; name a file");
     }
+    if (path[0] == '\0') {
+        return ms_fail(err, MS_ERR_IO, "the name of the file to read is empty; name a file");
+    }
     const ms_hint hint = why == ENOENT ? ms_choice_file_hint(path) : (ms_hint){""};
     return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s%s", path, strerror(why),
                    hint.text[0] ? hint.text : "; check the path");
@@ -403,8 +406,7 @@ ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err)
 
 char *ms_file_beside(const char *path, const char *name, size_t length)
 {
-    const char *slash = strrchr(path, '/');
-    const size_t folder = slash && name[0] != '/' ? (size_t)(slash - path) + 1 : 0;
+    const size_t folder = name[0] != '/' ? (size_t)(ms_file_base_name(path) - path) : 0;
     char *beside = malloc(folder + length + 1);
     if (beside) {
         memcpy(beside, path, folder);
@@ -414,10 +416,15 @@ char *ms_file_beside(const char *path, const char *name, size_t length)
     return beside;
 }
 
+const char *ms_file_base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 void ms_file_ending(char out[16], const char *path)
 {
-    const char *name = strrchr(path, '/');
-    const char *dot = strrchr(name ? name : path, '.');
+    const char *dot = strrchr(ms_file_base_name(path), '.');
     out[0] = '\0';
     if (!dot || strlen(dot + 1) >= 16) {
         return;

@@ -96,6 +96,9 @@ MS_API ms_status ms_output_close(ms_output *output, ms_status status, ms_error *
  */
 MS_API char *ms_file_beside(const char *path, const char *name, size_t length);
 
+/** The name of a file without its folders: the path behind its last slash. */
+MS_API const char *ms_file_base_name(const char *path);
+
 /** The ending of a path after its last dot, in lower case; "" if none or too long for `out`. */
 MS_API void ms_file_ending(char out[16], const char *path);
 

@@ -20,7 +20,7 @@ static char *find_place(const char *path)
     if (folder && !real && strcmp(folder, path) != 0) {
         real = find_place(folder);
     }
-    const char *name = slash ? slash + 1 : path;
+    const char *name = ms_file_base_name(path);
     place = real ? malloc(strlen(real) + strlen(name) + 2) : NULL;
     if (place) {
         sprintf(place, "%s/%s", real, name);
@@ -220,15 +220,17 @@ ms_status ms_files_check(ms_files *files, ms_error *err)
     return status;
 }
 
-ms_status ms_files_remove(const ms_files *files, ms_error *err)
+ms_status ms_files_remove(ms_files *files, ms_status status, ms_error *err)
 {
-    for (size_t f = 0; f < files->count; f++) {
+    for (size_t f = 0; f < files->count && status == MS_OK; f++) {
         const char *path = files->file[f].path;
         if (unlink(path) != 0 && errno != ENOENT) {
-            return ms_fail(err, MS_ERR_IO, "%s: the file of a run before cannot be removed: %s", path, strerror(errno));
+            status =
+                ms_fail(err, MS_ERR_IO, "%s: the file of a run before cannot be removed: %s", path, strerror(errno));
         }
     }
-    return MS_OK;
+    ms_files_free(files);
+    return status;
 }
 
 void ms_files_free(ms_files *files)

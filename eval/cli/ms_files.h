@@ -82,9 +82,14 @@ ms_status ms_files_with_ending(const char ***path, size_t *count, const ms_files
  */
 ms_status ms_files_check(ms_files *files, ms_error *err);
 
-/** Removes the files that a run before left there, so that none stands for one that this run does not write.
- * @return MS_OK; MS_ERR_IO */
-ms_status ms_files_remove(const ms_files *files, ms_error *err);
+/**
+ * Removes the files that a run before left there, so that none stands for one that this run does not write. Frees the
+ * list in any case.
+ *
+ * @param status of listing them: nothing is removed unless it is MS_OK
+ * @return `status` if that is not MS_OK; MS_OK; MS_ERR_IO
+ */
+ms_status ms_files_remove(ms_files *files, ms_status status, ms_error *err);
 
 void ms_files_free(ms_files *files);
 

@@ -67,11 +67,7 @@ static ms_status remove_charts(const ms_scene *scene, const ms_goal *goal, const
     for (size_t s = 0; s < scene->count && status == MS_OK; s++) {
         status = ms_scene_charts_list(&files, folder, scene->shape[s].row, s + 1, goal, err);
     }
-    if (status == MS_OK) {
-        status = ms_files_remove(&files, err);
-    }
-    ms_files_free(&files);
-    return status;
+    return ms_files_remove(&files, status, err);
 }
 
 ms_status ms_scene_charts_draw(const ms_scene *scene, const ms_goal *goal, const char *folder, FILE *words,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/ms_file.h"
 #include "clump/ms_packing.h"
 #include "ms_write_packing.h"
 
@@ -13,7 +14,7 @@ static const double ROOM = 1.2;
 /* The name of a template without folder and ending. The caller frees it; NULL without memory. */
 static char *name_of(const char *path)
 {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    const char *name = ms_file_base_name(path), *dot = strrchr(name, '.');
     return dot ? strndup(name, (size_t)(dot - name)) : strdup(name);
 }
 
