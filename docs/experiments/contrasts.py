@@ -11,14 +11,15 @@ built with superquadrics, for the candy itself. Takes numpy, and gnuplot.
 
 Material, friction and stiffness are Yuan's (packing.py). A box of 60 x 60 mm, periodic in x and y, has a floor of 8 x 8
 fixed spheres that touch. 250 candies in random orientations fall onto it from up to half a metre, all at once. At rest
-(kinetic energy below 1e-6 m g d each) height and fraction are measured; then gravity tilts towards x, by RATE degrees a
-second from 16 degrees on and four times as fast before, until the bed flows at 0.05 m/s, and back until it stands.
+(kinetic energy below 1e-6 m g d in the mean) height and fraction are measured; then gravity tilts towards x, by RATE
+degrees a second from 16 degrees on and four times as fast before, until the bed flows at 0.05 m/s, and back until it
+stands.
     height    mean of the highest points along vertical lines 0.5 mm apart, above the centres of the floor's spheres, mm
-    fraction  between 1/4 and 3/4 of the height, the part within spheres (voxels of 0.5 mm)
+    fraction  between 1/4 and 3/4 of the height, the part within particles (voxels of 0.5 mm)
     start     degrees at which the mean velocity along x rises above 0.01 m/s and stays there until the bed flows
     stop      degrees at which, on the way back, it falls below that
     flowed    the fraction once it is below 0.002 m/s
-Velocity is the mean over all spheres, every 0.01 s.
+Velocity is the mean over all spheres, of the cell smooth over its candies, every 0.01 s.
 """
 import argparse
 import os

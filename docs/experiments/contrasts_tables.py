@@ -94,7 +94,7 @@ def list_controls():
 
 
 def judge_series(rows, field, reference):
-    """Of each clump of the series but the reference (cell, difference, half of the interval, verdict): within the
+    """Of each cell of the series but the reference (cell, difference, half of the interval, verdict): within the
     margin, enough if so at every larger n too, outside, or nothing."""
     series = [cell for cell in SERIES if take(rows, field, cell) and cell != reference]
     those, out, so_far = take(rows, field, reference), [], True

@@ -97,7 +97,7 @@ def scale_template(folder, name, number, prime):
 
 
 def make_bed(folder, drawn):
-    """What contrasts.run_bed wants."""
+    """What bed.run_bed wants."""
     lines = [scale_template(folder, name, number, prime)
              for (number, (name, _)), prime in zip(enumerate(drawn), list_primes(len(drawn)))]
     shares = " ".join(f"clump{number} {count / COUNT!r}" for number, (_, count) in enumerate(drawn))

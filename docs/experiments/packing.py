@@ -8,7 +8,8 @@ Adds a row a packing to packing.csv beside it; rows that are there are not run a
 into docs/behaviour.md, which --seeds 0 does alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine
 (liggghts). Numbers of the table are Yuan's (table 3); his time step is 5e-7 s. Takes numpy.
 
-What is measured, as fixed before the first run, of the particles at rest (kinetic energy below 1e-6 m g d each):
+What is measured, as fixed before the first run, of the particles at rest (kinetic energy below 1e-6 m g d in the
+mean):
     height_envelope  mean over vertical lines, 0.5 mm apart and 2 mm or more from the wall, of the highest point of a
                      sphere, in mm
     height_top       the highest point of any sphere, in mm

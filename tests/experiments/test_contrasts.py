@@ -60,7 +60,6 @@ class Beds(unittest.TestCase):
         for one, other in zip(bed.measure(balls(spheres)), bed.measure(balls(shifted))):
             self.assertAlmostEqual(one, other, places=12)
 
-
     def test_a_spheroid_that_is_turned(self):
         """A quarter turn about y lays the short axis along x; any turn leaves the volume and a ball as they are."""
         half, lines = math.sqrt(0.5), numpy.arange(-7, 7, 0.1) + 0.05
