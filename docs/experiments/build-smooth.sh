@@ -11,6 +11,8 @@ mkdir -p "$1"
 cd "$1"
 folder="$PWD"
 curl -fsSLO 'http://deb.debian.org/debian/pool/main/l/liggghts/liggghts_3.8.0+repack1.orig.tar.xz'
+echo 'c18721d9a870c5170f03b91e4f1ffe13335c66ed1f0ff2c64ebd3be91c37867a  liggghts_3.8.0+repack1.orig.tar.xz' |
+    sha256sum -c --quiet
 tar -xf 'liggghts_3.8.0+repack1.orig.tar.xz'
 cd LIGGGHTS-PUBLIC-3.8.0/src
 # Two lines that g++ 12 refuses, and a dump that takes VTK.

@@ -15,7 +15,7 @@ ten turns from the fourth on, every 0.1 s:
     angle        degrees of the line of least squares through the highest points over lines 1 mm apart, averaged along
                  the axis, of the middle part of the bed, which is as wide as the drum's radius
     correlation  its correlation time, s: the integral of its autocorrelation up to where that first falls below 0
-    blocks       its means over 20 blocks of 1.2 s, taken as independent where they are twice as long as that
+    blocks       its means over 20 blocks of 1.2 s, taken as independent where they are ten times as long as that
 """
 import argparse
 import math
@@ -98,6 +98,9 @@ def measure(spheres, h=1.0):
         i = slice(*numpy.searchsorted(x, [cx - r, cx + r]))
         along = (z - cz + LENGTH / 2) % LENGTH - LENGTH / 2
         top[i] = numpy.fmax(top[i], cy + root_or_nan(r * r - (x[i, None] - cx) ** 2 - along[None, :] ** 2))
+    bare = numpy.isnan(top).all(axis=1)
+    if bare.any():
+        sys.exit(f"the bed is bare {x[bare][0]:g} mm from the plumb line: no angle")
     return abs(math.degrees(math.atan(numpy.polyfit(x, numpy.nanmean(top, axis=1), 1)[0])))
 
 

@@ -50,10 +50,10 @@ class Templates(unittest.TestCase):
             with open(path + ".in", "w", encoding="ascii") as stream:
                 stream.write("fix clump all particletemplate/multisphere 15485863 atom_type 1 spheres file "
                              f"\"grain.liggghts\" scale 1.0 type 1 mass {mass!r} inertia_tensor 32 0 0 64 0 96\n")
-            made = library.make_bed(folder, [("0000/grain.liggghts", 200), ("0000/grain.liggghts", 50)])
+            made = library.make_bed(folder, [("0000/grain.liggghts", 2)])
             lines = [line.split() for line in made["template"].splitlines()]
             rows = cells.read_rows(lines[0][lines[0].index("file") + 1].strip('"'))
-        self.assertEqual(made["kinds"], "2 clump0 0.8 clump1 0.2")
+        self.assertEqual(made["kinds"], "2 clump0 0.004 clump1 0.004")
         for got, expected in zip(rows[0], (0.001, 0, -0.002, 0.003)):
             self.assertAlmostEqual(got, expected, places=15)
         for number, words in enumerate(lines):
@@ -86,6 +86,10 @@ class Drum(unittest.TestCase):
         self.assertAlmostEqual(drum.measure(spheres), 30, delta=0.1)
         spheres[:, 2] = (spheres[:, 2] + 17) % drum.LENGTH
         self.assertAlmostEqual(drum.measure(spheres), 30, delta=0.1)
+
+    def test_a_bare_line_is_no_angle(self):
+        with self.assertRaisesRegex(SystemExit, "bare -25 mm"):
+            drum.measure(numpy.array([[x, 0.0, z, 3.0] for x in numpy.arange(0, 40, 0.25) for z in range(40)]))
 
     def test_correlation_time(self):
         """Half a look where neighbours alternate; of a series that forgets by a half a look, 3/2 looks."""
