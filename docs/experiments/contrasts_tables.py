@@ -142,8 +142,9 @@ def fit_line(points):
 
 
 def judge_predictor(rows, clumps, field, predictor):
-    """Root mean square errors of a line through the cells of the series, but for the sphere: on these, and on cells of
-    other methods and radii, which had no part in it. None predicts the mean of the series."""
+    """Root mean square errors of a line through the cells of the series, but for the sphere: on these, on cells of
+    other methods and radii, which had no part in it, and on the candy itself, NaN where that was not run. None predicts
+    the mean of the series."""
     points = {}
     for row in clumps:
         values = take(rows, field, row["cell"])
@@ -151,7 +152,9 @@ def judge_predictor(rows, clumps, field, predictor):
             points[row["cell"]] = (float(row[predictor]) if predictor else 0.0, statistics.mean(values))
     inside, outside = ([point for cell, point in points.items() if (cell in SERIES) == part] for part in (True, False))
     slope, at = fit_line(inside) if predictor else (0.0, statistics.mean(y for _, y in inside))
-    return [math.sqrt(statistics.mean((at + slope * x - y) ** 2 for x, y in part)) for part in (inside, outside)]
+    of_body = take(rows, field, "smooth")
+    body = [(BODY[predictor] if predictor else 0.0, statistics.mean(of_body) if of_body else math.nan)]
+    return [math.sqrt(statistics.mean((at + slope * x - y) ** 2 for x, y in part)) for part in (inside, outside, body)]
 
 
 def table_predictors(rows):
@@ -165,7 +168,8 @@ def table_predictors(rows):
     return tables.markdown(["predictor"] + [head for head, _, _ in MEASURED.values()], out)
 
 
-# columns of contrasts-clumps.csv
+# columns of contrasts-clumps.csv, and the candy's own
+BODY = {"dice": 0.0, "mean_width": 1.0, "normal_median": 0.0, "convexity": 1.0, "contacts": 1.0}
 PREDICTORS = {"": "none", "dice": "D", "mean_width": "mean width", "normal_median": "normals", "convexity": "convexity",
               "contacts": "contacts of a pair"}
 # what is asked, cell, what it is held against

@@ -154,6 +154,9 @@ class Intervals(unittest.TestCase):
             errors = tables.judge_predictor(rows, clumps, "start", predictor)
             self.assertAlmostEqual(errors[0], inside)
             self.assertAlmostEqual(errors[1], outside)
+            self.assertTrue(math.isnan(errors[2]))
+        rows += [{**rows[0], "cell": "smooth", "start": value} for value in (23, 25)]  # D nil: 20 of the line
+        self.assertAlmostEqual(tables.judge_predictor(rows, clumps, "start", "dice")[2], 4)
 
     def test_controls_stand_beside_their_cells_and_each_other(self):
         few, many = cells.CONTROLLED
