@@ -259,8 +259,8 @@ static int is_vacant(const ms_raster *raster, int j, int k, int from, int to)
     return any != 0;
 }
 
-/* One row of voxels: those between first[outer] are looked at, those within `inner` of the
- * centre are covered without looking. */
+/* One row of voxels: those within `outer` of the centre, along x, are looked at, those within `inner` are covered
+ * without looking. */
 static void cover_row(worker *w, size_t b, int j, int k, double outer, double inner)
 {
     ms_raster *raster = w->raster;

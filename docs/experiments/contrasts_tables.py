@@ -7,7 +7,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import tables  # noqa: E402
-from contrasts_cells import CELLS, SERIES  # noqa: E402
+from contrasts_cells import CELLS, CONTROLLED, CONTROLS, SERIES  # noqa: E402
 from intervals import interval, pool  # noqa: E402
 
 RUNS, CLUMPS = (os.path.join(HERE, name) for name in ("contrasts.csv", "contrasts-clumps.csv"))
@@ -28,8 +28,8 @@ def take(rows, field, cell, step=STEP, rate=RATE):
             if row["cell"] == cell and (float(row["step"]), float(row["rate"])) == (step, rate)]
 
 
-def pool_cells(rows, field):
-    return pool([values for values in (take(rows, field, cell) for cell in CELLS) if values])
+def pool_cells(rows, field, cells=CELLS):
+    return pool([values for values in (take(rows, field, cell) for cell in cells) if values])
 
 
 def margin(field, reference):
@@ -72,20 +72,31 @@ def table_runs(rows):
     return tables.markdown(["cell", "runs"] + [head for head, _, _ in MEASURED.values()] + ["CPU s"], out)
 
 
-def table_contrasts(rows):
+def table_contrasts(rows, contrasts, pooled=CELLS):
     out = []
-    for what, cell, other in CONTRASTS:
-        if take(rows, "fraction", cell) and take(rows, "fraction", other):
-            out.append([what, f"{cell} - {other}"] + [
-                show(*interval(take(rows, f, cell), take(rows, f, other), *pool_cells(rows, f)), MEASURED[f][1])
-                for f in MEASURED])
-    return tables.markdown(["contrast", "difference"] + [head for head, _, _ in MEASURED.values()], out)
+    for what, cell, other in contrasts:
+        these, those = (take(rows, "fraction", name) for name in (cell, other))
+        if these and those:
+            out.append([what, f"{cell} - {other}", f"{len(these)}, {len(those)}"] + [
+                show(*interval(take(rows, f, cell), take(rows, f, other), *pool_cells(rows, f, pooled)),
+                     MEASURED[f][1]) for f in MEASURED])
+    if not out:
+        return "None was run yet."
+    return tables.markdown(["contrast", "difference", "runs"] + [head for head, _, _ in MEASURED.values()], out)
 
 
-def judge_series(rows, field):
-    """The reference, which is the clump of most spheres that was run, and of each other one (cell, difference, half of
-    the interval, verdict): within the margin, enough if so at every larger n too, outside, or nothing."""
-    *series, reference = [cell for cell in SERIES if take(rows, field, cell)]
+def list_controls():
+    """Each control against its cell, then one cell against the other under the same law."""
+    few, many = CONTROLLED
+    laws = ["", *dict.fromkeys(name[len(few):] for name in CONTROLS if name.startswith(few))]
+    return ([(law.strip("-"), cell + law, cell) for law in laws[1:] for cell in CONTROLLED]
+            + [(law.strip("-") or "as above", many + law, few + law) for law in laws])
+
+
+def judge_series(rows, field, reference):
+    """Of each cell of the series but the reference (cell, difference, half of the interval, verdict): within the
+    margin, enough if so at every larger n too, outside, or nothing."""
+    series = [cell for cell in SERIES if take(rows, field, cell) and cell != reference]
     those, out, so_far = take(rows, field, reference), [], True
     for cell in reversed(series):
         difference, half = interval(take(rows, field, cell), those, *pool_cells(rows, field))
@@ -94,17 +105,18 @@ def judge_series(rows, field):
         so_far = so_far and within
         verdict = "enough" if so_far else "within" if within else ""
         out.append((cell, difference, half, "outside" if is_different(difference, half, allowed) else verdict))
-    return reference, out[::-1]
+    return out[::-1]
 
 
-def table_enough(rows):
-    judged = {field: judge_series(rows, field) for field in MEASURED}
+def table_enough(rows, reference):
+    if not take(rows, "fraction", reference):
+        return "None was run yet."
     out = []
-    for lines in zip(*(lines for _, lines in judged.values())):
+    for lines in zip(*(judge_series(rows, field, reference) for field in MEASURED)):
         out.append([lines[0][0]] + [
             ", ".join(filter(None, (show(difference, half, MEASURED[field][1]), verdict)))
             for field, (_, difference, half, verdict) in zip(MEASURED, lines)])
-    return tables.markdown([f"cell - {judged['fraction'][0]}"] + [head for head, _, _ in MEASURED.values()], out)
+    return tables.markdown([f"cell - {reference}"] + [head for head, _, _ in MEASURED.values()], out)
 
 
 def table_checks(rows):
@@ -130,8 +142,9 @@ def fit_line(points):
 
 
 def judge_predictor(rows, clumps, field, predictor):
-    """Root mean square errors of a line through the cells of the series, but for the sphere: on these, and on cells of
-    other methods and radii, which had no part in it. None predicts the mean of the series."""
+    """Root mean square errors of a line through the cells of the series, but for the sphere: on these, on cells of
+    other methods and radii, which had no part in it, and on the candy itself, NaN where that was not run. None predicts
+    the mean of the series."""
     points = {}
     for row in clumps:
         values = take(rows, field, row["cell"])
@@ -139,7 +152,9 @@ def judge_predictor(rows, clumps, field, predictor):
             points[row["cell"]] = (float(row[predictor]) if predictor else 0.0, statistics.mean(values))
     inside, outside = ([point for cell, point in points.items() if (cell in SERIES) == part] for part in (True, False))
     slope, at = fit_line(inside) if predictor else (0.0, statistics.mean(y for _, y in inside))
-    return [math.sqrt(statistics.mean((at + slope * x - y) ** 2 for x, y in part)) for part in (inside, outside)]
+    of_body = take(rows, field, "smooth")
+    body = [(BODY[predictor] if predictor else 0.0, statistics.mean(of_body) if of_body else math.nan)]
+    return [math.sqrt(statistics.mean((at + slope * x - y) ** 2 for x, y in part)) for part in (inside, outside, body)]
 
 
 def table_predictors(rows):
@@ -153,7 +168,8 @@ def table_predictors(rows):
     return tables.markdown(["predictor"] + [head for head, _, _ in MEASURED.values()], out)
 
 
-# columns of contrasts-clumps.csv
+# columns of contrasts-clumps.csv, and the candy's own
+BODY = {"dice": 0.0, "mean_width": 1.0, "normal_median": 0.0, "convexity": 1.0, "contacts": 1.0}
 PREDICTORS = {"": "none", "dice": "D", "mean_width": "mean width", "normal_median": "normals", "convexity": "convexity",
               "contacts": "contacts of a pair"}
 # what is asked, cell, what it is held against
@@ -161,11 +177,16 @@ CONTRASTS = [
     ("radii -3 %", "variational-10-small", "variational-10"), ("radii +3 %", "variational-10-large", "variational-10"),
     ("20 spheres, other D", "euclid-20", "variational-20"), ("10 spheres, other D", "setcover-10", "variational-10"),
     ("equal D, other n", "euclid-20", "variational-10"), ("rolling friction", "sphere-0.1", "sphere-0"),
+    ("a ball as a superquadric", "smooth-ball", "sphere-0"),
 ]
 
 
 def fill():
     rows = read_runs()
     tables.fill(os.path.join(HERE, "..", "behaviour.md"), {
-        "bed-clumps": table_clumps(rows), "bed-runs": table_runs(rows), "bed-contrasts": table_contrasts(rows),
-        "bed-enough": table_enough(rows), "bed-predictors": table_predictors(rows), "bed-checks": table_checks(rows)})
+        "bed-clumps": table_clumps(rows), "bed-runs": table_runs(rows),
+        "bed-contrasts": table_contrasts(rows, CONTRASTS),
+        "bed-controls": table_contrasts(rows, list_controls(), [*CONTROLLED, *CONTROLS]),
+        "bed-enough": table_enough(rows, [cell for cell in SERIES if take(rows, "fraction", cell)][-1]),
+        "bed-smooth": table_enough(rows, "smooth"), "bed-predictors": table_predictors(rows),
+        "bed-checks": table_checks(rows)})

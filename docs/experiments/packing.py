@@ -8,7 +8,8 @@ Adds a row a packing to packing.csv beside it; rows that are there are not run a
 into docs/behaviour.md, which --seeds 0 does alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine
 (liggghts). Numbers of the table are Yuan's (table 3); his time step is 5e-7 s. Takes numpy.
 
-What is measured, as fixed before the first run, of the particles at rest (kinetic energy below 1e-6 m g d each):
+What is measured, as fixed before the first run, of the particles at rest (kinetic energy below 1e-6 m g d in the
+mean):
     height_envelope  mean over vertical lines, 0.5 mm apart and 2 mm or more from the wall, of the highest point of a
                      sphere, in mm
     height_top       the highest point of any sphere, in mm
@@ -45,14 +46,16 @@ SEEDS = [32452843, 49979687, 67867967, 86028121, 413158511, 104395301, 122949823
          198491317, 217645177, 236887691, 256203161, 275604541, 295075147, 314606869, 334214459, 353868013, 373587883]
 
 # What the beds of contrasts.py share. Yuan's candies; kinetic energy a particle; and looks at it until all are at rest.
+YOUNG, RESTITUTION = 5e7, 0.5  # Pa
 MATERIAL = """hard_particles yes
-fix young all property/global youngsModulus peratomtype 5e7 5e7
+fix young all property/global youngsModulus peratomtype {young:g} {young:g}
 fix poisson all property/global poissonsRatio peratomtype 0.29 0.29
-fix restitution all property/global coefficientRestitution peratomtypepair 2 0.5 0.5 0.5 0.5
+fix restitution all property/global coefficientRestitution peratomtypepair 2 {e:g} {e:g} {e:g} {e:g}
 """
-ENERGY = """fix move all multisphere
-compute moved all ke/multisphere
-compute turned all erotate/multisphere
+CLUMPS = {"group": "all", "move": "multisphere", "ke": "ke/multisphere", "erotate": "erotate/multisphere"}
+ENERGY = """fix move {group} {move}
+compute moved all {ke}
+compute turned all {erotate}
 variable kinetic equal (c_moved+c_turned)/{count}
 """
 SETTLE = """variable k loop 100
@@ -109,12 +112,17 @@ def make_clump(folder, n):
     return line.replace(os.path.basename(clump), os.path.abspath(clump)), json.loads(said.stdout)
 
 
-def read_spheres(path):
-    """x, y, z, r of the last dump, in mm."""
+def read_dump(path):
+    """x, y, z, r of the last dump, or what else stands there, in the engine's units."""
     with open(path, encoding="utf-8") as stream:
         lines = stream.read().splitlines()
     start = max(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
-    return numpy.array([line.split()[2:6] for line in lines[start + 1:]], dtype=float) * 1000
+    return numpy.array([line.split()[2:] for line in lines[start + 1:]], dtype=float)
+
+
+def read_spheres(path):
+    """x, y, z, r of the last dump, in mm."""
+    return 1000 * read_dump(path)
 
 
 def measure(spheres, h=0.5):
@@ -138,22 +146,28 @@ def measure(spheres, h=0.5):
     return height, float((spheres[:, 2] + spheres[:, 3]).max()), float(filled[within][:, middle].mean())
 
 
-def run_to_rest(work, script):
-    """What LIGGGHTS prints, kinetic energy at rest over m g d, CPU seconds. Ends here where there is no rest."""
+def run_engine(work, script, engine=LIGGGHTS):
+    """What LIGGGHTS prints, and CPU seconds. Ends here where it fails."""
     os.makedirs(work, exist_ok=True)
     with open(os.path.join(work, "in.bed"), "w", encoding="utf-8") as stream:
         stream.write(script)
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     with open(os.path.join(work, "out"), "w", encoding="utf-8") as out:
-        done = subprocess.run([LIGGGHTS, "-in", "in.bed", "-log", "none"], cwd=work, stdout=out,
+        done = subprocess.run([engine, "-in", "in.bed", "-log", "none"], cwd=work, stdout=out,
                               stderr=subprocess.STDOUT, check=False)
-    cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+    if done.returncode:
+        sys.exit(f"{work}: {engine} failed; see {work}/out")
     with open(os.path.join(work, "out"), encoding="utf-8") as out:
-        text = out.read()
+        return out.read(), round(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
+
+
+def run_to_rest(work, script, engine=LIGGGHTS):
+    """What LIGGGHTS prints, kinetic energy at rest over m g d, CPU seconds. Ends here where there is no rest."""
+    text, cpu = run_engine(work, script, engine)
     rest = re.search(r"^at rest: (\S+) J", text, re.MULTILINE)
-    if done.returncode or not rest or float(rest[1]) >= REST:
+    if not rest or float(rest[1]) >= REST:
         sys.exit(f"{work}: no rest; see {work}/out")
-    return text, f"{float(rest[1]) / REST * 1e-6:.2g}", round(cpu)
+    return text, f"{float(rest[1]) / REST * 1e-6:.2g}", cpu
 
 
 def ask_version():
@@ -166,6 +180,7 @@ def pack(folder, n, seed, step):
     work = os.path.join(folder, f"{n}-{seed}-{step:g}")
     every = round(4 / 160 / step)
     script = SCRIPT.format(step=step, template=template, seed=seed, count=COUNT, every=every, rest=REST,
+                           young=YOUNG, e=RESTITUTION, **CLUMPS,
                            filling=round((COUNT / 160 + 0.3) / step), tenth=round(0.1 / step))
     text, kinetic, cpu = run_to_rest(work, script)
     spheres = read_spheres(os.path.join(work, "packing.dump"))

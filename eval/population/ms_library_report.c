@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "cli/ms_report.h"
+#include "ms_manifest.h"
 
 static void print_distances(FILE *stream, const ms_library *l)
 {
@@ -57,7 +58,7 @@ void ms_library_report_print(FILE *stream, const ms_library *l, const ms_library
         fprintf(stream,
                 "no scene.csv: it takes grains that are meshes, found from here by the paths in grains.csv, and has a "
                 "row for each in each class of size, %d at most\n",
-                MS_LIBRARY_MAX_ROWS);
+                MS_MANIFEST_MAX_SHAPES);
     }
     if (!written->scripts[0]) {
         fputs("no script of an engine: it takes a run with --density and the engine's --format\n", stream);

@@ -10,9 +10,11 @@
 #include "base/ms_file.h"
 #include "base/ms_text.h"
 #include "chart/ms_csv.h"
+#include "cli/ms_files.h"
 #include "clump/formats/ms_write.h"
 #include "ms_library_charts.h"
 #include "ms_library_mixture.h"
+#include "ms_manifest.h"
 
 static const ms_library_grain *chosen_grain(const ms_library *l, size_t j)
 {
@@ -115,7 +117,7 @@ static ms_status write_scene(int *written, const ms_library *l, const char *fold
     char file[4096];
     char **path = calloc(l->choice.k, sizeof *path);
     ms_status status = path ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu paths", l->choice.k);
-    *written = path && l->choice.k * (l->size ? l->goal.classes : 1) <= MS_LIBRARY_MAX_ROWS;
+    *written = path && l->choice.k * (l->size ? l->goal.classes : 1) <= MS_MANIFEST_MAX_SHAPES;
     for (size_t j = 0; j < l->choice.k && *written; j++) {
         const ms_grain_found *found = &chosen_grain(l, j)->found;
         path[j] = isnan(found->label) ? realpath(found->source, NULL) : NULL;
@@ -137,11 +139,30 @@ static ms_status write_scene(int *written, const ms_library *l, const char *fold
     return status;
 }
 
+/* What not every run writes: sizes, the manifest and the engines' scripts. */
+static ms_status remove_before(const char *folder, ms_error *err)
+{
+    ms_files files = {0};
+    char script[64];
+    ms_status status =
+        ms_files_add_charts(&files, folder, "", (const char *const[]){"sizes.csv", "scene.csv", NULL}, err);
+    for (const ms_format *format = ms_formats; format->name; format++) {
+        for (const ms_packing_part *part = format->mixture; part->suffix && status == MS_OK; part++) {
+            snprintf(script, sizeof script, "library.%s%s", format->ending, part->suffix);
+            status = ms_files_add_charts(&files, folder, script, (const char *const[]){"", NULL}, err);
+        }
+    }
+    return ms_files_remove(&files, status, err);
+}
+
 ms_status ms_library_write(ms_library_written *written, const ms_library *l, const char *from, const char *folder,
                            ms_error *err)
 {
     *written = (ms_library_written){.scene = 0};
-    ms_status status = write_table(l, folder, "library.csv", print_library, err);
+    ms_status status = remove_before(folder, err);
+    if (status == MS_OK) {
+        status = write_table(l, folder, "library.csv", print_library, err);
+    }
     if (status == MS_OK && l->size) {
         status = write_table(l, folder, "sizes.csv", print_sizes, err);
     }

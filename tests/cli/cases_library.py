@@ -109,10 +109,12 @@ class Library(Case):
         for grain in range(GRAINS, 32):
             self.write(f"stones/s{grain:02}.obj", box_obj((0, 0, 0), (1, 1, 1 + grain / 10)))
         self.mskit("grains", "stones", "-g", "mss", "-n", "1", "--cells", "4", "-o", "more")
+        self.mskit("grains", "--choose", "2", "more", "--classes", "2", "-o", "few")
+        self.assertIn("scene.csv", os.listdir(self.path("few")))
         said = self.mskit("grains", "--choose", "32", "more", "--classes", "32", "-o", "few")
         self.assertIn("no scene.csv", said.out)
         self.assertIn("1000 at most", said.out)
-        self.assertNotIn("scene.csv", os.listdir(self.path("few")))
+        self.assertNotIn("scene.csv", os.listdir(self.path("few")), "nor that of a run before")
 
     def test_grains_without_clump_are_not_chosen(self):
         self.write("stones/broken.obj", b"v 0 0 0\nf 1 2 3\n")

@@ -92,7 +92,7 @@ class Progress(Case):
             self.assertEqual([line for line in lines if "%" in line or "left" in line], [])
 
         self.assert_of_long_work(lambda limit: ("generate", grain, "--until", f"dice={limit}", "--cells", "60", "-j",
-                                                "1", "-o", "c.csv"), check, 0.02, 0.01)
+                                                "1", "-o", "c.csv"), check, 0.02, 0.01, whole=True)
 
     def test_setcover_before_its_first_sphere(self):
         grain = self.shape("grain")

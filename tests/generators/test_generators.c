@@ -191,6 +191,7 @@ static void threads_do_not_matter(void **state)
     const int before = omp_get_max_threads();
     ms_target fine;
     make_target(&fine, &f->grain, 40, MS_VOXEL_HALF);
+    assert_true(ms_grid_voxels(&fine.grid) >= MS_GRID_THREADS_FROM);
     for (const ms_generator *const *g = checked; *g; g++) {
         omp_set_num_threads(1);
         outcome alone = run_spheres(*g, &fine, 23);
