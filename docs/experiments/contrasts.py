@@ -141,7 +141,7 @@ def make_script(clump, seed, step, rate):
     return SCRIPT.format(template=clump["template"], spheres=COUNT * clump["members"], rolling=rolling,
                          model="rolling_friction epsd2" if rolling else "", seed=seed, step=step, count=COUNT,
                          rest=REST, each=each, falling=60 * each, tenth=10 * each, slow=rate * PASS,
-                         fast=4 * rate * PASS, flows=FLOWS, stands=STANDS)
+                         fast=4 * rate * PASS, flows=FLOWS, stands=STANDS, young=clump["young"], e=clump["e"])
 
 
 def run(folder, name, seed, step, rate):
@@ -185,8 +185,8 @@ def main():
     begun, rows = time.time(), contrasts_tables.read_runs(TABLE)
     there = {(row["cell"], int(row["seed"]), float(row["step"]), float(row["rate"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
-        for name in asked.cells.split(",") if asked.cells else cells.CELLS:
-            if cells.CELLS[name].n > asked.largest or (name, seed, asked.step, asked.rate) in there:
+        for name in asked.cells.split(",") if asked.cells else [*cells.CELLS, *cells.CONTROLS]:
+            if cells.find_cell(name).n > asked.largest or (name, seed, asked.step, asked.rate) in there:
                 continue
             if time.time() - begun > 60 * asked.most:
                 break

@@ -4,11 +4,12 @@ import os
 import subprocess
 from collections import namedtuple
 
-from packing import A, C, DENSITY, MASS, MSKIT
+from packing import A, C, DENSITY, MASS, MSKIT, RESTITUTION, YOUNG
 import tables  # of docs, where packing looks
 
-# radii: factor on all of them, with places, mass and inertia as they were; rolling: coefficient of rolling friction
-Cell = namedtuple("Cell", "method n radii rolling", defaults=(1.0, 0.0))
+# radii: factor on all of them, with places, mass and inertia as they were; rolling: coefficient of rolling friction;
+# e: restitution asked for; undone: modulus and restitution by which mskit contact undoes contacts side by side
+Cell = namedtuple("Cell", "method n radii rolling e undone", defaults=(1.0, 0.0, RESTITUTION, False))
 CELLS = {
     "sphere-0": Cell("sphere", 1),
     **{f"variational-{n}": Cell("variational", n) for n in (2, 3, 5, 10, 20)},
@@ -19,11 +20,19 @@ CELLS = {
     "sphere-0.1": Cell("sphere", 1, 1.0, 0.1),
     "variational-60": Cell("variational", 60),
 }
+# Two of the cells again, since stiffness and damping change with the number of spheres.
+CONTROLLED = ["variational-3", "variational-10"]
+CONTROLS = {f"{name}-{what}": CELLS[name]._replace(**changed) for name in CONTROLLED for what, changed in
+            (("e0.2", {"e": 0.2}), ("e0.8", {"e": 0.8}), ("undone", {"undone": True}))}
 SERIES = ["sphere-0"] + [f"variational-{n}" for n in (2, 3, 5, 10, 20, 60)]
 HIDDEN = 1e-2  # radius of a sphere within a single one, which LIGGGHTS wants beside it, over that of the latter
 
 COLUMNS = ["cell", "method", "n", "radii", "rolling", "dice", "volume", "mean_width", "normal_median", "convexity",
            "contacts"]
+
+
+def find_cell(name):
+    return CELLS.get(name) or CONTROLS[name]
 
 
 def run_mskit(*words):
@@ -70,33 +79,59 @@ def write_clump(folder, path, cell):
     write_rows(path, [[x, y, z, cell.radii * r] for x, y, z, r in read_rows(path)])
 
 
+def write_spheres(folder, name):
+    """The clump as CSV in mm: templates lie along principal axes, which are the candy's own but for a turn about its
+    axis."""
+    path = os.path.join(folder, name + ".csv")
+    spheres = [[1000 * x for x in row] for row in read_rows(os.path.join(folder, name + ".liggghts"))]
+    write_rows(path, spheres[:find_cell(name).n], "x,y,z,r\n", ",")
+    return path
+
+
+def ask_contact(folder, name, *words):
+    return json.loads(run_mskit("contact", write_spheres(folder, name), "--target", find_shape(folder), "--overlap",
+                                0.002, "--json", *words))
+
+
+def at_random(rows):
+    """Of what mskit contact lists, that of a pair that meets at random."""
+    (pair,) = [row for row in rows if (row["against"], row["where"]) == ("particle", "random")]
+    return pair
+
+
+def find_law(folder, name):
+    """Young's modulus in Pa and restitution of the engine's material."""
+    cell = find_cell(name)
+    if not cell.undone:
+        return {"young": YOUNG, "e": cell.e}
+    factors = at_random(ask_contact(folder, name, "--restitution", cell.e, "--factors")["factors"])
+    return {"young": YOUNG * factors["modulus"], "e": factors["restitution"]}
+
+
 def make(folder, name):
-    """The template's line for LIGGGHTS, its number of spheres, rolling friction. What is in the folder is taken."""
-    cell, path = CELLS[name], os.path.join(folder, name + ".liggghts")
+    """The template's line for LIGGGHTS, its number of spheres, rolling friction, modulus in Pa, restitution. What is in
+    the folder is taken."""
+    cell, path = find_cell(name), os.path.join(folder, name + ".liggghts")
     if not os.path.exists(path + ".in"):
         write_clump(folder, path, cell)
     with open(path + ".in", encoding="utf-8") as stream:
         line = next(line for line in stream if line.startswith("fix clump "))
     return {"template": line.replace(os.path.basename(path), os.path.abspath(path)).strip(), "rolling": cell.rolling,
-            "members": len(read_rows(path))}
+            "members": len(read_rows(path)), **find_law(folder, name)}
 
 
 def describe(folder, name):
     """A row of contrasts-clumps.csv: what may predict how the clump acts."""
     cell, shape = CELLS[name], find_shape(folder)
     make(folder, name)
-    spheres = [[1000 * x for x in row] for row in read_rows(os.path.join(folder, name + ".liggghts"))]
-    path = os.path.join(folder, name + ".csv")
-    write_rows(path, spheres[:cell.n], "x,y,z,r\n", ",")
-    # Templates lie along principal axes, which are the candy's own but for a turn about its axis.
-    scores = json.loads(run_mskit("score", path, "--target", shape, "--deq", 100, "--json"))["scores"]
-    contact = json.loads(run_mskit("contact", path, "--target", shape, "--overlap", 0.002, "--json"))
-    (pair,) = [c for c in contact["contacts"] if c["against"] == "particle" and c["where"] == "random"]
+    scores = json.loads(run_mskit("score", write_spheres(folder, name), "--target", shape, "--deq", 100,
+                                  "--json"))["scores"]
+    contact = ask_contact(folder, name)
     return {"cell": name, "method": cell.method, "n": cell.n, "radii": cell.radii, "rolling": cell.rolling,
             "dice": scores["dice"], "volume": scores["off_volume"],
             "mean_width": contact["clump"]["mean_width"] / contact["shape"]["mean_width"],
             "normal_median": scores["normal_median"], "convexity": scores["clump_convexity"],
-            "contacts": pair["contacts"]}
+            "contacts": at_random(contact["contacts"])["contacts"]}
 
 
 def describe_all(folder, path):

@@ -7,7 +7,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import tables  # noqa: E402
-from contrasts_cells import CELLS, SERIES  # noqa: E402
+from contrasts_cells import CELLS, CONTROLLED, CONTROLS, SERIES  # noqa: E402
 from intervals import interval, pool  # noqa: E402
 
 RUNS, CLUMPS = (os.path.join(HERE, name) for name in ("contrasts.csv", "contrasts-clumps.csv"))
@@ -28,8 +28,8 @@ def take(rows, field, cell, step=STEP, rate=RATE):
             if row["cell"] == cell and (float(row["step"]), float(row["rate"])) == (step, rate)]
 
 
-def pool_cells(rows, field):
-    return pool([values for values in (take(rows, field, cell) for cell in CELLS) if values])
+def pool_cells(rows, field, cells=CELLS):
+    return pool([values for values in (take(rows, field, cell) for cell in cells) if values])
 
 
 def margin(field, reference):
@@ -72,14 +72,25 @@ def table_runs(rows):
     return tables.markdown(["cell", "runs"] + [head for head, _, _ in MEASURED.values()] + ["CPU s"], out)
 
 
-def table_contrasts(rows):
+def table_contrasts(rows, contrasts, pooled=CELLS):
     out = []
-    for what, cell, other in CONTRASTS:
-        if take(rows, "fraction", cell) and take(rows, "fraction", other):
-            out.append([what, f"{cell} - {other}"] + [
-                show(*interval(take(rows, f, cell), take(rows, f, other), *pool_cells(rows, f)), MEASURED[f][1])
-                for f in MEASURED])
-    return tables.markdown(["contrast", "difference"] + [head for head, _, _ in MEASURED.values()], out)
+    for what, cell, other in contrasts:
+        these, those = (take(rows, "fraction", name) for name in (cell, other))
+        if these and those:
+            out.append([what, f"{cell} - {other}", f"{len(these)}, {len(those)}"] + [
+                show(*interval(take(rows, f, cell), take(rows, f, other), *pool_cells(rows, f, pooled)),
+                     MEASURED[f][1]) for f in MEASURED])
+    if not out:
+        return "None was run yet."
+    return tables.markdown(["contrast", "difference", "runs"] + [head for head, _, _ in MEASURED.values()], out)
+
+
+def list_controls():
+    """Each control against its cell, then one cell against the other under the same law."""
+    few, many = CONTROLLED
+    laws = ["", *dict.fromkeys(name[len(few):] for name in CONTROLS if name.startswith(few))]
+    return ([(law.strip("-"), cell + law, cell) for law in laws[1:] for cell in CONTROLLED]
+            + [(law.strip("-") or "as above", many + law, few + law) for law in laws])
 
 
 def judge_series(rows, field):
@@ -167,5 +178,6 @@ CONTRASTS = [
 def fill():
     rows = read_runs()
     tables.fill(os.path.join(HERE, "..", "behaviour.md"), {
-        "bed-clumps": table_clumps(rows), "bed-runs": table_runs(rows), "bed-contrasts": table_contrasts(rows),
+        "bed-clumps": table_clumps(rows), "bed-runs": table_runs(rows), "bed-contrasts": table_contrasts(rows, CONTRASTS),
+        "bed-controls": table_contrasts(rows, list_controls(), [*CONTROLLED, *CONTROLS]),
         "bed-enough": table_enough(rows), "bed-predictors": table_predictors(rows), "bed-checks": table_checks(rows)})

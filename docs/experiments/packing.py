@@ -45,10 +45,11 @@ SEEDS = [32452843, 49979687, 67867967, 86028121, 413158511, 104395301, 122949823
          198491317, 217645177, 236887691, 256203161, 275604541, 295075147, 314606869, 334214459, 353868013, 373587883]
 
 # What the beds of contrasts.py share. Yuan's candies; kinetic energy a particle; and looks at it until all are at rest.
+YOUNG, RESTITUTION = 5e7, 0.5  # Pa
 MATERIAL = """hard_particles yes
-fix young all property/global youngsModulus peratomtype 5e7 5e7
+fix young all property/global youngsModulus peratomtype {young:g} {young:g}
 fix poisson all property/global poissonsRatio peratomtype 0.29 0.29
-fix restitution all property/global coefficientRestitution peratomtypepair 2 0.5 0.5 0.5 0.5
+fix restitution all property/global coefficientRestitution peratomtypepair 2 {e:g} {e:g} {e:g} {e:g}
 """
 ENERGY = """fix move all multisphere
 compute moved all ke/multisphere
@@ -166,6 +167,7 @@ def pack(folder, n, seed, step):
     work = os.path.join(folder, f"{n}-{seed}-{step:g}")
     every = round(4 / 160 / step)
     script = SCRIPT.format(step=step, template=template, seed=seed, count=COUNT, every=every, rest=REST,
+                           young=YOUNG, e=RESTITUTION,
                            filling=round((COUNT / 160 + 0.3) / step), tenth=round(0.1 / step))
     text, kinetic, cpu = run_to_rest(work, script)
     spheres = read_spheres(os.path.join(work, "packing.dump"))
