@@ -73,7 +73,7 @@ fix hold base freeze
 fix floor all wall/gran model hertz tangential history {model} primitive type 2 zplane 0
 fix gravity all gravity 9.81 vector 0 0 -1
 {template}
-fix kinds all particledistribution/discrete 15485867 1 clump 1.0
+fix kinds all particledistribution/discrete 15485867 {kinds}
 region above block 0 0.06 0 0.06 0.012 0.5 volume_limit 1e-300 units box
 fix insert all insert/pack seed {seed} distributiontemplate kinds insert_every once overlapcheck yes &
     orientation random all_in no particles_in_region {count} region above
@@ -137,17 +137,16 @@ def find_angles(rise, fall):
 
 
 def make_script(clump, seed, step, rate):
+    """clump: as of contrasts_cells.make; template and kinds may name several."""
     each, rolling = round(PASS / step), clump["rolling"]
-    return SCRIPT.format(template=clump["template"], spheres=COUNT * clump["members"], rolling=rolling,
-                         model="rolling_friction epsd2" if rolling else "", seed=seed, step=step, count=COUNT,
-                         rest=REST, each=each, falling=60 * each, tenth=10 * each, slow=rate * PASS,
+    return SCRIPT.format(template=clump["template"], kinds=clump["kinds"], spheres=COUNT * clump["members"],
+                         rolling=rolling, model="rolling_friction epsd2" if rolling else "", seed=seed, step=step,
+                         count=COUNT, rest=REST, each=each, falling=60 * each, tenth=10 * each, slow=rate * PASS,
                          fast=4 * rate * PASS, flows=FLOWS, stands=STANDS, young=clump["young"], e=clump["e"])
 
 
-def run(folder, name, seed, step, rate):
-    """One row."""
-    clump = cells.make(folder, name)
-    work = os.path.join(folder, f"{name}-{seed}-{step:g}-{rate:g}")
+def run_bed(work, clump, seed, step, rate):
+    """What is measured of one bed, and the spheres of the settled one, in mm, particle by particle."""
     text, kinetic, cpu = run_to_rest(work, make_script(clump, seed, step, rate))
     beds = {when: read_spheres(os.path.join(work, when + ".dump")) for when in ("settled", "flowed")}
     for when, spheres in beds.items():
@@ -160,10 +159,17 @@ def run(folder, name, seed, step, rate):
         sys.exit(f"{work}: the bed did not flow, or not stand again; see {work}/out")
     height, fraction = measure(beds["settled"])
     steps = int(re.findall(r"^\s*(\d+)\s+\d+\s+\S+\s+\S+\s*$", text, re.MULTILINE)[-1])
-    return {"cell": name, "seed": seed, "step": step, "rate": rate, "particles": COUNT, "height": round(height, 3),
+    return {"seed": seed, "step": step, "rate": rate, "particles": COUNT, "height": round(height, 3),
             "fraction": round(fraction, 5), "start": round(start, 2), "stop": round(stop, 2),
             "flowed": round(measure(beds["flowed"])[1], 5), "kinetic_over_m_g_d": kinetic,
-            "seconds": round(steps * step, 2), "cpu_seconds": cpu, "version": ask_version()}
+            "seconds": round(steps * step, 2), "cpu_seconds": cpu, "version": ask_version()}, beds["settled"]
+
+
+def run(folder, name, seed, step, rate):
+    """One row."""
+    work = os.path.join(folder, f"{name}-{seed}-{step:g}-{rate:g}")
+    measured, _ = run_bed(work, cells.make(folder, name), seed, step, rate)
+    return {"cell": name, **measured}
 
 
 def describe_clumps(folder):

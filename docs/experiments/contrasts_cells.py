@@ -109,15 +109,15 @@ def find_law(folder, name):
 
 
 def make(folder, name):
-    """The template's line for LIGGGHTS, its number of spheres, rolling friction, modulus in Pa, restitution. What is in
-    the folder is taken."""
+    """The template's line for LIGGGHTS and what its distribution names, its number of spheres, rolling friction, modulus
+    in Pa, restitution. What is in the folder is taken."""
     cell, path = find_cell(name), os.path.join(folder, name + ".liggghts")
     if not os.path.exists(path + ".in"):
         write_clump(folder, path, cell)
     with open(path + ".in", encoding="utf-8") as stream:
         line = next(line for line in stream if line.startswith("fix clump "))
-    return {"template": line.replace(os.path.basename(path), os.path.abspath(path)).strip(), "rolling": cell.rolling,
-            "members": len(read_rows(path)), **find_law(folder, name)}
+    return {"template": line.replace(os.path.basename(path), os.path.abspath(path)).strip(), "kinds": "1 clump 1.0",
+            "rolling": cell.rolling, "members": len(read_rows(path)), **find_law(folder, name)}
 
 
 def describe(folder, name):

@@ -1,0 +1,171 @@
+#!/usr/bin/env python3
+"""How few grains stand for a powder in bulk: beds of 250 grains in LIGGGHTS, by clumps of 20 spheres of each of its
+grains, and by the K grains that mskit grains --choose takes.
+
+    docs/experiments/library.py GRAINS [--seeds N] [--kinds K,...] [--work FOLDER] [--most MINUTES]
+
+GRAINS is a folder of meshes; the one of docs/population.md is meant. Each row goes to library.csv beside this file; rows
+that are there are not run again. Then the table of all of them goes into docs/behaviour.md, which --seeds 0 does alone.
+MSKIT names the program (build/eval/mskit), LIGGGHTS the engine (liggghts). Takes numpy.
+
+Bed, material and what is measured are those of contrasts.py. Shape alone differs: all clumps are scaled to the volume of
+its candy, as are their moments. kinds is K, or 0 for the powder itself: 250 of its grains, drawn without replacement by
+the seed of the run. Of K grains there are as many as their weights say, to the nearest of 250 (largest remainders).
+    contacts  particles and feet of the floor that a particle touches in the settled bed, on average
+"""
+import argparse
+import math
+import os
+import subprocess
+import time
+
+import numpy
+
+import contrasts_tables
+from contrasts import COUNT, run_bed
+from contrasts_cells import read_rows, run_mskit, write_rows
+from intervals import interval, pool
+from packing import DENSITY, MASS, RESTITUTION, SEEDS, YOUNG
+import tables  # of docs, where packing looks
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+TABLE = os.path.join(HERE, "library.csv")
+COLUMNS = ["kinds", "seed", "step", "rate", "particles", "height", "fraction", "contacts", "start", "stop", "flowed",
+           "kinetic_over_m_g_d", "seconds", "cpu_seconds", "version"]
+KINDS, SPHERES = [0, 1, 5, 20], 20
+FLOOR = numpy.array([[7.5 * i, 7.5 * j, 0.0, 3.75] for i in range(8) for j in range(8)])  # mm, as in contrasts.py
+SIDE = 60.0  # mm
+# what is measured: heading, digits
+MEASURED = {"fraction": ("fraction", 4), "contacts": ("contacts", 2), "start": ("start, degrees", 2),
+            "stop": ("stop, degrees", 2), "flowed": ("fraction after flow", 4)}
+
+
+def make_clumps(grains, folder):
+    """Names of the clumps of all grains, of 20 spheres each."""
+    clumps = os.path.join(folder, "clumps")
+    run_mskit("grains", grains, "-n", SPHERES, "--cells", 50, "--equal-volume", "--density", DENSITY, "--unit", "mm",
+              "--format", "liggghts", "-o", clumps, *(["--resume"] if os.path.exists(clumps) else []))
+    return [row["file"] for row in tables.read(os.path.join(clumps, "grains.csv")) if row["status"] == "ok"]
+
+
+def choose(folder, kinds):
+    """(name, weight) of so many grains."""
+    library = os.path.join(folder, f"library-{kinds}")
+    if not os.path.exists(os.path.join(library, "library.csv")):
+        run_mskit("grains", "--choose", kinds, os.path.join(folder, "clumps"), "-o", library)
+    return [(row["file"], float(row["number"])) for row in tables.read(os.path.join(library, "library.csv"))]
+
+
+def share_out(weighted):
+    """(name, count) with counts of together COUNT, by largest remainders."""
+    total = sum(weight for _, weight in weighted)
+    exact = [COUNT * weight / total for _, weight in weighted]
+    counts = [math.floor(x) for x in exact]
+    for k in sorted(range(len(exact)), key=lambda k: counts[k] - exact[k])[:COUNT - sum(counts)]:
+        counts[k] += 1
+    return [(name, count) for (name, _), count in zip(weighted, counts) if count]
+
+
+def draw(names, folder, kinds, seed):
+    """(name, count) of a bed's particles."""
+    if kinds:
+        return share_out(choose(folder, kinds))
+    return [(name, 1) for name in sorted(numpy.random.default_rng(seed).choice(names, COUNT, replace=False))]
+
+
+def list_primes(count):
+    """So many of them above 10^6, as LIGGGHTS wants for templates: each its own."""
+    sieve = numpy.ones(2_000_000, dtype=bool)
+    for k in range(2, 1415):
+        if sieve[k]:
+            sieve[k * k::k] = False
+    return (10 ** 6 + numpy.flatnonzero(sieve[10 ** 6:]))[:count].tolist()
+
+
+def scale_template(folder, name, number, prime):
+    """The line of a template for LIGGGHTS, of the candy's mass and volume; its spheres go into a file of the folder."""
+    source = os.path.join(folder, "clumps", name)
+    with open(source + ".in", encoding="utf-8") as stream:
+        words = next(line for line in stream if line.startswith("fix clump ")).split()
+    mass, tensor = words.index("mass") + 1, words.index("inertia_tensor") + 1
+    factor = (MASS / float(words[mass])) ** (1 / 3)
+    path = os.path.abspath(os.path.join(folder, f"{os.path.basename(name)}.scaled"))
+    write_rows(path, [[factor * x for x in row] for row in read_rows(source)])
+    words[tensor:tensor + 6] = [repr(float(x) * factor ** 5) for x in words[tensor:tensor + 6]]
+    words[mass], words[1], words[words.index("file") + 1] = repr(MASS), f"clump{number}", f'"{path}"'
+    words[words.index("particletemplate/multisphere") + 1], words[words.index("type") + 1] = str(prime), str(number + 1)
+    return " ".join(words)
+
+
+def make_bed(folder, drawn):
+    """What contrasts.run_bed wants."""
+    lines = [scale_template(folder, name, number, prime)
+             for (number, (name, _)), prime in zip(enumerate(drawn), list_primes(len(drawn)))]
+    shares = " ".join(f"clump{number} {count / COUNT!r}" for number, (_, count) in enumerate(drawn))
+    return {"template": "\n".join(lines), "kinds": f"{len(drawn)} {shares}", "members": SPHERES, "rolling": 0.0,
+            "young": YOUNG, "e": RESTITUTION}
+
+
+def count_contacts(spheres):
+    """Of a particle, on average; spheres in mm, particle by particle."""
+    of = numpy.arange(len(spheres)) // SPHERES
+    touching = set()
+    for k, (x, y, z, r) in enumerate(spheres):
+        for others, base in ((spheres, 0), (FLOOR, COUNT)):
+            gap = others[:, :3] - (x, y, z)
+            gap[:, :2] -= SIDE * numpy.round(gap[:, :2] / SIDE)
+            near = numpy.flatnonzero((gap ** 2).sum(axis=1) < (others[:, 3] + r) ** 2)
+            touching |= {(of[k], base + (of[j] if base == 0 else j)) for j in near}
+    return sum(a != b for a, b in touching) / COUNT
+
+
+def run(folder, names, kinds, seed):
+    """One row."""
+    work = os.path.join(folder, f"{kinds}-{seed}")
+    clump = make_bed(folder, draw(names, folder, kinds, seed))
+    measured, settled = run_bed(work, clump, seed, contrasts_tables.STEP, contrasts_tables.RATE)
+    return {"kinds": kinds, **measured, "contacts": round(count_contacts(settled), 3)}
+
+
+def make_table(rows):
+    """Means, spread within rows of the same kinds, and differences from the powder with half of their 90 % interval."""
+    groups = {k: [row for row in rows if int(row["kinds"]) == k] for k in KINDS}
+    groups = {k: these for k, these in groups.items() if these}
+    values = {f: {k: [float(row[f]) for row in these] for k, these in groups.items()} for f in MEASURED}
+    out = [[str(k) if k else "all", str(len(these))]
+           + [f"{numpy.mean(values[f][k]):.{digits}f}" for f, (_, digits) in MEASURED.items()]
+           for k, these in groups.items()]
+    pooled = {f: pool(list(values[f].values())) for f in MEASURED}
+    out.append(["spread within", str(pooled["fraction"][1])]
+               + [f"{pooled[f][0]:.{digits}f}" for f, (_, digits) in MEASURED.items()])
+    for k in groups:
+        if k and 0 in groups:
+            out.append([f"{k} - all", ""] + [contrasts_tables.show(*interval(values[f][k], values[f][0], *pooled[f]),
+                                                                   digits) for f, (_, digits) in MEASURED.items()])
+    return tables.markdown(["kinds", "runs"] + [head for head, _ in MEASURED.values()], out)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("grains", help="folder of meshes")
+    parser.add_argument("--seeds", type=int, default=3, help="runs of each (3)")
+    parser.add_argument("--kinds", default=",".join(map(str, KINDS)), help="0: all (0,1,5,20)")
+    parser.add_argument("--work", default="library", help="folder of the engine's files (library)")
+    parser.add_argument("--most", type=float, default=1e9, help="no run is begun after so many minutes")
+    asked = parser.parse_args()
+    os.makedirs(asked.work, exist_ok=True)
+    names = make_clumps(asked.grains, asked.work) if asked.seeds else []
+    begun, rows = time.time(), tables.read(TABLE) if os.path.exists(TABLE) else []
+    there = {(int(row["kinds"]), int(row["seed"])) for row in rows}
+    for seed in SEEDS[:asked.seeds]:
+        for kinds in map(int, asked.kinds.split(",")):
+            if (kinds, seed) in there or time.time() - begun > 60 * asked.most:
+                continue
+            row = run(asked.work, names, kinds, seed)
+            tables.add_row(TABLE, COLUMNS, row)
+            print(", ".join(f"{key} {row[key]}" for key in COLUMNS if key not in ("particles", "version")), flush=True)
+    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"library": make_table(tables.read(TABLE))})
+
+
+if __name__ == "__main__":
+    main()
