@@ -19,6 +19,7 @@ CELLS = {
     "setcover-10": Cell("setcover", 10),
     "sphere-0.1": Cell("sphere", 1, 1.0, 0.1),
     "variational-60": Cell("variational", 60),
+    "smooth": Cell("smooth", 0),  # the candy itself, a superquadric
 }
 # Two of the cells again, since stiffness and damping change with the number of spheres.
 CONTROLLED = ["variational-3", "variational-10"]
@@ -108,16 +109,25 @@ def find_law(folder, name):
     return {"young": YOUNG * factors["modulus"], "e": factors["restitution"]}
 
 
+def make_smooth():
+    axes = " ".join(repr(1e-3 * x) for x in (A, A, C))
+    return {"template": f"fix clump all particletemplate/superquadric 15485863 atom_type 1 volume_limit 1e-300 density "
+                        f"constant {DENSITY} shape constant {axes} blockiness constant 2 2",
+            "kinds": "1 clump 1.0", "rolling": 0.0, "members": 1, "young": YOUNG, "e": RESTITUTION, "smooth": True}
+
+
 def make(folder, name):
-    """The template's line for LIGGGHTS and what its distribution names, its number of spheres, rolling friction, modulus
-    in Pa, restitution. What is in the folder is taken."""
+    """The template's line for LIGGGHTS and what its distribution names, its number of spheres, rolling friction,
+    modulus in Pa, restitution. What is in the folder is taken."""
     cell, path = find_cell(name), os.path.join(folder, name + ".liggghts")
+    if cell.method == "smooth":
+        return make_smooth()
     if not os.path.exists(path + ".in"):
         write_clump(folder, path, cell)
     with open(path + ".in", encoding="utf-8") as stream:
         line = next(line for line in stream if line.startswith("fix clump "))
     return {"template": line.replace(os.path.basename(path), os.path.abspath(path)).strip(), "kinds": "1 clump 1.0",
-            "rolling": cell.rolling, "members": len(read_rows(path)), **find_law(folder, name)}
+            "rolling": cell.rolling, "members": len(read_rows(path)), "smooth": False, **find_law(folder, name)}
 
 
 def describe(folder, name):
@@ -137,8 +147,8 @@ def describe(folder, name):
 def describe_all(folder, path):
     """Adds those that are not in the table yet."""
     there = {row["cell"] for row in tables.read(path)} if os.path.exists(path) else set()
-    for name in CELLS:
-        if name not in there:
+    for name, cell in CELLS.items():
+        if name not in there and cell.method != "smooth":
             tables.add_row(path, COLUMNS, describe(folder, name))
 
 

@@ -9,7 +9,7 @@ from contrasts_tables import HERE, pool_cells, take
 from intervals import quantile
 
 CHART = os.path.join(HERE, "beds.svg")
-COLOURS = ["#666666", "#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c510a"]
+COLOURS = ["#666666", "#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c510a", "#56b4e9"]
 TITLES = {"fraction": "packing fraction", "start": "start angle, degrees"}
 
 
@@ -22,6 +22,11 @@ def find_group(name):
     return f"{cell.method}, radii times {cell.radii:g}" if cell.radii != 1 else cell.method
 
 
+def place(cell):
+    """Along the axis: the smooth body stands behind the largest number."""
+    return cell.n or 2 * max(cell.n for cell in CELLS.values())
+
+
 def collect(rows, field):
     """Of each group of cells the points: number of spheres, mean, half of its 90 % interval by the pooled deviation."""
     deviation, freedom = pool_cells(rows, field)
@@ -30,15 +35,17 @@ def collect(rows, field):
         values = take(rows, field, name)
         if values:
             half = quantile(freedom) * deviation / len(values) ** 0.5 if freedom else 0.0
-            groups.setdefault(find_group(name), []).append((cell.n, statistics.mean(values), half))
+            groups.setdefault(find_group(name), []).append((place(cell), statistics.mean(values), half))
     return groups
 
 
 def write_commands(rows):
-    numbers = sorted({cell.n for name, cell in CELLS.items() if take(rows, "fraction", name)})
+    places = sorted({(place(cell), str(cell.n or "smooth")) for name, cell in CELLS.items()
+                     if take(rows, "fraction", name)})
+    ticks = ", ".join(f"'{label}' {x}" for x, label in places)
     lines = ["set terminal svg size 900,520 background rgb 'white'", f"set output '{CHART}'",
              "set multiplot layout 1,2", "set key outside below maxcols 2 title ' '", "set logscale x",
-             f"set xrange [0.8:{1.5 * numbers[-1]:g}]", f"set xtics ({', '.join(map(str, numbers))})",
+             f"set xrange [0.8:{1.5 * places[-1][0]:g}]", f"set xtics ({ticks})",
              "set xlabel 'spheres'",
              "set offsets 0, 0, graph 0.05, graph 0.05"]
     for field, title in TITLES.items():

@@ -93,10 +93,10 @@ def list_controls():
             + [(law.strip("-") or "as above", many + law, few + law) for law in laws])
 
 
-def judge_series(rows, field):
-    """The reference, which is the clump of most spheres that was run, and of each other one (cell, difference, half of
-    the interval, verdict): within the margin, enough if so at every larger n too, outside, or nothing."""
-    *series, reference = [cell for cell in SERIES if take(rows, field, cell)]
+def judge_series(rows, field, reference):
+    """Of each clump of the series but the reference (cell, difference, half of the interval, verdict): within the
+    margin, enough if so at every larger n too, outside, or nothing."""
+    series = [cell for cell in SERIES if take(rows, field, cell) and cell != reference]
     those, out, so_far = take(rows, field, reference), [], True
     for cell in reversed(series):
         difference, half = interval(take(rows, field, cell), those, *pool_cells(rows, field))
@@ -105,17 +105,18 @@ def judge_series(rows, field):
         so_far = so_far and within
         verdict = "enough" if so_far else "within" if within else ""
         out.append((cell, difference, half, "outside" if is_different(difference, half, allowed) else verdict))
-    return reference, out[::-1]
+    return out[::-1]
 
 
-def table_enough(rows):
-    judged = {field: judge_series(rows, field) for field in MEASURED}
+def table_enough(rows, reference):
+    if not take(rows, "fraction", reference):
+        return "None was run yet."
     out = []
-    for lines in zip(*(lines for _, lines in judged.values())):
+    for lines in zip(*(judge_series(rows, field, reference) for field in MEASURED)):
         out.append([lines[0][0]] + [
             ", ".join(filter(None, (show(difference, half, MEASURED[field][1]), verdict)))
             for field, (_, difference, half, verdict) in zip(MEASURED, lines)])
-    return tables.markdown([f"cell - {judged['fraction'][0]}"] + [head for head, _, _ in MEASURED.values()], out)
+    return tables.markdown([f"cell - {reference}"] + [head for head, _, _ in MEASURED.values()], out)
 
 
 def table_checks(rows):
@@ -178,6 +179,9 @@ CONTRASTS = [
 def fill():
     rows = read_runs()
     tables.fill(os.path.join(HERE, "..", "behaviour.md"), {
-        "bed-clumps": table_clumps(rows), "bed-runs": table_runs(rows), "bed-contrasts": table_contrasts(rows, CONTRASTS),
+        "bed-clumps": table_clumps(rows), "bed-runs": table_runs(rows),
+        "bed-contrasts": table_contrasts(rows, CONTRASTS),
         "bed-controls": table_contrasts(rows, list_controls(), [*CONTROLLED, *CONTROLS]),
-        "bed-enough": table_enough(rows), "bed-predictors": table_predictors(rows), "bed-checks": table_checks(rows)})
+        "bed-enough": table_enough(rows, [cell for cell in SERIES if take(rows, "fraction", cell)][-1]),
+        "bed-smooth": table_enough(rows, "smooth"), "bed-predictors": table_predictors(rows),
+        "bed-checks": table_checks(rows)})

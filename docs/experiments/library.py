@@ -4,13 +4,13 @@ grains, and by the K grains that mskit grains --choose takes.
 
     docs/experiments/library.py GRAINS [--seeds N] [--kinds K,...] [--work FOLDER] [--most MINUTES]
 
-GRAINS is a folder of meshes; the one of docs/population.md is meant. Each row goes to library.csv beside this file; rows
-that are there are not run again. Then the table of all of them goes into docs/behaviour.md, which --seeds 0 does alone.
-MSKIT names the program (build/eval/mskit), LIGGGHTS the engine (liggghts). Takes numpy.
+GRAINS is a folder of meshes; the one of docs/population.md is meant. Each row goes to library.csv beside this file;
+rows that are there are not run again. Then the table of all of them goes into docs/behaviour.md, which --seeds 0 does
+alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine (liggghts). Takes numpy.
 
-Bed, material and what is measured are those of contrasts.py. Shape alone differs: all clumps are scaled to the volume of
-its candy, as are their moments. kinds is K, or 0 for the powder itself: 250 of its grains, drawn without replacement by
-the seed of the run. Of K grains there are as many as their weights say, to the nearest of 250 (largest remainders).
+Bed, material and what is measured are those of contrasts.py. Shape alone differs: all clumps are scaled to the volume
+of its candy, as are their moments. kinds is K, or 0 for the powder itself: 250 of its grains, drawn without replacement
+by the seed of the run. Of K grains there are as many as their weights say, to the nearest of 250 (largest remainders).
     contacts  particles and feet of the floor that a particle touches in the settled bed, on average
 """
 import argparse
@@ -22,10 +22,10 @@ import time
 import numpy
 
 import contrasts_tables
-from contrasts import COUNT, run_bed
+from bed import COUNT, SIDE, run_bed
 from contrasts_cells import read_rows, run_mskit, write_rows
 from intervals import interval, pool
-from packing import DENSITY, MASS, RESTITUTION, SEEDS, YOUNG
+from packing import DENSITY, MASS, RESTITUTION, SEEDS, YOUNG, read_spheres
 import tables  # of docs, where packing looks
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -34,7 +34,6 @@ COLUMNS = ["kinds", "seed", "step", "rate", "particles", "height", "fraction", "
            "kinetic_over_m_g_d", "seconds", "cpu_seconds", "version"]
 KINDS, SPHERES = [0, 1, 5, 20], 20
 FLOOR = numpy.array([[7.5 * i, 7.5 * j, 0.0, 3.75] for i in range(8) for j in range(8)])  # mm, as in contrasts.py
-SIDE = 60.0  # mm
 # what is measured: heading, digits
 MEASURED = {"fraction": ("fraction", 4), "contacts": ("contacts", 2), "start": ("start, degrees", 2),
             "stop": ("stop, degrees", 2), "flowed": ("fraction after flow", 4)}
@@ -103,7 +102,7 @@ def make_bed(folder, drawn):
              for (number, (name, _)), prime in zip(enumerate(drawn), list_primes(len(drawn)))]
     shares = " ".join(f"clump{number} {count / COUNT!r}" for number, (_, count) in enumerate(drawn))
     return {"template": "\n".join(lines), "kinds": f"{len(drawn)} {shares}", "members": SPHERES, "rolling": 0.0,
-            "young": YOUNG, "e": RESTITUTION}
+            "young": YOUNG, "e": RESTITUTION, "smooth": False}
 
 
 def count_contacts(spheres):
@@ -123,8 +122,9 @@ def run(folder, names, kinds, seed):
     """One row."""
     work = os.path.join(folder, f"{kinds}-{seed}")
     clump = make_bed(folder, draw(names, folder, kinds, seed))
-    measured, settled = run_bed(work, clump, seed, contrasts_tables.STEP, contrasts_tables.RATE)
-    return {"kinds": kinds, **measured, "contacts": round(count_contacts(settled), 3)}
+    measured = run_bed(work, clump, seed, contrasts_tables.STEP, contrasts_tables.RATE)
+    contacts = count_contacts(read_spheres(os.path.join(work, "settled.dump")))
+    return {"kinds": kinds, **measured, "contacts": round(contacts, 3)}
 
 
 def make_table(rows):

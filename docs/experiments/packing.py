@@ -51,9 +51,10 @@ fix young all property/global youngsModulus peratomtype {young:g} {young:g}
 fix poisson all property/global poissonsRatio peratomtype 0.29 0.29
 fix restitution all property/global coefficientRestitution peratomtypepair 2 {e:g} {e:g} {e:g} {e:g}
 """
-ENERGY = """fix move all multisphere
-compute moved all ke/multisphere
-compute turned all erotate/multisphere
+CLUMPS = {"group": "all", "move": "multisphere", "ke": "ke/multisphere", "erotate": "erotate/multisphere"}
+ENERGY = """fix move {group} {move}
+compute moved all {ke}
+compute turned all {erotate}
 variable kinetic equal (c_moved+c_turned)/{count}
 """
 SETTLE = """variable k loop 100
@@ -110,12 +111,17 @@ def make_clump(folder, n):
     return line.replace(os.path.basename(clump), os.path.abspath(clump)), json.loads(said.stdout)
 
 
-def read_spheres(path):
-    """x, y, z, r of the last dump, in mm."""
+def read_dump(path):
+    """x, y, z, r of the last dump, or what else stands there, in the engine's units."""
     with open(path, encoding="utf-8") as stream:
         lines = stream.read().splitlines()
     start = max(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
-    return numpy.array([line.split()[2:6] for line in lines[start + 1:]], dtype=float) * 1000
+    return numpy.array([line.split()[2:] for line in lines[start + 1:]], dtype=float)
+
+
+def read_spheres(path):
+    """x, y, z, r of the last dump, in mm."""
+    return 1000 * read_dump(path)
 
 
 def measure(spheres, h=0.5):
@@ -139,14 +145,14 @@ def measure(spheres, h=0.5):
     return height, float((spheres[:, 2] + spheres[:, 3]).max()), float(filled[within][:, middle].mean())
 
 
-def run_to_rest(work, script):
+def run_to_rest(work, script, engine=LIGGGHTS):
     """What LIGGGHTS prints, kinetic energy at rest over m g d, CPU seconds. Ends here where there is no rest."""
     os.makedirs(work, exist_ok=True)
     with open(os.path.join(work, "in.bed"), "w", encoding="utf-8") as stream:
         stream.write(script)
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     with open(os.path.join(work, "out"), "w", encoding="utf-8") as out:
-        done = subprocess.run([LIGGGHTS, "-in", "in.bed", "-log", "none"], cwd=work, stdout=out,
+        done = subprocess.run([engine, "-in", "in.bed", "-log", "none"], cwd=work, stdout=out,
                               stderr=subprocess.STDOUT, check=False)
     cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
     with open(os.path.join(work, "out"), encoding="utf-8") as out:
@@ -167,7 +173,7 @@ def pack(folder, n, seed, step):
     work = os.path.join(folder, f"{n}-{seed}-{step:g}")
     every = round(4 / 160 / step)
     script = SCRIPT.format(step=step, template=template, seed=seed, count=COUNT, every=every, rest=REST,
-                           young=YOUNG, e=RESTITUTION,
+                           young=YOUNG, e=RESTITUTION, **CLUMPS,
                            filling=round((COUNT / 160 + 0.3) / step), tenth=round(0.1 / step))
     text, kinetic, cpu = run_to_rest(work, script)
     spheres = read_spheres(os.path.join(work, "packing.dump"))
