@@ -145,8 +145,8 @@ def measure(spheres, h=0.5):
     return height, float((spheres[:, 2] + spheres[:, 3]).max()), float(filled[within][:, middle].mean())
 
 
-def run_to_rest(work, script, engine=LIGGGHTS):
-    """What LIGGGHTS prints, kinetic energy at rest over m g d, CPU seconds. Ends here where there is no rest."""
+def run_engine(work, script, engine=LIGGGHTS):
+    """What LIGGGHTS prints, and CPU seconds. Ends here where it fails."""
     os.makedirs(work, exist_ok=True)
     with open(os.path.join(work, "in.bed"), "w", encoding="utf-8") as stream:
         stream.write(script)
@@ -154,13 +154,19 @@ def run_to_rest(work, script, engine=LIGGGHTS):
     with open(os.path.join(work, "out"), "w", encoding="utf-8") as out:
         done = subprocess.run([engine, "-in", "in.bed", "-log", "none"], cwd=work, stdout=out,
                               stderr=subprocess.STDOUT, check=False)
-    cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+    if done.returncode:
+        sys.exit(f"{work}: {engine} failed; see {work}/out")
     with open(os.path.join(work, "out"), encoding="utf-8") as out:
-        text = out.read()
+        return out.read(), round(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
+
+
+def run_to_rest(work, script, engine=LIGGGHTS):
+    """What LIGGGHTS prints, kinetic energy at rest over m g d, CPU seconds. Ends here where there is no rest."""
+    text, cpu = run_engine(work, script, engine)
     rest = re.search(r"^at rest: (\S+) J", text, re.MULTILINE)
-    if done.returncode or not rest or float(rest[1]) >= REST:
+    if not rest or float(rest[1]) >= REST:
         sys.exit(f"{work}: no rest; see {work}/out")
-    return text, f"{float(rest[1]) / REST * 1e-6:.2g}", round(cpu)
+    return text, f"{float(rest[1]) / REST * 1e-6:.2g}", cpu
 
 
 def ask_version():

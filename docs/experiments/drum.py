@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""Yuan (2019), section 5.3: 130 M&M candies tumble in a drum at 25 revolutions a minute, in LIGGGHTS, by clumps of set
+cover scaled to the volume of the candy.
+
+    docs/experiments/drum.py [--spheres N,...] [--seeds K] [--work FOLDER] [--most MINUTES]
+
+Each row goes to drum.csv beside this file; rows that are there are not run again. Then the table of all of them goes
+into docs/behaviour.md, which --seeds 0 does alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine
+(liggghts). Takes numpy.
+
+The paper does not give the size of its drum. This one has a diameter of 100 mm and no ends: it is 40 mm long and
+periodic along its axis, so that ends play no part. Candies come in during the first turn. Material and friction are
+those of packing.py, the step is that of contrasts.py. What is measured, as fixed before the first run in the table, of
+ten turns from the fourth on, every 0.1 s:
+    angle        degrees of the line of least squares through the highest points over lines 1 mm apart, averaged along
+                 the axis, of the middle part of the bed, which is as wide as the drum's radius
+    correlation  its correlation time, s: the integral of its autocorrelation up to where that first falls below 0
+    blocks       its means over 20 blocks of 1.2 s, taken as independent where they are twice as long as that
+"""
+import argparse
+import math
+import os
+import statistics
+import sys
+import time
+
+import numpy
+
+import contrasts_tables
+from bed import root_or_nan
+from intervals import interval, pool, quantile
+from packing import CLUMPS, ENERGY, MATERIAL, RESTITUTION, SEEDS, YOUNG, ask_version, make_clump, run_engine
+import tables  # of docs, where packing looks
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+TABLE = os.path.join(HERE, "drum.csv")
+COLUMNS = ["n", "dice", "seed", "step", "particles", "angle", "correlation", "blocks", "cpu_seconds", "version"]
+COUNT, RADIUS, LENGTH, TURN, LOOK = 130, 50.0, 40.0, 60 / 25, 0.1  # particles, mm, mm, s, s
+SKIPPED, TURNS, BLOCKS = 3, 10, 20
+
+# Of a wall that turns, LIGGGHTS 3.8.0 takes any direction but the axis, and for its speed radians a second.
+SCRIPT = """atom_style granular
+atom_modify map array
+communicate single vel yes
+boundary f f p
+newton off
+units si
+region box block -0.051 0.051 -0.051 0.051 0 {length} units box
+create_box 2 box
+neighbor 0.001 bin
+neigh_modify delay 0
+""" + MATERIAL + """fix friction all property/global coefficientFriction peratomtypepair 2 0.35 0.30 0.30 0.30
+pair_style gran model hertz tangential history
+pair_coeff * *
+timestep {step}
+fix drum all wall/gran model hertz tangential history primitive type 2 zcylinder {radius} 0 0 shear x {turning}
+fix gravity all gravity 9.81 vector 0 -1 0
+{template}
+fix kinds all particledistribution/discrete 15485867 1 clump 1.0
+region inside cylinder z 0 0 0.042 0 {length} volume_limit 1e-300 units box
+fix insert all insert/rate/region seed {seed} distributiontemplate kinds nparticles {count} particlerate {count} &
+    insert_every {often} vel constant 0 0 0 orientation random overlapcheck yes all_in no region inside
+""" + ENERGY + """thermo_style custom step atoms v_kinetic
+thermo {each}
+run {skipped}
+dump looks all custom {each} looks.dump id type x y z radius
+dump_modify looks sort id
+run {measured}
+"""
+
+
+def make_script(template, seed, step):
+    each = round(LOOK / step)
+    return SCRIPT.format(template=template, seed=seed, step=step, each=each, count=COUNT, radius=RADIUS / 1000,
+                         length=LENGTH / 1000, often=2 * each, turning=2 * math.pi / TURN,
+                         skipped=round(SKIPPED * TURN / step), measured=round(TURNS * TURN / step), young=YOUNG,
+                         e=RESTITUTION, **CLUMPS)
+
+
+def read_looks(path):
+    """x, y, z, r of all spheres, in mm, one look after the other."""
+    with open(path, encoding="utf-8") as stream:
+        while stream.readline():
+            for _ in range(2):
+                stream.readline()
+            count = int(stream.readline())
+            for _ in range(5):
+                stream.readline()
+            yield 1000 * numpy.array([stream.readline().split()[2:6] for _ in range(count)], dtype=float)
+
+
+def measure(spheres, h=1.0):
+    """The angle of a look, in degrees."""
+    x = numpy.arange(-RADIUS / 2, RADIUS / 2 + h / 2, h)
+    z = (numpy.arange(round(LENGTH / h)) + 0.5) * h
+    top = numpy.full((len(x), len(z)), numpy.nan)
+    for cx, cy, cz, r in spheres:
+        i = slice(*numpy.searchsorted(x, [cx - r, cx + r]))
+        along = (z - cz + LENGTH / 2) % LENGTH - LENGTH / 2
+        top[i] = numpy.fmax(top[i], cy + root_or_nan(r * r - (x[i, None] - cx) ** 2 - along[None, :] ** 2))
+    return abs(math.degrees(math.atan(numpy.polyfit(x, numpy.nanmean(top, axis=1), 1)[0])))
+
+
+def find_correlation(series):
+    """Integral of the autocorrelation to where it first falls below 0, in s, the value at 0 by half."""
+    moved = numpy.asarray(series) - numpy.mean(series)
+    total = 0.5
+    for lag in range(1, len(moved)):
+        rho = (moved[lag:] * moved[:-lag]).sum() / (moved ** 2).sum()
+        if rho < 0:
+            break
+        total += rho
+    return LOOK * total
+
+
+def run(folder, n, seed):
+    """One row."""
+    template, said = make_clump(folder, n)
+    work = os.path.join(folder, f"{n}-{seed}")
+    _, cpu = run_engine(work, make_script(template, seed, contrasts_tables.STEP))
+    # The first look is that of before.
+    looks = list(read_looks(os.path.join(work, "looks.dump")))[1:]
+    if any(len(spheres) != COUNT * n for spheres in looks):
+        sys.exit(f"{work}: {len(looks[0])} spheres are not those of {COUNT} particles of {n}")
+    angles = [measure(spheres) for spheres in looks]
+    blocks = [statistics.mean(block) for block in numpy.array_split(angles, BLOCKS)]
+    return {"n": n, "dice": said["scores"]["dice"], "seed": seed, "step": contrasts_tables.STEP, "particles": COUNT,
+            "angle": round(statistics.mean(angles), 3), "correlation": round(find_correlation(angles), 3),
+            "blocks": " ".join(f"{block:.3f}" for block in blocks), "cpu_seconds": cpu, "version": ask_version()}
+
+
+def make_table(rows):
+    """Mean and half of its 90 % interval by blocks, whose spread is pooled over all runs; difference from the most
+    spheres."""
+    blocks = {n: [[float(x) for x in row["blocks"].split()] for row in rows if int(row["n"]) == n]
+              for n in sorted({int(row["n"]) for row in rows})}
+    deviation, freedom = pool([run for runs in blocks.values() for run in runs])
+    joined = {n: [x for run in runs for x in run] for n, runs in blocks.items()}
+    out, largest = [], max(joined)
+    for n, these in joined.items():
+        found = [row for row in rows if int(row["n"]) == n]
+        half = quantile(freedom) * deviation / math.sqrt(len(these))
+        difference = contrasts_tables.show(*interval(these, joined[largest], deviation, freedom), 2)
+        out.append([str(n), f"{float(found[0]['dice']):.4f}", str(len(found)),
+                    f"{statistics.mean(these):.2f} +- {half:.2f}", "" if n == largest else difference,
+                    ", ".join(f"{float(row['correlation']):.2f}" for row in found),
+                    f"{statistics.mean(float(row['cpu_seconds']) for row in found):.0f}"])
+    return tables.markdown(["spheres", "D", "runs", "angle, degrees", f"beside {largest} spheres", "correlation, s",
+                            "CPU s"], out)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--spheres", default="10,30,60,120", help="of a candy (10,30,60,120)")
+    parser.add_argument("--seeds", type=int, default=2, help="runs of each (2)")
+    parser.add_argument("--work", default="drum", help="folder of the engine's files (drum)")
+    parser.add_argument("--most", type=float, default=1e9, help="no run is begun after so many minutes")
+    asked = parser.parse_args()
+    os.makedirs(asked.work, exist_ok=True)
+    begun, rows = time.time(), tables.read(TABLE) if os.path.exists(TABLE) else []
+    there = {(int(row["n"]), int(row["seed"])) for row in rows}
+    for seed in SEEDS[:asked.seeds]:
+        for n in map(int, asked.spheres.split(",")):
+            if (n, seed) in there or time.time() - begun > 60 * asked.most:
+                continue
+            row = run(asked.work, n, seed)
+            tables.add_row(TABLE, COLUMNS, row)
+            print(", ".join(f"{key} {row[key]}" for key in ("n", "seed", "angle", "correlation", "cpu_seconds")),
+                  flush=True)
+    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"drum": make_table(tables.read(TABLE))})
+
+
+if __name__ == "__main__":
+    main()
