@@ -45,12 +45,11 @@ def run(folder, name, seed, step, rate):
 
 
 def choose_cells(names, largest):
-    if names:
-        return names.split(",")
-    if not LIGGGHTS_SMOOTH:
+    if not names and not LIGGGHTS_SMOOTH:
         print("smooth: left out, as LIGGGHTS_SMOOTH names no engine", file=sys.stderr)
-    return [name for name in [*cells.CELLS, *cells.CONTROLS] if cells.find_cell(name).n <= largest
-            and (LIGGGHTS_SMOOTH or cells.find_cell(name).method != "smooth")]
+    asked = names.split(",") if names else [name for name in [*cells.CELLS, *cells.CONTROLS]
+                                            if LIGGGHTS_SMOOTH or name != "smooth"]
+    return [name for name in asked if cells.find_cell(name).n <= largest]
 
 
 def main():

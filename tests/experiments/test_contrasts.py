@@ -19,6 +19,7 @@ from unittest import mock
 import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "experiments"))
+import bed  # noqa: E402
 import contrasts  # noqa: E402
 import contrasts_cells as cells  # noqa: E402
 import contrasts_chart as chart  # noqa: E402
@@ -28,13 +29,17 @@ import packing  # noqa: E402
 from tables import add_row  # noqa: E402
 
 
+def balls(spheres):
+    return [bed.ball(*sphere) for sphere in spheres]
+
+
 class Beds(unittest.TestCase):
     def test_layers_across_the_borders(self):
         """Balls of radius 5 mm on a square lattice of 10 mm, those at the border cut by it. Lines end on the upper half
         of a ball, pi/6 of its radius high in the mean over its square, or pass between, as 1 - pi/4 of them do."""
         layers, ticks = 12, numpy.arange(6) * 10.0
         spheres = numpy.array([[x, y, 5 + 10 * k, 5] for k in range(layers) for x in ticks for y in ticks])
-        height, fraction = contrasts.measure(spheres)
+        height, fraction = bed.measure(balls(spheres))
         expected = math.pi / 4 * (10 * layers - 5) + math.pi / 6 * 5
         self.assertAlmostEqual(height, expected, delta=0.01 * expected)
         low, high = height / 4, 3 * height / 4
@@ -52,7 +57,27 @@ class Beds(unittest.TestCase):
         spheres = numpy.array([[3.0, 58.0, 9.0, 6.0], [30.0, 1.0, 20.0, 7.0], [59.5, 30.0, 31.0, 5.0]])
         shifted = spheres + [17.5, 44.0, 0, 0]
         shifted[:, :2] %= 60
-        for one, other in zip(contrasts.measure(spheres), contrasts.measure(shifted)):
+        for one, other in zip(bed.measure(balls(spheres)), bed.measure(balls(shifted))):
+            self.assertAlmostEqual(one, other, places=12)
+
+
+    def test_a_spheroid_that_is_turned(self):
+        """A quarter turn about y lays the short axis along x; any turn leaves the volume and a ball as they are."""
+        half, lines = math.sqrt(0.5), numpy.arange(-7, 7, 0.1) + 0.05
+        _, _, _, reach, chords = bed.spheroid(30, 30, 30, (6, 6, 3), (half, 0, half, 0))
+        self.assertEqual(reach, 6)
+        low, high = chords(numpy.array([0.0, 2.9, 3.1, 0.0]), numpy.array([0.0, 0.0, 0.0, 5.9]))
+        for got, expected in zip(high, (6, 6 * math.sqrt(1 - (2.9 / 3) ** 2), math.nan, math.sqrt(36 - 5.9 ** 2))):
+            self.assertTrue(abs(got - expected) < 1e-12 or math.isnan(got) and math.isnan(expected), (got, expected))
+        turned = numpy.array([0.3, 0.5, -0.2, 0.7]) / math.sqrt(0.87)
+        low, high = bed.spheroid(0, 0, 0, (6, 5, 3), turned)[4](lines[:, None], lines[None, :])
+        self.assertAlmostEqual(numpy.nansum(high - low) * 0.01, 4 / 3 * math.pi * 6 * 5 * 3, delta=0.5)
+        # Across, from the matrix of the turn: the furthest point along z is the root of the sum of (axis times R3k)^2.
+        w, x, y, z = turned
+        third = numpy.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
+        self.assertAlmostEqual(numpy.nanmax(high), numpy.linalg.norm(third * [6, 5, 3]), delta=0.01)
+        ball, same = balls([[30, 30, 20, 5]]), [bed.spheroid(30, 30, 20, (5, 5, 5), turned)]
+        for one, other in zip(bed.measure(ball), bed.measure(same)):
             self.assertAlmostEqual(one, other, places=12)
 
 
@@ -61,15 +86,15 @@ class Angles(unittest.TestCase):
         """What moves and comes to rest again before is no start."""
         rise = [(20.0, 0.0), (21.0, 0.03), (22.0, 0.005), (23.0, 0.011), (24.0, 0.02), (25.0, 0.06)]
         fall = [(24.0, 0.08), (23.0, 0.04), (22.0, 0.009), (21.0, 0.001)]
-        self.assertEqual(contrasts.find_angles(rise, fall), (23.0, 22.0))
+        self.assertEqual(bed.find_angles(rise, fall), (23.0, 22.0))
 
     def test_it_moved_from_the_first(self):
-        self.assertEqual(contrasts.find_angles([(1.0, 0.02), (2.0, 0.06)], [(1.0, 0.001)]), (1.0, 1.0))
+        self.assertEqual(bed.find_angles([(1.0, 0.02), (2.0, 0.06)], [(1.0, 0.001)]), (1.0, 1.0))
 
     def test_no_flow_or_no_rest(self):
         for rise, fall in (([(20.0, 0.04)], [(19.0, 0.001)]), ([(20.0, 0.06)], [(19.0, 0.009)]), ([(20.0, 0.06)], []),
                            ([], [])):
-            self.assertEqual(contrasts.find_angles(rise, fall), (None, None))
+            self.assertEqual(bed.find_angles(rise, fall), (None, None))
 
 
 class Intervals(unittest.TestCase):
@@ -107,15 +132,17 @@ class Intervals(unittest.TestCase):
         means = dict(zip(tables.SERIES, (30.0, 25.0, 25.0, 20.0, 20.0, 25.0, 20.0)))
         rows = [{"cell": cell, "step": tables.STEP, "rate": tables.RATE, "start": mean + noise}
                 for cell, mean in means.items() for noise in (-0.01, 0.01)]
-        reference, judged = tables.judge_series(rows, "start")
-        self.assertEqual((reference, [line[0] for line in judged]), (tables.SERIES[-1], tables.SERIES[:-1]))
+        judged = tables.judge_series(rows, "start", tables.SERIES[-1])
+        self.assertEqual([line[0] for line in judged], tables.SERIES[:-1])
         self.assertEqual([line[3] for line in judged], ["outside"] * 3 + ["within"] * 2 + ["outside"])
         for row in rows:
             row["start"] -= 5 * (row["cell"] == "variational-20")
-        _, judged = tables.judge_series(rows, "start")
+        judged = tables.judge_series(rows, "start", tables.SERIES[-1])
         self.assertEqual([line[3] for line in judged], ["outside"] * 3 + ["enough"] * 3)
-        reference, _ = tables.judge_series([row for row in rows if row["cell"] != "variational-60"], "start")
-        self.assertEqual(reference, "variational-20")
+        smooth = [{**row, "cell": "smooth"} for row in rows if row["cell"] == "variational-60"]
+        judged = tables.judge_series(rows + smooth, "start", "smooth")
+        self.assertEqual([(line[0], line[3]) for line in judged[-4:]],
+                         [(cell, "enough") for cell in tables.SERIES[-4:]])
 
     def test_a_predictor_that_holds_elsewhere_and_one_that_does_not(self):
         """The angle is 20 + 100 D, whatever the method; mean width goes with it in the series alone."""
@@ -128,6 +155,16 @@ class Intervals(unittest.TestCase):
             errors = tables.judge_predictor(rows, clumps, "start", predictor)
             self.assertAlmostEqual(errors[0], inside)
             self.assertAlmostEqual(errors[1], outside)
+
+    def test_controls_stand_beside_their_cells_and_each_other(self):
+        few, many = cells.CONTROLLED
+        listed = tables.list_controls()
+        self.assertIn(("e0.2", few + "-e0.2", few), listed)
+        self.assertIn(("as above", many, few), listed)
+        self.assertIn(("undone", many + "-undone", few + "-undone"), listed)
+        self.assertEqual(len(listed), len(cells.CONTROLS) + 1 + len(cells.CONTROLS) // 2)
+        for _, one, other in listed:
+            cells.find_cell(one), cells.find_cell(other)
 
     def test_checks_are_no_part_of_the_means(self):
         rows = [{"cell": "setcover-10", "step": step, "rate": rate, "start": value}
@@ -149,6 +186,27 @@ class Clumps(unittest.TestCase):
             mass, inertia = (float(words[words.index(word) + 1]) for word in ("mass", "inertia_tensor"))
             self.assertAlmostEqual(mass, 1377 * 4 / 3 * math.pi * r ** 3, delta=1e-12)
             self.assertAlmostEqual(inertia, 0.4 * mass * r * r, delta=1e-15)
+
+    def test_the_law_that_undoes_contacts_side_by_side(self):
+        said = {"factors": [{"against": "plane", "where": "random", "modulus": 3, "restitution": 0.9},
+                            {"against": "particle", "where": "random", "modulus": 1.5, "restitution": 0.6}]}
+        with mock.patch.object(cells, "ask_contact", lambda *words: said):
+            self.assertEqual(cells.find_law("", "variational-3-undone"), {"young": 1.5 * packing.YOUNG, "e": 0.6})
+        self.assertEqual(cells.find_law("", "variational-3-e0.2"), {"young": packing.YOUNG, "e": 0.2})
+        self.assertEqual(cells.find_law("", "variational-3"), {"young": packing.YOUNG, "e": 0.5})
+
+    def test_the_candy_itself(self):
+        """As heavy as the clumps, and in the same bed but for what makes it a superquadric."""
+        clump = cells.make("", "smooth")
+        words = clump["template"].split()
+        axes = [float(words[words.index("shape") + k]) for k in (2, 3, 4)]
+        self.assertAlmostEqual(1377 * 4 / 3 * math.pi * axes[0] * axes[1] * axes[2], packing.MASS, delta=1e-12)
+        smooth, spheres = (bed.make_script({**clump, "smooth": which}, 1, tables.STEP, tables.RATE).splitlines()
+                           for which in (True, False))
+        changed = [line for line in smooth if line not in spheres]
+        self.assertIn("atom_style superquadric", changed)
+        self.assertTrue(all("superquadric" in line or "shape" in line or "candies" in line or line.endswith(" ke")
+                            for line in changed), changed)
 
     def test_radii_alone_differ(self):
         """Places, mass and inertia of the small and the large clump are those of the one between."""
@@ -202,7 +260,7 @@ class Tables(unittest.TestCase):
                 cells.describe_all(folder, path)
             with open(path, newline="", encoding="utf-8") as stream:
                 rows = [(row["cell"], row["dice"]) for row in csv.DictReader(stream)]
-        others = [(name, "0") for name in cells.CELLS if name != "variational-10"]
+        others = [(name, "0") for name in cells.CELLS if name not in ("variational-10", "smooth")]
         self.assertEqual(rows, [("variational-10", "1")] + others)
 
 
@@ -236,10 +294,10 @@ class Resumption(unittest.TestCase):
         self.write_engine(SAID)
         mskit = self.write("mskit", "#!/bin/sh\necho mskit 0\n")
         for target, name, value in ((contrasts, "TABLE", self.table), (packing, "MSKIT", mskit),
-                                    (packing, "LIGGGHTS", os.path.join(self.folder, "engine")),
+                                    (bed, "LIGGGHTS", os.path.join(self.folder, "engine")),
                                     (tables, "fill", lambda: None),
                                     (chart, "draw", lambda rows: None),
-                                    (contrasts, "describe_clumps", lambda folder: None)):
+                                    (cells, "describe_all", lambda folder, path: None)):
             patch = mock.patch.object(target, name, value)
             patch.start()
             self.addCleanup(patch.stop)
@@ -251,7 +309,7 @@ class Resumption(unittest.TestCase):
         os.chmod(path, os.stat(path).st_mode | stat.S_IXUSR)
         return path
 
-    def write_engine(self, said, count=contrasts.COUNT):
+    def write_engine(self, said, count=bed.COUNT):
         atoms = [f"{k} 1 {0.005 * (k % 12)} {0.005 * (k // 12 % 12)} {0.01 + 0.005 * (k // 144)} 0.003"
                  for k in range(2 * count)]
         self.write("engine", ENGINE.format(atoms="\n".join(atoms), said=said))
@@ -291,10 +349,10 @@ class Resumption(unittest.TestCase):
         self.assertEqual(self.calls(), 0)
 
     def test_a_run_that_failed_is_no_row(self):
-        for said, count, word in ((SAID.replace("at rest: 1e-20 J", ""), contrasts.COUNT, "no rest"),
-                                  (SAID.replace("1e-20 J", "1 J"), contrasts.COUNT, "no rest"),
-                                  (SAID, contrasts.COUNT - 1, "498 spheres settled"),
-                                  (SAID.replace("0.06", "0.04"), contrasts.COUNT, "did not flow")):
+        for said, count, word in ((SAID.replace("at rest: 1e-20 J", ""), bed.COUNT, "no rest"),
+                                  (SAID.replace("1e-20 J", "1 J"), bed.COUNT, "no rest"),
+                                  (SAID, bed.COUNT - 1, "settled.dump: 498 are not those of 250"),
+                                  (SAID.replace("0.06", "0.04"), bed.COUNT, "did not flow")):
             self.write_engine(said, count)
             with self.assertRaisesRegex(SystemExit, word):
                 self.call("--cells", "sphere-0")

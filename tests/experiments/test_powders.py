@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""What docs/experiments/library.py and drum.py make of their runs: shares, templates, contacts, surfaces known before.
+
+    /usr/bin/python3 tests/experiments/test_powders.py [-v]
+"""
+import math
+import os
+import sys
+import tempfile
+import unittest
+
+import numpy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "experiments"))
+import bed  # noqa: E402
+import contrasts_cells as cells  # noqa: E402
+import drum  # noqa: E402
+import library  # noqa: E402
+import packing  # noqa: E402
+
+
+class Shares(unittest.TestCase):
+    def test_by_largest_remainders(self):
+        self.assertEqual(library.share_out([("a", 0.2), ("b", 0.3), ("c", 0.5)]), [("a", 50), ("b", 75), ("c", 125)])
+        self.assertEqual(library.share_out([("a", 1), ("b", 1), ("c", 1)]), [("a", 84), ("b", 83), ("c", 83)])
+        self.assertEqual(library.share_out([("a", 999), ("b", 1)]), [("a", 250)])
+
+    def test_of_the_powder_each_grain_once(self):
+        names = [f"grain-{k}" for k in range(402)]
+        one, other = (library.draw(names, "", 0, seed) for seed in (1, 2))
+        self.assertEqual({count for _, count in one}, {1})
+        self.assertEqual(len({name for name, _ in one}), bed.COUNT)
+        self.assertNotEqual(one, other)
+        self.assertEqual(one, library.draw(names, "", 0, 1))
+
+    def test_primes(self):
+        primes = library.list_primes(402)
+        self.assertEqual((len(set(primes)), primes[:3]), (402, [1000003, 1000033, 1000037]))
+        self.assertTrue(all(p % k for p in primes for k in range(2, math.isqrt(p) + 1)))
+
+
+class Templates(unittest.TestCase):
+    def test_scaled_to_the_candy(self):
+        """Lengths by a factor, mass by its cube, moments by its fifth power."""
+        mass = 8 * packing.MASS
+        with tempfile.TemporaryDirectory() as folder:
+            os.makedirs(os.path.join(folder, "clumps", "0000"))
+            path = os.path.join(folder, "clumps", "0000", "grain.liggghts")
+            cells.write_rows(path, [[0.002, 0, -0.004, 0.006]] * library.SPHERES)
+            with open(path + ".in", "w", encoding="ascii") as stream:
+                stream.write("fix clump all particletemplate/multisphere 15485863 atom_type 1 spheres file "
+                             f"\"grain.liggghts\" scale 1.0 type 1 mass {mass!r} inertia_tensor 32 0 0 64 0 96\n")
+            made = library.make_bed(folder, [("0000/grain.liggghts", 200), ("0000/grain.liggghts", 50)])
+            lines = [line.split() for line in made["template"].splitlines()]
+            rows = cells.read_rows(lines[0][lines[0].index("file") + 1].strip('"'))
+        self.assertEqual(made["kinds"], "2 clump0 0.8 clump1 0.2")
+        for got, expected in zip(rows[0], (0.001, 0, -0.002, 0.003)):
+            self.assertAlmostEqual(got, expected, places=15)
+        for number, words in enumerate(lines):
+            after = {word: words[words.index(word) + 1] for word in ("mass", "type", "particletemplate/multisphere")}
+            self.assertEqual((words[1], after["type"]), (f"clump{number}", str(number + 1)))
+            self.assertAlmostEqual(float(after["mass"]), packing.MASS)
+            self.assertAlmostEqual(float(words[words.index("inertia_tensor") + 4]), 2)
+        self.assertNotEqual(*(words[4] for words in lines))
+
+
+class Contacts(unittest.TestCase):
+    def test_pairs_across_the_border_and_the_floor(self):
+        """All particles are far apart but two, which touch across the border, by all of their spheres, and lie on the
+        foot of the floor at its corner."""
+        spheres = numpy.array([[30.0, 30.0, 100.0 * (k + 1), 1.0] for k in range(bed.COUNT)
+                               for _ in range(library.SPHERES)])
+        places = {0: (0.5, 0.0, 4.5), 1: (58.9, 0.0, 4.5), 2: (30.0, 40.0, 20.0)}
+        for particle, place in places.items():
+            spheres[particle * library.SPHERES:(particle + 1) * library.SPHERES, :3] = place
+        # each of the two touches the foot and the other one
+        self.assertAlmostEqual(library.count_contacts(spheres), 4 / bed.COUNT)
+
+
+class Drum(unittest.TestCase):
+    def test_a_slope(self):
+        """Spheres of one radius side by side on a line of 30 degrees, all along the drum and across its border."""
+        slope = math.tan(math.radians(30))
+        spheres = numpy.array([[x, slope * x, z, 3.0] for x in numpy.arange(-40, 40, 0.25)
+                               for z in numpy.arange(1, drum.LENGTH, 2)])
+        self.assertAlmostEqual(drum.measure(spheres), 30, delta=0.1)
+        spheres[:, 2] = (spheres[:, 2] + 17) % drum.LENGTH
+        self.assertAlmostEqual(drum.measure(spheres), 30, delta=0.1)
+
+    def test_correlation_time(self):
+        """Half a look where neighbours alternate; of a series that forgets by a half a look, 3/2 looks."""
+        self.assertAlmostEqual(drum.find_correlation([1.0, -1.0] * 50), 0.5 * drum.LOOK)
+        random, series = numpy.random.default_rng(1), [0.0]
+        for _ in range(20000):
+            series.append(0.5 * series[-1] + random.normal())
+        self.assertAlmostEqual(drum.find_correlation(series), 1.5 * drum.LOOK, delta=0.1 * drum.LOOK)
+
+    def test_table(self):
+        """Blocks of two runs of one number beside those of the largest."""
+        rows = [{"n": n, "dice": "0.1", "blocks": blocks, "correlation": "0.2", "cpu_seconds": "10"}
+                for n, blocks in (("30", "35 37"), ("10", "33 35"), ("10", "32 34"))]
+        table = drum.make_table(rows).splitlines()
+        self.assertEqual(table[2].split(" | ")[2:3] + table[3].split(" | ")[2:3], ["2", "1"])
+        self.assertTrue(table[2].startswith("| 10 |") and "-2.50 +-" in table[2], table[2])
+
+    def test_looks(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "looks.dump")
+            with open(path, "w", encoding="ascii") as stream:
+                for k in range(2):
+                    stream.write(f"ITEM: TIMESTEP\n{k}\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n"
+                                 f"0 1\nITEM: ATOMS id type x y z radius\n1 1 0.00{k} 0 0 0.003\n")
+            looks = list(drum.read_looks(path))
+        self.assertEqual([look.tolist() for look in looks], [[[0, 0, 0, 3]], [[1, 0, 0, 3]]])
+
+
+if __name__ == "__main__":
+    unittest.main()
