@@ -19,6 +19,9 @@ ms_status ms_file_fail_open(ms_error *err, const char *path, int why)
     if (ms_file_is_standard(path)) {
         return ms_fail(err, MS_ERR_IO, "standard input is not read here; name a file");
     }
+    if (path[0] == '\0') {
+        return ms_fail(err, MS_ERR_IO, "the name of the file to read is empty; name a file");
+    }
     const ms_hint hint = why == ENOENT ? ms_choice_file_hint(path) : (ms_hint){""};
     return ms_fail(err, MS_ERR_IO, "%s: cannot be opened: %s%s", path, strerror(why),
                    hint.text[0] ? hint.text : "; check the path");
@@ -137,6 +140,38 @@ void ms_file_unneeded(const ms_bytes *bytes, size_t from, size_t size)
 int ms_file_is_standard(const char *path)
 {
     return strcmp(path, "-") == 0;
+}
+
+/* How many characters of a name are not its ending, .gz and what is before that included. */
+static size_t measure_stem(const char *base, size_t length)
+{
+    for (int packed = 0; packed < 2; packed++) {
+        size_t dot = length > 0 ? length - 1 : 0;
+        while (dot > 0 && base[dot] != '.') {
+            dot--;
+        }
+        const int is_packed = length - dot == 3 && strncmp(base + dot, ".gz", 3) == 0;
+        length = dot > 0 ? dot : length;
+        if (!is_packed) {
+            break;
+        }
+    }
+    return length;
+}
+
+const char *ms_file_stem(size_t *length, const char *path)
+{
+    const char *whole = ms_file_is_standard(path) ? "stdin" : path;
+    size_t end = strlen(whole);
+    while (end > 1 && whole[end - 1] == '/') { /* a folder of slices */
+        end--;
+    }
+    size_t begin = end;
+    while (begin > 0 && whole[begin - 1] != '/') {
+        begin--;
+    }
+    *length = measure_stem(whole + begin, end - begin);
+    return whole + begin;
 }
 
 const char *ms_file_name(const char *path)
@@ -371,8 +406,7 @@ ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err)
 
 char *ms_file_beside(const char *path, const char *name, size_t length)
 {
-    const char *slash = strrchr(path, '/');
-    const size_t folder = slash && name[0] != '/' ? (size_t)(slash - path) + 1 : 0;
+    const size_t folder = name[0] != '/' ? (size_t)(ms_file_base_name(path) - path) : 0;
     char *beside = malloc(folder + length + 1);
     if (beside) {
         memcpy(beside, path, folder);
@@ -382,10 +416,15 @@ char *ms_file_beside(const char *path, const char *name, size_t length)
     return beside;
 }
 
+const char *ms_file_base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 void ms_file_ending(char out[16], const char *path)
 {
-    const char *name = strrchr(path, '/');
-    const char *dot = strrchr(name ? name : path, '.');
+    const char *dot = strrchr(ms_file_base_name(path), '.');
     out[0] = '\0';
     if (!dot || strlen(dot + 1) >= 16) {
         return;

@@ -50,6 +50,11 @@ MS_API ms_status ms_file_read_standard(ms_bytes *bytes, size_t most, ms_error *e
 /** What a file is called in messages: its path, or "standard input". */
 MS_API const char *ms_file_name(const char *path);
 
+/** How the name of a file that is made from this one begins: its name without folder and ending, and without the one
+ * before .gz; "stdin" for "-". It need not be a name that a file may have (ms_escape_file_name). @param[out] length of
+ * it; it ends with no 0 byte */
+MS_API const char *ms_file_stem(size_t *length, const char *path);
+
 /** Says why a file cannot be opened and, of one that is not there, which name in its folder is near. @param why errno
  * @return MS_ERR_IO */
 MS_API ms_status ms_file_fail_open(ms_error *err, const char *path, int why);
@@ -90,6 +95,9 @@ MS_API ms_status ms_output_close(ms_output *output, ms_status status, ms_error *
  * @return the caller frees it; NULL without memory
  */
 MS_API char *ms_file_beside(const char *path, const char *name, size_t length);
+
+/** The name of a file without its folders: the path behind its last slash. */
+MS_API const char *ms_file_base_name(const char *path);
 
 /** The ending of a path after its last dot, in lower case; "" if none or too long for `out`. */
 MS_API void ms_file_ending(char out[16], const char *path);

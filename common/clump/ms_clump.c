@@ -120,6 +120,24 @@ void ms_clump_box(double lo[3], double hi[3], const ms_clump *clump)
     }
 }
 
+ms_status ms_clump_scale(ms_clump *scaled, const ms_clump *clump, double factor, ms_error *err)
+{
+    ms_status status = MS_OK;
+    *scaled = (ms_clump){0};
+    for (size_t s = 0; s < clump->n_spheres && status == MS_OK; s++) {
+        ms_sphere sphere = clump->sphere[s];
+        for (int k = 0; k < 3; k++) {
+            sphere.centre[k] *= factor;
+        }
+        sphere.radius *= factor;
+        status = ms_clump_add(scaled, &sphere, err);
+    }
+    if (status != MS_OK) {
+        ms_clump_free(scaled);
+    }
+    return status;
+}
+
 double ms_clump_smallest_radius(const ms_clump *clump)
 {
     double least = HUGE_VAL;

@@ -48,6 +48,14 @@ MS_API ms_status ms_clump_pieces(size_t *pieces, const ms_clump *clump, ms_error
 /** Box around the spheres; the clump is not empty. */
 MS_API void ms_clump_box(double lo[3], double hi[3], const ms_clump *clump);
 
+/**
+ * The spheres scaled about the origin; not masses and carriers.
+ *
+ * @param[out] scaled the caller frees it; empty on failure
+ * @return MS_OK; MS_ERR_NOMEM
+ */
+MS_API ms_status ms_clump_scale(ms_clump *scaled, const ms_clump *clump, double factor, ms_error *err);
+
 /** Smallest radius; the clump is not empty. */
 MS_API double ms_clump_smallest_radius(const ms_clump *clump);
 

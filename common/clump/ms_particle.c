@@ -99,6 +99,13 @@ static ms_status grid_around(ms_grid *grid, const ms_clump *clump, double h, siz
     double lo[3], hi[3], origin[3], voxels = 1;
     int n[3];
     ms_clump_box(lo, hi, clump);
+    if (!(h > 0) || !isfinite(h)) {
+        return ms_fail(
+            err, MS_ERR_LIMIT,
+            "spheres over %.3g of length have a volume that no number holds; give lengths in a unit in which "
+            "they are about 1",
+            hi[0] - lo[0]);
+    }
     for (int a = 0; a < 3; a++) {
         const double cells = ceil((hi[a] - lo[a]) / h) + 2 * MS_GRID_HULL;
         voxels *= cells;

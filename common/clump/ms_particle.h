@@ -49,7 +49,7 @@ MS_API double ms_particle_gyration(const ms_particle *particle);
  * @param[out] body       zeros on failure
  * @param      max_voxels the largest grid that may be made
  * @return MS_OK; MS_ERR_ARG for an empty clump; MS_ERR_LIMIT where the spheres are so far apart that the grid would be
- *         too large; MS_ERR_NOMEM
+ *         too large, or so large or small that their volume is no number; MS_ERR_NOMEM
  *
  * Source: the prototypical clump of Yuan 2019, section 4. Cost: one raster of 4 million voxels inside.
  */

@@ -7,6 +7,7 @@
 
 #include "base/ms_vector.h"
 #include "clump/ms_union.h"
+#include "mesh/ms_closest.h"
 
 /* Cells along the longest side of the box; of the coarser lattice, which tells the error, half as many. */
 enum { CELLS = 64 };
@@ -55,24 +56,6 @@ static double distance_to_mesh(double nearest[3], const void *body, const double
     double normal[3];
     const double away = ms_closest_distance(nearest, body, place, HUGE_VAL);
     return ms_closest_side(normal, body, place, away);
-}
-
-ms_status ms_envelope_body_clump(ms_envelope_body *out, const ms_clump *clump, ms_error *err)
-{
-    double area;
-    *out = (ms_envelope_body){.body = clump, .distance = distance_to_clump};
-    if (clump->n_spheres == 0) {
-        return ms_fail(err, MS_ERR_ARG, "a clump of no spheres has no envelope");
-    }
-    ms_clump_box(out->lo, out->hi, clump);
-    return ms_union_measure(&out->volume, &area, clump, err);
-}
-
-ms_envelope_body ms_envelope_body_mesh(const ms_mesh *mesh, const ms_closest *closest, double volume)
-{
-    ms_envelope_body out = {.body = closest, .volume = volume, .distance = distance_to_mesh};
-    ms_mesh_box(out.lo, out.hi, mesh);
-    return out;
 }
 
 static void find_cell_centre(double place[3], const envelope_cells *c, size_t cell)
@@ -291,6 +274,44 @@ ms_status ms_envelope_compute(ms_envelope *out, const ms_envelope_body *body, do
     }
     if (status == MS_OK) {
         *out = (ms_envelope){body->volume + fine, 2 * fabs(fine - coarse)};
+    }
+    return status;
+}
+
+static ms_status compute_all(ms_envelope *out, const ms_envelope_body *body, const double *radius, size_t count,
+                             ms_error *err)
+{
+    ms_status status = MS_OK;
+    for (size_t r = 0; r < count && status == MS_OK; r++) {
+        status = ms_envelope_compute(&out[r], body, radius[r], err);
+    }
+    return status;
+}
+
+ms_status ms_envelope_clump(ms_envelope *out, double *volume, const ms_clump *clump, const double *radius, size_t count,
+                            ms_error *err)
+{
+    double area;
+    ms_envelope_body body = {.body = clump, .distance = distance_to_clump};
+    if (clump->n_spheres == 0) {
+        return ms_fail(err, MS_ERR_ARG, "a clump of no spheres has no envelope");
+    }
+    ms_clump_box(body.lo, body.hi, clump);
+    const ms_status status = ms_union_measure(&body.volume, &area, clump, err);
+    *volume = body.volume;
+    return status == MS_OK ? compute_all(out, &body, radius, count, err) : status;
+}
+
+ms_status ms_envelope_mesh(ms_envelope *out, const ms_mesh *mesh, double volume, const double *radius, size_t count,
+                           ms_error *err)
+{
+    ms_closest *closest;
+    ms_status status = ms_closest_build(&closest, mesh, err);
+    if (status == MS_OK) {
+        ms_envelope_body body = {.body = closest, .volume = volume, .distance = distance_to_mesh};
+        ms_mesh_box(body.lo, body.hi, mesh);
+        status = compute_all(out, &body, radius, count, err);
+        ms_closest_free(closest);
     }
     return status;
 }

@@ -3,7 +3,9 @@
 #define MS_ENVELOPE_H
 
 #include "clump/ms_clump.h"
-#include "mesh/ms_closest.h"
+#include "mesh/ms_mesh.h"
+
+MS_C_BEGIN
 
 /** A body by its distance function. */
 typedef struct ms_envelope_body {
@@ -18,13 +20,6 @@ typedef struct ms_envelope {
     double volume;
     double error; /* of it: twice what twice as many cells along each side changed */
 } ms_envelope;
-
-/** The union of the spheres of a clump; not its carriers, which touch nothing. @param clump borrowed @return MS_OK;
- * MS_ERR_ARG for an empty clump; MS_ERR_NOMEM */
-ms_status ms_envelope_body_clump(ms_envelope_body *out, const ms_clump *clump, ms_error *err);
-
-/** A closed mesh. @param mesh, closest of it; borrowed @param volume of it */
-ms_envelope_body ms_envelope_body_mesh(const ms_mesh *mesh, const ms_closest *closest, double volume);
 
 /**
  * The closing of a body by a ball: what is left when all open balls of that radius which do not meet the body are taken
@@ -45,6 +40,29 @@ ms_envelope_body ms_envelope_body_mesh(const ms_mesh *mesh, const ms_closest *cl
  * solvent-excluded volume (Connolly, J. Appl. Cryst. 16 (1983) 548). Cost: some 10^6 distances; all cores, the same
  * bits at any number of threads.
  */
-ms_status ms_envelope_compute(ms_envelope *out, const ms_envelope_body *body, double radius, ms_error *err);
+MS_API ms_status ms_envelope_compute(ms_envelope *out, const ms_envelope_body *body, double radius, ms_error *err);
+
+/**
+ * The same of the union of the spheres of a clump, by several balls; not of its carriers, which touch nothing.
+ *
+ * @param[out] out    count values, of the balls of these radii
+ * @param[out] volume of the union
+ * @param      clump  with spheres
+ * @return MS_OK; MS_ERR_ARG for an empty clump; MS_ERR_NOMEM
+ */
+MS_API ms_status ms_envelope_clump(ms_envelope *out, double *volume, const ms_clump *clump, const double *radius,
+                                   size_t count, ms_error *err);
+
+/**
+ * The same of a closed mesh.
+ *
+ * @param[out] out    count values, of the balls of these radii
+ * @param      volume of the mesh
+ * @return MS_OK; MS_ERR_ARG for a mesh without triangles; MS_ERR_NOMEM
+ */
+MS_API ms_status ms_envelope_mesh(ms_envelope *out, const ms_mesh *mesh, double volume, const double *radius,
+                                  size_t count, ms_error *err);
+
+MS_C_END
 
 #endif

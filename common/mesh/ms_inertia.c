@@ -155,6 +155,23 @@ void ms_inertia_add(ms_body *body, const ms_body *part, int sign)
     body->volume = volume;
 }
 
+double ms_inertia_factor(const ms_body *body, double size)
+{
+    return size / cbrt(6 * body->volume / acos(-1.0));
+}
+
+void ms_inertia_scale(ms_body *body, double factor)
+{
+    const double f = factor;
+    body->volume = f * f * f * body->volume;
+    for (int k = 0; k < 3; k++) {
+        body->centroid[k] = f * body->centroid[k];
+        for (int l = 0; l < 3; l++) {
+            body->inertia[k][l] = f * f * f * f * f * body->inertia[k][l];
+        }
+    }
+}
+
 double ms_mesh_area(const ms_mesh *mesh)
 {
     sum area = {0};

@@ -39,6 +39,12 @@ MS_API ms_status ms_inertia_mesh(ms_body *body, const ms_mesh *mesh, ms_error *e
 /** Adds a part to a body, or with sign -1 takes it away; volume is left. Source: Steiner's theorem. */
 MS_API void ms_inertia_add(ms_body *body, const ms_body *part, int sign);
 
+/** Factor that scales a body to the volume of the ball of this diameter. */
+MS_API double ms_inertia_factor(const ms_body *body, double size);
+
+/** Scales a body about the origin, in place. */
+MS_API void ms_inertia_scale(ms_body *body, double factor);
+
 /** Surface area of the mesh; 0 for an empty one. */
 MS_API double ms_mesh_area(const ms_mesh *mesh);
 

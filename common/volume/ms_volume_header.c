@@ -93,8 +93,7 @@ static ms_status check_links(const char *path, size_t folder_length, const ms_wo
 /* How many characters of a header's path are its folder. */
 static size_t measure_folder(const char *header)
 {
-    const char *slash = strrchr(header, '/');
-    return slash ? (size_t)(slash + 1 - header) : 0;
+    return (size_t)(ms_file_base_name(header) - header);
 }
 
 ms_status ms_volume_read_beside(ms_bytes *bytes, const ms_word *file, const ms_text *header, ms_error *err)

@@ -48,7 +48,7 @@ def choose_cells(names, largest):
     if not names and not LIGGGHTS_SMOOTH:
         print("smooth: left out, as LIGGGHTS_SMOOTH names no engine", file=sys.stderr)
     asked = names.split(",") if names else [name for name in [*cells.CELLS, *cells.CONTROLS]
-                                            if LIGGGHTS_SMOOTH or name != "smooth"]
+                                            if LIGGGHTS_SMOOTH or cells.find_cell(name).method != "smooth"]
     return [name for name in asked if cells.find_cell(name).n <= largest]
 
 

@@ -20,6 +20,7 @@ CELLS = {
     "sphere-0.1": Cell("sphere", 1, 1.0, 0.1),
     "variational-60": Cell("variational", 60),
     "smooth": Cell("smooth", 0),  # the candy itself, a superquadric
+    "smooth-ball": Cell("smooth", 1),  # the ball of sphere-0 as a superquadric
 }
 # Two of the cells again, since stiffness and damping change with the number of spheres.
 CONTROLLED = ["variational-3", "variational-10"]
@@ -109,8 +110,8 @@ def find_law(folder, name):
     return {"young": YOUNG * factors["modulus"], "e": factors["restitution"]}
 
 
-def make_smooth():
-    axes = " ".join(repr(1e-3 * x) for x in (A, A, C))
+def make_smooth(name):
+    axes = " ".join(repr(1e-3 * x) for x in ([(A * A * C) ** (1 / 3)] * 3 if name == "smooth-ball" else (A, A, C)))
     return {"template": f"fix clump all particletemplate/superquadric 15485863 atom_type 1 volume_limit 1e-300 density "
                         f"constant {DENSITY} shape constant {axes} blockiness constant 2 2",
             "kinds": "1 clump 1.0", "rolling": 0.0, "members": 1, "young": YOUNG, "e": RESTITUTION, "smooth": True}
@@ -121,7 +122,7 @@ def make(folder, name):
     modulus in Pa, restitution. What is in the folder is taken."""
     cell, path = find_cell(name), os.path.join(folder, name + ".liggghts")
     if cell.method == "smooth":
-        return make_smooth()
+        return make_smooth(name)
     if not os.path.exists(path + ".in"):
         write_clump(folder, path, cell)
     with open(path + ".in", encoding="utf-8") as stream:

@@ -17,6 +17,8 @@ def find_group(name):
     cell = CELLS[name]
     if name in SERIES[1:]:
         return "variational"
+    if name == "smooth-ball":
+        return "a sphere, as a superquadric"
     if cell.method == "sphere":
         return f"a sphere, rolling friction {cell.rolling:g}"
     return f"{cell.method}, radii times {cell.radii:g}" if cell.radii != 1 else cell.method

@@ -179,12 +179,6 @@ static ms_status open_file(ms_output *output, const char *stem, const char *endi
     return status;
 }
 
-static const char *name_of(const char *stem)
-{
-    const char *slash = strrchr(stem, '/');
-    return slash ? slash + 1 : stem;
-}
-
 ms_status ms_chart_write(const ms_chart *chart, const char *stem, ms_error *err)
 {
     ms_chart_range x, y;
@@ -201,7 +195,7 @@ ms_status ms_chart_write(const ms_chart *chart, const char *stem, ms_error *err)
         status = open_file(&output, stem, "gp", err);
     }
     if (status == MS_OK) {
-        status = ms_chart_script_put(output.stream, chart, name_of(stem), &x, &y, err);
+        status = ms_chart_script_put(output.stream, chart, ms_file_base_name(stem), &x, &y, err);
         status = ms_output_close(&output, status, err);
     }
     return status;
@@ -213,7 +207,7 @@ enum { NO_FOLDER = 126, NO_GNUPLOT = 127 };
 static void become_gnuplot(const char *stem, char *script)
 {
     char program[] = "gnuplot", *words[] = {program, script, NULL};
-    const char *name = name_of(stem);
+    const char *name = ms_file_base_name(stem);
     char *folder = strndup(stem, (size_t)(name - stem));
     if (!folder || (folder[0] && chdir(folder) != 0)) {
         _exit(NO_FOLDER);
@@ -229,7 +223,7 @@ ms_status ms_chart_draw(const char *stem, ms_error *err)
     if (!script) {
         return ms_fail(err, MS_ERR_NOMEM, "%s: no memory for the chart", stem);
     }
-    sprintf(script, "./%s.gp", name_of(stem)); /* no flag, however it begins */
+    sprintf(script, "./%s.gp", ms_file_base_name(stem)); /* no flag, however it begins */
     const pid_t child = fork();
     if (child == 0) {
         become_gnuplot(stem, script);

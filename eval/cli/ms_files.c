@@ -20,7 +20,7 @@ static char *find_place(const char *path)
     if (folder && !real && strcmp(folder, path) != 0) {
         real = find_place(folder);
     }
-    const char *name = slash ? slash + 1 : path;
+    const char *name = ms_file_base_name(path);
     place = real ? malloc(strlen(real) + strlen(name) + 2) : NULL;
     if (place) {
         sprintf(place, "%s/%s", real, name);
@@ -73,38 +73,6 @@ ms_status ms_files_check_standard(const char *const *path, size_t count, ms_erro
                                "- is given for %zu inputs, and standard input can be read once; save the others and "
                                "name their files",
                                found);
-}
-
-/* How many characters of a name are not its ending, .gz and what is before that included. */
-static size_t measure_stem(const char *base, size_t length)
-{
-    for (int packed = 0; packed < 2; packed++) {
-        size_t dot = length > 0 ? length - 1 : 0;
-        while (dot > 0 && base[dot] != '.') {
-            dot--;
-        }
-        const int is_packed = length - dot == 3 && strncmp(base + dot, ".gz", 3) == 0;
-        length = dot > 0 ? dot : length;
-        if (!is_packed) {
-            break;
-        }
-    }
-    return length;
-}
-
-const char *ms_files_stem(size_t *length, const char *path)
-{
-    const char *whole = ms_file_is_standard(path) ? "stdin" : path;
-    size_t end = strlen(whole);
-    while (end > 1 && whole[end - 1] == '/') { /* a folder of slices */
-        end--;
-    }
-    size_t begin = end;
-    while (begin > 0 && whole[begin - 1] != '/') {
-        begin--;
-    }
-    *length = measure_stem(whole + begin, end - begin);
-    return whole + begin;
 }
 
 static ms_status make_room(ms_files *files, ms_error *err)
@@ -252,15 +220,17 @@ ms_status ms_files_check(ms_files *files, ms_error *err)
     return status;
 }
 
-ms_status ms_files_remove(const ms_files *files, ms_error *err)
+ms_status ms_files_remove(ms_files *files, ms_status status, ms_error *err)
 {
-    for (size_t f = 0; f < files->count; f++) {
+    for (size_t f = 0; f < files->count && status == MS_OK; f++) {
         const char *path = files->file[f].path;
         if (unlink(path) != 0 && errno != ENOENT) {
-            return ms_fail(err, MS_ERR_IO, "%s: the file of a run before cannot be removed: %s", path, strerror(errno));
+            status =
+                ms_fail(err, MS_ERR_IO, "%s: the file of a run before cannot be removed: %s", path, strerror(errno));
         }
     }
-    return MS_OK;
+    ms_files_free(files);
+    return status;
 }
 
 void ms_files_free(ms_files *files)

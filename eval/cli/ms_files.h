@@ -42,11 +42,6 @@ ms_status ms_files_take_page(const char **page, const char *flag, const char *pa
  */
 ms_status ms_files_check_standard(const char *const *path, size_t count, ms_error *err);
 
-/** How the name of a file that is made from this one begins: its name without folder and ending, and without the one
- * before .gz; "stdin" for "-". It need not be a name that a file may have (ms_escape_file_name). @param[out] length of
- * it; it ends with no 0 byte */
-const char *ms_files_stem(size_t *length, const char *path);
-
 /** Adds a file; standard output, devices and pipes are passed over. @return MS_OK; MS_ERR_NOMEM */
 ms_status ms_files_add(ms_files *files, const char *path, ms_file_use use, ms_error *err);
 
@@ -87,9 +82,14 @@ ms_status ms_files_with_ending(const char ***path, size_t *count, const ms_files
  */
 ms_status ms_files_check(ms_files *files, ms_error *err);
 
-/** Removes the files that a run before left there, so that none stands for one that this run does not write.
- * @return MS_OK; MS_ERR_IO */
-ms_status ms_files_remove(const ms_files *files, ms_error *err);
+/**
+ * Removes the files that a run before left there, so that none stands for one that this run does not write. Frees the
+ * list in any case.
+ *
+ * @param status of listing them: nothing is removed unless it is MS_OK
+ * @return `status` if that is not MS_OK; MS_OK; MS_ERR_IO
+ */
+ms_status ms_files_remove(ms_files *files, ms_status status, ms_error *err);
 
 void ms_files_free(ms_files *files);
 

@@ -167,6 +167,30 @@ static const char *name_of_letter(const ms_command *command, int letter)
     return "";
 }
 
+/* Is an argument of the flag the name of a file or a folder? What else is empty the commands refuse by what it is. */
+static int takes_path(const ms_command *command, const char *name)
+{
+    for (const ms_flag *flag = command->flags; flag->name; flag++) {
+        if (strcmp(flag->name, name) == 0) {
+            return flag->argument && (strcmp(flag->argument, "FILE") == 0 || strcmp(flag->argument, "SHAPE") == 0 ||
+                                      strcmp(flag->argument, "DIR") == 0);
+        }
+    }
+    return 0;
+}
+
+/* No name is empty. */
+static ms_status check_words(int count, char *const *word, ms_error *err)
+{
+    for (int w = 0; w < count; w++) {
+        if (word[w][0] == '\0') {
+            return ms_fail(err, MS_ERR_ARG, "word %d is empty where a name should stand; is a variable not set?",
+                           w + 1);
+        }
+    }
+    return MS_OK;
+}
+
 int ms_flags_parse(int *first_word, const ms_command *command, int generator_options, int argc, char **argv,
                    ms_flag_handler handler, void *context)
 {
@@ -185,13 +209,17 @@ int ms_flags_parse(int *first_word, const ms_command *command, int generator_opt
             return refuse_flag(command, &t, found, argc, argv);
         }
         const char *flag = found == 0 ? t.longs[at].name : name_of_letter(command, found);
-        const ms_status status = handler(context, flag, optarg, &err);
+        const ms_status status =
+            optarg && optarg[0] == '\0' && takes_path(command, flag)
+                ? ms_fail(&err, MS_ERR_ARG, "--%s '' is an empty name; is a variable not set?", flag)
+                : handler(context, flag, optarg, &err);
         if (status != MS_OK) {
             return ms_flags_refuse(command, status, &err);
         }
     }
     *first_word = optind;
-    return MS_FLAGS_GO_ON;
+    const ms_status status = check_words(argc - optind, argv + optind, &err);
+    return status == MS_OK ? MS_FLAGS_GO_ON : ms_flags_refuse(command, status, &err);
 }
 
 int ms_flags_fail(const ms_command *command, const ms_error *err)

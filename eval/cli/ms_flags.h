@@ -44,7 +44,7 @@ enum { MS_FLAGS_GO_ON = -1 };
 
 /**
  * Parses the flags of a command; --help prints the help. Flags may stand anywhere; words move
- * behind them.
+ * behind them. An empty word is refused, and an empty name behind a flag.
  *
  * @param[out] first_word index in argv of the first word that is no flag
  * @param      generator_options nonzero: options of generators are flags too

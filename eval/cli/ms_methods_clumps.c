@@ -18,7 +18,7 @@ static int is_any(const char *name, int in_folder)
 static size_t match_name(const char *file, const char *shape)
 {
     size_t of_file, of_shape;
-    const char *a = ms_files_stem(&of_file, file), *b = ms_files_stem(&of_shape, shape);
+    const char *a = ms_file_stem(&of_file, file), *b = ms_file_stem(&of_shape, shape);
     const int begins = of_shape <= of_file && memcmp(a, b, of_shape) == 0;
     return begins && (of_file == of_shape || a[of_shape] == '-' || a[of_shape] == '_') ? of_shape : 0;
 }

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ms_escape.h"
 #include "base/ms_file.h"
 #include "view/ms_view_formats.h"
 
@@ -73,19 +72,9 @@ static ms_status add_asked(ms_outputs *outputs, const char *path, ms_need need, 
 static ms_status add_default(ms_outputs *outputs, const char *source, const char *behind, const ms_format *format,
                              ms_error *err)
 {
-    size_t length;
-    const char *stem = ms_files_stem(&length, source);
-    const char *folder = outputs->folder ? outputs->folder : "";
-    const size_t room = strlen(folder) + length + strlen(behind) + strlen(format->ending) + 3;
-    char *path = malloc(room);
+    char *path = ms_write_path(outputs->folder ? outputs->folder : "", source, behind, format);
     if (!path) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the names of the outputs");
-    }
-    const int start = snprintf(path, room, "%s%s", folder, folder[0] ? "/" : "");
-    snprintf(path + start, room - (size_t)start, "%.*s%s.%s", (int)length, stem, behind, format->ending);
-    ms_escape_file_name(path + start);
-    if (ms_write_check_path(path, format, NULL) != MS_OK) {
-        ms_escape_script_name(path + start);
     }
     outputs->file[outputs->n_files++] = (ms_output_file){path, path, format};
     return MS_OK;

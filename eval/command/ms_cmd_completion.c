@@ -55,13 +55,14 @@ static int run_completion(const ms_command *command, const ms_command *const *al
 {
     int first;
     ms_error err;
+    /* How the scripts call: with what is typed so far, which may end with an empty word. */
+    if (argc > 3 && strcmp(argv[1], "words") == 0 && strcmp(argv[2], "--") == 0) {
+        ms_complete_print(stdout, all, argv + 3, (size_t)argc - 3);
+        return EXIT_DONE;
+    }
     const int code = ms_flags_parse(&first, command, 0, argc, argv, NULL, NULL);
     if (code != MS_FLAGS_GO_ON) {
         return code;
-    }
-    if (argc - first > 1 && strcmp(argv[first], "words") == 0) {
-        ms_complete_print(stdout, all, argv + first + 1, (size_t)(argc - first - 1));
-        return EXIT_DONE;
     }
     if (argc - first != 1) {
         return ms_flags_wrong_words(command, "takes the name of a shell", 1, argc - first, argv + first);

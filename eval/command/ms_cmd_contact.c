@@ -181,20 +181,19 @@ static ms_status study_contact(ms_contact *contact, const contact_bodies *b, con
 static ms_status find_envelopes(ms_envelope_table *table, const contact_bodies *b, const ms_contact *contact,
                                 ms_error *err)
 {
-    ms_envelope_body body;
-    ms_closest *closest = NULL;
+    double radius[MS_ENVELOPE_MOST];
+    for (size_t r = 0; r < table->count; r++) {
+        radius[r] = table->radius[r] * contact->r_eq;
+    }
     table->r_eq = contact->r_eq;
     table->clump.mean_width = contact->clump.mean_width;
     table->shape.mean_width = contact->shape.mean_width;
-    ms_status status = ms_envelope_body_clump(&body, &b->clump, err);
-    if (status == MS_OK) {
-        status = ms_envelope_fill(&table->clump, table, &body, err);
+    ms_status status =
+        ms_envelope_clump(table->clump.envelope, &table->clump.volume, &b->clump, radius, table->count, err);
+    if (status == MS_OK && b->mesh.n_triangles > 0) {
+        table->shape.volume = b->body.volume;
+        status = ms_envelope_mesh(table->shape.envelope, &b->mesh, b->body.volume, radius, table->count, err);
     }
-    if (status == MS_OK && b->mesh.n_triangles > 0 && (status = ms_closest_build(&closest, &b->mesh, err)) == MS_OK) {
-        body = ms_envelope_body_mesh(&b->mesh, closest, b->body.volume);
-        status = ms_envelope_fill(&table->shape, table, &body, err);
-    }
-    ms_closest_free(closest);
     return status;
 }
 

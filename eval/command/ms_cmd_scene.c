@@ -12,12 +12,12 @@
 #include "cli/ms_until.h"
 #include "clump/formats/ms_json.h"
 #include "ms_commands.h"
+#include "ms_sieve.h"
 #include "scene/ms_scene_charts.h"
 #include "scene/ms_scene_choose.h"
 #include "scene/ms_scene_engines.h"
 #include "scene/ms_scene_files.h"
 #include "scene/ms_scene_page.h"
-#include "scene/ms_sieve.h"
 
 enum { DEFAULT_MAX_SPHERES = 100 };
 
@@ -383,6 +383,17 @@ static int resolve_and_work(const ms_command *command, scene_arguments *a, const
     return status == MS_OK ? EXIT_DONE : ms_flags_fail(command, &err);
 }
 
+static ms_status apply_sieve(ms_manifest *manifest, ms_sieve *sieve, ms_error *err)
+{
+    ms_manifest made;
+    const ms_status status = ms_sieve_apply(&made, sieve, manifest, err);
+    if (status == MS_OK) {
+        ms_manifest_free(manifest);
+        *manifest = made;
+    }
+    return status;
+}
+
 /* Sizes by the sieve curve. */
 static ms_status read_sizes(ms_manifest *manifest, scene_arguments *a, ms_error *err)
 {
@@ -391,7 +402,7 @@ static ms_status read_sizes(ms_manifest *manifest, scene_arguments *a, ms_error 
         status =
             ms_fail(err, MS_ERR_ARG, "%s has sizes, and so has --sieve %s; drop one of them", a->source, a->sieve_file);
     } else if (status == MS_OK && a->sieve_file) {
-        status = ms_sieve_apply(&a->sieve, manifest, err);
+        status = apply_sieve(manifest, &a->sieve, err);
     }
     if (status == MS_OK && a->min_radius > 0 && ms_manifest_has_sizes(manifest)) {
         status = ms_fail(err, MS_ERR_ARG,

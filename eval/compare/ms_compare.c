@@ -133,7 +133,7 @@ json_t *ms_compare_json(char *const *row, size_t count)
 void ms_compare_name(char *out, size_t size, const char *shape, const char *label)
 {
     size_t length;
-    const char *stem = ms_files_stem(&length, shape);
+    const char *stem = ms_file_stem(&length, shape);
     snprintf(out, size, "%.*s%s%s", (int)length, stem, label[0] ? "-" : "", label);
     ms_escape_file_name(out);
 }

@@ -330,11 +330,7 @@ static ms_status remove_charts(const records *all, ms_error *err)
             status = ms_compare_charts_list(&files, all->folder, name, err);
         }
     }
-    if (status == MS_OK) {
-        status = ms_files_remove(&files, err);
-    }
-    ms_files_free(&files);
-    return status;
+    return ms_files_remove(&files, status, err);
 }
 
 /* Without gnuplot all scripts are written nevertheless; the first failure is reported. */

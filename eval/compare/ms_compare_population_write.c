@@ -335,12 +335,8 @@ static ms_status list_charts(ms_files *files, const char *folder, ms_error *err)
 static ms_status remove_charts(const char *folder, ms_error *err)
 {
     ms_files files = {0};
-    ms_status status = list_charts(&files, folder, err);
-    if (status == MS_OK) {
-        status = ms_files_remove(&files, err);
-    }
-    ms_files_free(&files);
-    return status;
+    const ms_status status = list_charts(&files, folder, err);
+    return ms_files_remove(&files, status, err);
 }
 
 /* All charts; without gnuplot their scripts are written nevertheless, and the first failure is reported. */

@@ -20,17 +20,6 @@ static double find_ball(const ms_envelope_table *t)
     return 4 * PI / 3 * pow(t->r_eq, 3);
 }
 
-ms_status ms_envelope_fill(ms_envelope_side *side, const ms_envelope_table *table, const ms_envelope_body *body,
-                           ms_error *err)
-{
-    ms_status status = MS_OK;
-    side->volume = body->volume;
-    for (size_t r = 0; r < table->count && status == MS_OK; r++) {
-        status = ms_envelope_compute(&side->envelope[r], body, table->radius[r] * table->r_eq, err);
-    }
-    return status;
-}
-
 static void print_side(FILE *stream, const char *name, const ms_envelope_table *t, const ms_envelope_side *side)
 {
     const double ball = find_ball(t);

@@ -23,10 +23,6 @@ typedef struct ms_envelope_table {
     ms_envelope_side clump, shape;
 } ms_envelope_table;
 
-/** All radii for one of the table's sides. @return as ms_envelope_compute */
-ms_status ms_envelope_fill(ms_envelope_side *side, const ms_envelope_table *table, const ms_envelope_body *body,
-                           ms_error *err);
-
 /* Volumes over that of the ball of r_eq, widths over its diameter. */
 void ms_envelope_report_print(FILE *stream, const ms_envelope_table *table);
 void ms_envelope_report_csv(FILE *stream, const ms_envelope_table *table);

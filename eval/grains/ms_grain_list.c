@@ -23,7 +23,7 @@ enum { LONGEST_NAME = 200 };
 static char *make_name(const char *path, uint32_t label)
 {
     size_t length;
-    const char *stem = ms_files_stem(&length, path);
+    const char *stem = ms_file_stem(&length, path);
     char *name = malloc(LONGEST_NAME + 16);
     if (name) {
         length = length < LONGEST_NAME ? length : LONGEST_NAME;

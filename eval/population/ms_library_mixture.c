@@ -23,10 +23,9 @@ typedef struct template_of {
 static void cut_stem(template_of *t, const char *file)
 {
     snprintf(t->stem, sizeof t->stem, "%s", file);
-    char *slash = strrchr(t->stem, '/');
-    char *name = slash ? slash + 1 : t->stem, *dot = strrchr(name, '.');
-    t->name = name;
-    if (dot && dot > name) {
+    t->name = ms_file_base_name(t->stem);
+    char *dot = strrchr(t->stem, '.');
+    if (dot && dot > t->name) {
         *dot = '\0';
     }
 }

@@ -54,7 +54,10 @@ void ms_library_report_print(FILE *stream, const ms_library *l, const ms_library
     fprintf(stream, "\nwrote %s/library.csv%s%s%s%s\n", folder, l->size ? ", sizes.csv" : "",
             written->scene ? ", scene.csv" : "", written->scripts[0] ? ", " : "", written->scripts);
     if (!written->scene) {
-        fputs("no scene.csv: it takes grains that are meshes, found from here by the paths in grains.csv\n", stream);
+        fprintf(stream,
+                "no scene.csv: it takes grains that are meshes, found from here by the paths in grains.csv, and has a "
+                "row for each in each class of size, %d at most\n",
+                MS_LIBRARY_MAX_ROWS);
     }
     if (!written->scripts[0]) {
         fputs("no script of an engine: it takes a run with --density and the engine's --format\n", stream);

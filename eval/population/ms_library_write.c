@@ -58,13 +58,34 @@ static void print_sizes(FILE *stream, const ms_library *l)
     }
 }
 
+/* Diameters that differ by less are one: of grains of one volume they differ by rounding. */
+static const double SAME_SIZE = 1e-9;
+
+/* A row for each class; classes of one diameter are one, since a shape stands once in each of its sizes. */
+static void print_grain_in_sizes(FILE *stream, const ms_library *l, const char *path, double number)
+{
+    for (size_t c = 0, next = 0; c < l->goal.classes; c = next) {
+        const double diameter = l->size[c].diameter;
+        double share = 0;
+        do {
+            share += l->size[next++].number;
+        } while (next < l->goal.classes && fabs(l->size[next].diameter / diameter - 1) < SAME_SIZE);
+        fprintf(stream, "%s,%.0f,%s\n", path, fmax(1, round(number * share)), ms_text_of_number(diameter).text);
+    }
+}
+
 /* Counts of a million particles. Paths are whole: the manifest stands elsewhere. */
 static void print_scene(FILE *stream, const ms_library *l, char *const *path)
 {
     enum { OF = 1000000 };
-    fputs("shape,count\n", stream);
+    fputs(l->size ? "shape,count,size\n" : "shape,count\n", stream);
     for (size_t j = 0; j < l->choice.k; j++) {
-        fprintf(stream, "%s,%.0f\n", path[j], fmax(1, round(OF * ms_library_number(l, j))));
+        const double number = OF * ms_library_number(l, j);
+        if (l->size) {
+            print_grain_in_sizes(stream, l, path[j], number);
+        } else {
+            fprintf(stream, "%s,%.0f\n", path[j], fmax(1, round(number)));
+        }
     }
 }
 
@@ -94,7 +115,7 @@ static ms_status write_scene(int *written, const ms_library *l, const char *fold
     char file[4096];
     char **path = calloc(l->choice.k, sizeof *path);
     ms_status status = path ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "no memory for %zu paths", l->choice.k);
-    *written = path != NULL;
+    *written = path && l->choice.k * (l->size ? l->goal.classes : 1) <= MS_LIBRARY_MAX_ROWS;
     for (size_t j = 0; j < l->choice.k && *written; j++) {
         const ms_grain_found *found = &chosen_grain(l, j)->found;
         path[j] = isnan(found->label) ? realpath(found->source, NULL) : NULL;

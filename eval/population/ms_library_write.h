@@ -4,10 +4,13 @@
 
 #include "ms_library.h"
 
+/** Rows of a scene.csv: what a manifest of `scene` may have. */
+enum { MS_LIBRARY_MAX_ROWS = 1000 };
+
 /** What was written, beside library.csv and the charts. */
 typedef struct ms_library_written {
     char scripts[256]; /* names of the engines' scripts, with commas; "" if there are none */
-    int scene;         /* scene.csv: all grains are meshes, which are there */
+    int scene;         /* scene.csv: all grains are meshes, which are there, and it has not too many rows */
     int charts;        /* nonzero: gnuplot drew them */
     ms_error why_not;  /* of charts that were not drawn */
 } ms_library_written;

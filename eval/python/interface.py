@@ -110,6 +110,8 @@ typedef struct {
     ...;
 } ms_measure;
 extern const ms_measure ms_measures[];
+enum { MS_MEASURE_DICE, MS_MEASURE_COVERAGE_CUT, ... };
+const ms_measure *ms_measure_find_goal(const char *name, ms_error *err);
 int ms_measure_is_of_score(const ms_measure *measure);
 ms_status ms_metrics_compute(ms_metrics *metrics, ms_score *curve, const ms_target *target, const ms_clump *clump,
                              size_t max_voxels, ms_error *err);
@@ -134,6 +136,7 @@ typedef struct {
     const char *name, *summary, *source;
     int nested, baseline;
     const ms_option *options;
+    const char *volume_by;
     ...;
 } ms_generator;
 typedef struct {
@@ -213,6 +216,38 @@ ms_status ms_allocate_budget(size_t *n, ms_allocation *allocated, const ms_share
 ms_status ms_allocate_error(size_t *n, ms_allocation *allocated, const ms_share *share, size_t count, double error,
                             ms_error *err);
 size_t ms_allocate_knee(const ms_share *share, double part);
+typedef struct { char *path; uint64_t particles; double tolerance, size; ...; } ms_manifest_row;
+typedef struct { ms_manifest_row *row; size_t count; ...; } ms_manifest;
+typedef struct { double size, share; uint64_t count; double mass; ...; } ms_sieve_class;
+typedef struct { size_t count; ms_sieve_class *of; ...; } ms_sieve;
+enum { MS_MANIFEST_MAX_SHAPES, MS_MANIFEST_MAX_PARTICLES, MS_SIEVE_MAX_CLASSES, ... };
+static const double MS_MANIFEST_LEAST_SIZE;
+static const double MS_MANIFEST_MOST_SIZE;
+ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *err);
+void ms_manifest_free(ms_manifest *manifest);
+ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_error *err);
+ms_status ms_sieve_parse(ms_sieve *sieve, const ms_bytes *bytes, const char *name, size_t classes, ms_error *err);
+ms_status ms_sieve_apply(ms_manifest *made, ms_sieve *sieve, const ms_manifest *manifest, ms_error *err);
+void ms_sieve_free(ms_sieve *sieve);
+typedef struct { size_t most; ms_clump *clump; ms_score *score; double *dice; ms_error *remarks; } ms_templates;
+typedef struct {
+    const ms_generator *generator;
+    const ms_run *run;
+    const ms_body *equal;
+    size_t max_voxels;
+} ms_templates_how;
+ms_status ms_templates_make(ms_templates *templates, const ms_templates_how *how, ms_error *err);
+ms_status ms_templates_alloc(ms_templates *templates, size_t most, ms_error *err);
+ms_status ms_templates_search(ms_templates *templates, size_t *reached, const ms_templates_how *how,
+                              const ms_measure *measure, double value, size_t first, ms_error *err);
+size_t ms_templates_least(double *best, const ms_templates *templates, const ms_measure *measure, double value);
+ms_status ms_templates_surface(double *surface, const ms_target *target, ms_error *err);
+double ms_templates_dice(double length, double surface, double factor);
+double ms_templates_length(double dice, double surface, double factor);
+void ms_templates_free(ms_templates *templates);
+double ms_inertia_factor(const ms_body *body, double size);
+void ms_inertia_scale(ms_body *body, double factor);
+ms_status ms_clump_scale(ms_clump *scaled, const ms_clump *clump, double factor, ms_error *err);
 
 /* contacts */
 #define MS_CONTACT_MAX_OVERLAPS ...
@@ -262,6 +297,11 @@ ms_status ms_contact_study(ms_contact *contact, const ms_clump *clump, const ms_
                            const ms_contact_options *options, ms_error *err);
 const ms_pose *ms_contact_nearest(double *angle, const ms_contact_form *from, const double *direction);
 void ms_contact_free(ms_contact *contact);
+typedef struct { double volume, error; } ms_envelope;
+ms_status ms_envelope_clump(ms_envelope *out, double *volume, const ms_clump *clump, const double *radius, size_t count,
+                            ms_error *err);
+ms_status ms_envelope_mesh(ms_envelope *out, const ms_mesh *mesh, double volume, const double *radius, size_t count,
+                           ms_error *err);
 ms_factors ms_factors_of(const ms_contact *contact, const ms_contact_row *row, double single);
 ms_status ms_support_from_mesh(ms_support *body, const ms_mesh *mesh, const double *centre, ms_error *err);
 ms_status ms_support_from_grid(ms_support *body, const ms_grid *grid, const double *centre, ms_error *err);
@@ -276,11 +316,27 @@ typedef struct {
     const char *record;
     ...;
 } ms_content;
-typedef struct { const char *name, *ending, *summary; ...; } ms_format;
+typedef struct { const char *suffix; ...; } ms_packing_part;
+typedef struct { const char *name, *ending, *summary; ms_packing_part scene; ...; } ms_format;
+typedef struct {
+    const ms_clump *clump;
+    const ms_particle *particle;
+    const char *path, *name;
+    size_t count;
+} ms_scene_kind;
+typedef struct { double width[2]; int is_round; } ms_scene_vessel;
 extern const ms_format ms_formats[];
 const ms_format *ms_write_format_find(const char *name, ms_error *err);
 const ms_format *ms_write_format_of_path(const char *path, ms_error *err);
 ms_status ms_write_remark(char *text, const ms_content *content, const ms_format *format, ms_error *err);
+ms_status ms_write_check(const ms_content *content, const ms_format *format, ms_error *err);
+ms_status ms_write_check_path(const char *path, const ms_format *format, ms_error *err);
+char *ms_write_path(const char *folder, const char *source, const char *behind, const ms_format *format);
+char *ms_scene_script_path(const char *folder, const ms_format *format);
+ms_status ms_scene_script_check(const ms_scene_kind *kind, size_t count, const ms_scene_vessel *vessel, ms_error *err);
+ms_status ms_scene_script_write(const ms_scene_kind *kind, size_t count, const ms_scene_vessel *vessel,
+                                const char *folder, const ms_format *format, ms_error *err);
+void free(void *memory);
 ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err);
 ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path, ms_error *err);
 """
@@ -288,5 +344,5 @@ ms_status ms_read_clump(ms_clump *clump, ms_particle *particle, const char *path
 if __name__ == "__main__":
     library = FFI()
     library.cdef(DECLARATIONS)
-    library.set_source("mskit._library", '#include <omp.h>\n#include "mskit.h"\n')
+    library.set_source("mskit._library", '#include <omp.h>\n#include <stdlib.h>\n#include "mskit.h"\n')
     library.emit_c_code(sys.argv[1])

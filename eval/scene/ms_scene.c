@@ -4,13 +4,9 @@
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/ms_progress.h"
 #include "cli/ms_report.h"
-#include "clump/ms_equal_volume.h"
-#include "measure/ms_descriptors.h"
-#include "ms_curve.h"
 #include "ms_scene_search.h"
 #include "queue/ms_queue.h"
 
@@ -21,28 +17,23 @@ const ms_clump *ms_scene_clump(const ms_scene_shape *shape)
 
 const ms_score *ms_scene_score(const ms_scene_shape *shape)
 {
-    return &shape->score[shape->chosen - 1];
+    return &shape->templates.score[shape->chosen - 1];
 }
 
 double ms_scene_gain(const ms_scene_shape *shape)
 {
-    return shape->chosen > 1 ? shape->dice[shape->chosen - 2] - shape->dice[shape->chosen - 1] : (double)NAN;
-}
-
-/* Mean distance of surfaces that have this D, 2 V D / A. */
-static double length_of_dice(const ms_scene_shape *shape, double dice)
-{
-    return 2 * dice * shape->factor / shape->surface;
+    return shape->chosen > 1 ? shape->templates.dice[shape->chosen - 2] - shape->templates.dice[shape->chosen - 1]
+                             : (double)NAN;
 }
 
 double ms_scene_distance(const ms_scene_shape *shape)
 {
-    return length_of_dice(shape, shape->dice[shape->chosen - 1]);
+    return ms_templates_length(shape->templates.dice[shape->chosen - 1], shape->surface, shape->factor);
 }
 
 ms_share ms_scene_share(const ms_scene_shape *shape)
 {
-    return (ms_share){shape->row->particles, shape->most, shape->dice};
+    return (ms_share){shape->row->particles, shape->templates.most, shape->templates.dice};
 }
 
 const ms_scene_shape *ms_scene_smallest(const ms_scene *scene)
@@ -64,28 +55,17 @@ static ms_status miss_tolerance(const ms_scene_shape *shape, const ms_goal *goal
     return ms_fail(err, MS_ERR_LIMIT,
                    "%s: no template of up to %zu spheres has %s %.6g, the best has %.6g; raise --max-spheres, use more "
                    "cells or another method, or ease the tolerance",
-                   ms_manifest_name_row(shape->row).text, shape->most,
+                   ms_manifest_name_row(shape->row).text, shape->templates.most,
                    is_length ? "a mean distance of" : goal->measure->name, is_length ? goal->length : shape->tolerance,
-                   is_length ? length_of_dice(shape, best) : best);
+                   is_length ? ms_templates_length(best, shape->surface, shape->factor) : best);
 }
 
 /* The least number of spheres that reaches a tolerance. */
 static ms_status choose_by_tolerance(ms_scene_shape *shape, const ms_goal *goal, ms_error *err)
 {
-    const double value = shape->tolerance;
-    double best = (double)NAN;
-    for (size_t n = 1; n <= shape->most; n++) {
-        if (shape->clump[n - 1].n_spheres == 0) { /* not run */
-            continue;
-        }
-        const double have = goal->measure->of_score(&shape->score[n - 1]);
-        if (ms_measure_is_reached(goal->measure, have, value)) {
-            shape->chosen = n;
-            return MS_OK;
-        }
-        best = goal->measure->better == MS_BETTER_MORE ? fmax(best, have) : fmin(best, have);
-    }
-    return miss_tolerance(shape, goal, best, err);
+    double best;
+    shape->chosen = ms_templates_least(&best, &shape->templates, goal->measure, shape->tolerance);
+    return shape->chosen > 0 ? MS_OK : miss_tolerance(shape, goal, best, err);
 }
 
 static ms_status choose_by_knee(ms_scene_shape *shape, const ms_goal *goal, ms_error *err)
@@ -97,7 +77,7 @@ static ms_status choose_by_knee(ms_scene_shape *shape, const ms_goal *goal, ms_e
                : ms_fail(err, MS_ERR_LIMIT,
                          "%s: up to the last of %zu spheres each takes away %.6g of D or more; raise --max-spheres or "
                          "the part",
-                         shape->row->path, shape->most, goal->value);
+                         shape->row->path, shape->templates.most, goal->value);
 }
 
 /* What the goal says of a shape alone. */
@@ -109,163 +89,31 @@ static ms_status choose_alone(ms_scene_shape *shape, const ms_goal *goal, ms_err
     return goal->kind == MS_GOAL_KNEE ? choose_by_knee(shape, goal, err) : MS_OK;
 }
 
-/* Where a method gave fewer spheres than asked for, the better of both clumps stands at their number. */
-static void choose_numbers(ms_scene_shape *shape)
-{
-    for (size_t n = shape->most; n >= 1; n--) {
-        const size_t have = shape->clump[n - 1].n_spheres;
-        if (have < n && shape->score[n - 1].dice < shape->score[have - 1].dice) {
-            const ms_clump clump = shape->clump[n - 1];
-            const ms_score score = shape->score[n - 1];
-            const ms_error remarks = shape->remarks[n - 1];
-            shape->clump[n - 1] = shape->clump[have - 1];
-            shape->score[n - 1] = shape->score[have - 1];
-            shape->remarks[n - 1] = shape->remarks[have - 1];
-            shape->clump[have - 1] = clump;
-            shape->score[have - 1] = score;
-            shape->remarks[have - 1] = remarks;
-        }
-    }
-    for (size_t n = 0; n < shape->most; n++) {
-        shape->dice[n] = shape->score[n].dice;
-    }
-}
-
-static ms_status make_room(ms_scene_shape *shape, size_t count, ms_error *err)
-{
-    shape->clump = calloc(count, sizeof *shape->clump);
-    shape->score = calloc(count, sizeof *shape->score);
-    shape->dice = calloc(count, sizeof *shape->dice);
-    shape->remarks = calloc(count, sizeof *shape->remarks);
-    if (!shape->clump || !shape->score || !shape->dice || !shape->remarks) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu templates", count);
-    }
-    shape->most = count;
-    return MS_OK;
-}
-
-/* Scales each template to the volume of the shape, and judges it anew. */
-static ms_status scale_templates(ms_scene_shape *shape, const ms_target *target, size_t max_voxels, ms_error *err)
-{
-    ms_status status = MS_OK;
-    for (size_t n = 0; n < shape->most && status == MS_OK; n++) {
-        ms_equal_volume ignored;
-        ms_metrics metrics;
-        status = ms_equal_volume_scale(&shape->clump[n], &ignored, &target->body, err);
-        if (status == MS_OK) {
-            status = ms_metrics_compute_kinds(&metrics, NULL, 0, target, &shape->clump[n], max_voxels, err);
-        }
-        if (status == MS_OK) {
-            shape->score[n] = metrics.score;
-        }
-    }
-    return status;
-}
-
-/* @param remarks on the clump: prefixes of one share them, and other templates have their own */
-static ms_status make_curve(ms_scene_shape *shape, const ms_clump *clump, const ms_error *remarks, const ms_run *run,
-                            const ms_scene_run *how, ms_error *err)
-{
-    const ms_generator *generator = how->recipe->generator;
-    const size_t max_voxels = ms_input_max_voxels(how->input);
-    ms_status status = make_room(shape, clump->n_spheres, err);
-    const size_t most = status == MS_OK ? shape->most : 0;
-    for (size_t n = ms_generator_is_nested(generator, run->settings) ? 1 : most; n > 0 && n <= most; n++) {
-        shape->remarks[n - 1] = *remarks;
-    }
-    if (status == MS_OK) {
-        status = ms_curve_clumps(shape->score, shape->clump, shape->remarks, clump, generator, run, max_voxels, err);
-    }
-    if (status == MS_OK && how->recipe->equal_volume) {
-        status = scale_templates(shape, run->target, max_voxels, err);
-    }
-    if (status == MS_OK) {
-        choose_numbers(shape);
-    }
-    return status;
-}
-
 int ms_scene_is_searched(const ms_goal *goal, const ms_recipe *recipe)
 {
     return goal->kind == MS_GOAL_TOLERANCE && !ms_generator_is_nested(recipe->generator, &recipe->settings);
-}
-
-/* Those of 1 to the most spheres. */
-static ms_status make_all_templates(ms_scene_shape *shape, ms_run *run, const ms_scene_run *how, int beside,
-                                    ms_error *err)
-{
-    const ms_generator *generator = how->recipe->generator;
-    ms_stop_reason reason;
-    ms_clump clump;
-    ms_error remarks = {""};
-    ms_generator_keep_remarks(run, &remarks);
-    ms_status status = ms_generator_run(&clump, &reason, generator, run, err);
-    if (!beside) {
-        ms_progress_show(run);
-    }
-    if (status == MS_OK) {
-        status = make_curve(shape, &clump, &remarks, run, how, err);
-        ms_clump_free(&clump);
-    }
-    return status;
-}
-
-/* D that surfaces at a mean distance L make of a shape of volume V and area A: the volume between them, some A L, is
- * that of S xor U, and D = |S xor U| / (|S| + |U|), where the latter is some 2 V. */
-static double dice_of_length(const ms_scene_shape *shape, double length)
-{
-    return length * shape->surface / (2 * shape->factor);
-}
-
-static ms_status find_surface(double *surface, const ms_target *target, ms_error *err)
-{
-    ms_descriptors of_shape;
-    const ms_status status = ms_descriptors_of_target(&of_shape, target, err);
-    if (status != MS_OK) {
-        return status;
-    }
-    *surface = of_shape.area / of_shape.volume;
-    return isnan(*surface) ? ms_fail(err, MS_ERR_SHAPE,
-                                     "the area of its surface is not known, so that no length can be tolerated; use "
-                                     "more cells, or --tolerance")
-                           : MS_OK;
-}
-
-/* Field by field: what rows are of which shape is read meanwhile, for other shapes. */
-static void share_templates(ms_scene_shape *shape, const ms_scene_shape *first)
-{
-    shape->most = first->most;
-    shape->clump = first->clump;
-    shape->score = first->score;
-    shape->dice = first->dice;
-    shape->remarks = first->remarks;
-    shape->input = json_incref(first->input);
-    shape->surface = first->surface;
 }
 
 /* The shape of a row in its size, with the templates of the first row of that shape. */
 static void take_row(ms_scene_shape *shape, const ms_scene_shape *first, const ms_target *target, const ms_goal *goal)
 {
     const ms_manifest_row *row = shape->row;
-    const double own = cbrt(6 * target->body.volume / acos(-1.0)), f = isnan(row->size) ? 1 : row->size / own;
-    if (shape != first) {
-        share_templates(shape, first);
+    if (shape != first) { /* field by field: what rows are of which shape is read meanwhile, for other shapes */
+        shape->templates = first->templates;
+        shape->input = json_incref(first->input);
+        shape->surface = first->surface;
     }
-    shape->factor = f;
-    shape->body.volume = f * f * f * target->body.volume;
-    for (int k = 0; k < 3; k++) {
-        shape->body.centroid[k] = f * target->body.centroid[k];
-        for (int l = 0; l < 3; l++) {
-            shape->body.inertia[k][l] = f * f * f * f * f * target->body.inertia[k][l];
-        }
-    }
-    const double asked = goal->length > 0 ? dice_of_length(shape, goal->length) : goal->value;
+    shape->factor = isnan(row->size) ? 1 : ms_inertia_factor(&target->body, row->size);
+    shape->body = target->body;
+    ms_inertia_scale(&shape->body, shape->factor);
+    const double asked =
+        goal->length > 0 ? ms_templates_dice(goal->length, shape->surface, shape->factor) : goal->value;
     shape->tolerance = isnan(row->tolerance) ? asked : row->tolerance;
 }
 
 /* What the goal says of each row of the shape alone. */
-static ms_status choose_rows(ms_scene *scene, size_t first, const ms_input *input, const ms_run *run,
-                             const ms_scene_run *how, const ms_goal *goal, ms_error *err)
+static ms_status choose_rows(ms_scene *scene, size_t first, const ms_input *input, const ms_templates_how *how,
+                             const ms_goal *goal, ms_error *err)
 {
     ms_status status = MS_OK;
     ms_error cause;
@@ -276,7 +124,7 @@ static ms_status choose_rows(ms_scene *scene, size_t first, const ms_input *inpu
         }
         take_row(shape, &scene->shape[first], &input->target, goal);
         if (scene->is_searched) {
-            status = ms_scene_search(shape, input, run, how, goal, &cause);
+            status = ms_scene_search(shape, input, how, goal, &cause);
         }
         if (status != MS_OK) {
             status = ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
@@ -288,30 +136,30 @@ static ms_status choose_rows(ms_scene *scene, size_t first, const ms_input *inpu
 }
 
 static ms_status make_templates(ms_scene *scene, size_t first, const char *title, const ms_input *input,
-                                const ms_scene_run *how, const ms_goal *goal, int beside, ms_error *err)
+                                const ms_scene_run *asked, const ms_goal *goal, int beside, ms_error *err)
 {
     ms_scene_shape *shape = &scene->shape[first];
-    const ms_recipe *recipe = how->recipe;
-    ms_progress_line line = {.name = title, .goal = how->recipe->generator->nested ? how->max_spheres : 0};
+    const ms_recipe *recipe = asked->recipe;
+    ms_progress_line line = {.name = title, .goal = recipe->generator->nested ? asked->max_spheres : 0};
     ms_error cause;
     ms_run run = {.target = &input->target, .settings = &recipe->settings, .seed = (uint64_t)recipe->seed};
-    run.stop.spheres = how->max_spheres;
-    run.stop.radius = how->min_radius;
+    const ms_templates_how how = {.generator = recipe->generator,
+                                  .run = &run,
+                                  .equal = recipe->equal_volume ? &input->target.body : NULL,
+                                  .max_voxels = ms_input_max_voxels(asked->input)};
+    run.stop.spheres = asked->max_spheres;
+    run.stop.radius = asked->min_radius;
     if (!beside) { /* else the queue has the line */
         ms_progress_show(&run);
         ms_progress_open(&line);
-        run.stage = NULL; /* of all runs the first is a small part */
     }
     shape->input = ms_report_input_json(input);
-    ms_status status = goal->length > 0 ? find_surface(&shape->surface, &input->target, &cause) : MS_OK;
+    ms_status status = goal->length > 0 ? ms_templates_surface(&shape->surface, &input->target, &cause) : MS_OK;
     if (status == MS_OK) {
-        status = scene->is_searched ? make_room(shape, how->max_spheres, &cause)
-                                    : make_all_templates(shape, &run, how, beside, &cause);
+        status = scene->is_searched ? ms_templates_alloc(&shape->templates, asked->max_spheres, &cause)
+                                    : ms_templates_make(&shape->templates, &how, &cause);
     }
-    for (size_t n = 0; scene->is_searched && n < shape->most; n++) {
-        shape->dice[n] = (double)NAN; /* not run */
-    }
-    status = status == MS_OK ? choose_rows(scene, first, input, &run, how, goal, err)
+    status = status == MS_OK ? choose_rows(scene, first, input, &how, goal, err)
                              : ms_fail(err, status, "%s: %s", shape->row->path, cause.text);
     if (!beside) {
         ms_progress_close();
@@ -416,21 +264,11 @@ void ms_scene_say_remarks(const ms_scene *scene)
 {
     for (size_t s = 0; s < scene->count; s++) {
         const ms_scene_shape *shape = &scene->shape[s];
-        if (shape->remarks[shape->chosen - 1].text[0]) {
-            fprintf(stderr, "%s: %s\n", ms_manifest_name_row(shape->row).text, shape->remarks[shape->chosen - 1].text);
+        if (shape->templates.remarks[shape->chosen - 1].text[0]) {
+            fprintf(stderr, "%s: %s\n", ms_manifest_name_row(shape->row).text,
+                    shape->templates.remarks[shape->chosen - 1].text);
         }
     }
-}
-
-static void free_templates(ms_scene_shape *shape)
-{
-    for (size_t n = 0; shape->clump && n < shape->most; n++) {
-        ms_clump_free(&shape->clump[n]);
-    }
-    free(shape->clump);
-    free(shape->score);
-    free(shape->dice);
-    free(shape->remarks);
 }
 
 void ms_scene_free(ms_scene *scene)
@@ -440,7 +278,7 @@ void ms_scene_free(ms_scene *scene)
         ms_clump_free(&shape->sized);
         json_decref(shape->input);
         if (shape->first == s) {
-            free_templates(shape);
+            ms_templates_free(&shape->templates);
         }
     }
     free(scene->shape);

@@ -8,9 +8,9 @@
 #include "cli/ms_input.h"
 #include "cli/ms_mass.h"
 #include "cli/ms_recipe.h"
-#include "measure/ms_metrics.h"
 #include "ms_allocate.h"
 #include "ms_sieve.h"
+#include "ms_templates.h"
 
 enum { MS_SCENE_MAX_SPHERES = 1000 };
 
@@ -33,20 +33,16 @@ typedef struct ms_goal {
 /** A row of the manifest: a shape in a size. All rows of a shape share its templates, which have its own size. */
 typedef struct ms_scene_shape {
     const ms_manifest_row *row; /* borrowed */
-    size_t first;               /* row of the same shape, which owns the templates */
-    size_t most;                /* spheres of the largest template */
-    ms_clump *clump;            /* templates of 1 .. most spheres; empty where a search has not run them */
-    ms_score *score;
-    double *dice;      /* D alone; NAN likewise */
-    ms_error *remarks; /* what the method remarks on each; "" without */
-    json_t *input;     /* as ms_report_input_json */
-    double surface;    /* area / volume of the shape in its own size, where a length is tolerated */
-    double factor;     /* from its own size to that of the row; 1 without */
-    ms_body body;      /* of the shape, in the size of the row */
-    double tolerance;  /* to be reached: of the row, of the length, or of the goal */
-    size_t chosen;     /* number of spheres, after ms_scene_choose */
-    ms_clump sized;    /* the template chosen, in the size of the row; likewise */
-    ms_mass mass;      /* of it, where masses were asked for (ms_scene_engines.h) */
+    size_t first;               /* row of the same shape */
+    ms_templates templates;     /* of the shape in its own size; its first row owns them */
+    json_t *input;              /* as ms_report_input_json */
+    double surface;             /* area / volume of the shape in its own size, where a length is tolerated */
+    double factor;              /* from its own size to that of the row; 1 without */
+    ms_body body;               /* of the shape, in the size of the row */
+    double tolerance;           /* to be reached: of the row, of the length, or of the goal */
+    size_t chosen;              /* number of spheres, after ms_scene_choose */
+    ms_clump sized;             /* the template chosen, in the size of the row; likewise */
+    ms_mass mass;               /* of it, where masses were asked for (ms_scene_engines.h) */
 } ms_scene_shape;
 
 /** A zeroed struct is empty. */

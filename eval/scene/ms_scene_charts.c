@@ -16,7 +16,7 @@ static const ms_measure *find_measure(const ms_goal *goal)
 static void name_chart(char name[NAME_SIZE], const ms_manifest_row *row, size_t number, const ms_goal *goal)
 {
     size_t length;
-    const char *stem = ms_files_stem(&length, row->path);
+    const char *stem = ms_file_stem(&length, row->path);
     snprintf(name, NAME_SIZE, "%zu-%.*s-%s", number, (int)(length < 250 ? length : 250), stem,
              find_measure(goal)->name);
     ms_escape_file_name(name);
@@ -24,7 +24,8 @@ static void name_chart(char name[NAME_SIZE], const ms_manifest_row *row, size_t 
 
 static ms_chart_point make_point(const ms_scene_shape *shape, size_t n, const ms_measure *measure)
 {
-    return (ms_chart_point){.x = (double)shape->clump[n - 1].n_spheres, .y = measure->of_score(&shape->score[n - 1])};
+    return (ms_chart_point){.x = (double)shape->templates.clump[n - 1].n_spheres,
+                            .y = measure->of_score(&shape->templates.score[n - 1])};
 }
 
 /* @param point room for all templates */
@@ -37,8 +38,8 @@ static ms_status draw_shape(const ms_scene_shape *shape, const ms_goal *goal, co
     ms_chart_point chosen = make_point(shape, shape->chosen, measure);
     const ms_chart_point tolerance = {.y = shape->tolerance};
     size_t count = 0;
-    for (size_t n = 1; n <= shape->most; n++) {
-        if (shape->clump[n - 1].n_spheres > 0) { /* else it was not run */
+    for (size_t n = 1; n <= shape->templates.most; n++) {
+        if (shape->templates.clump[n - 1].n_spheres > 0) { /* else it was not run */
             point[count++] = make_point(shape, n, measure);
         }
     }
@@ -66,11 +67,7 @@ static ms_status remove_charts(const ms_scene *scene, const ms_goal *goal, const
     for (size_t s = 0; s < scene->count && status == MS_OK; s++) {
         status = ms_scene_charts_list(&files, folder, scene->shape[s].row, s + 1, goal, err);
     }
-    if (status == MS_OK) {
-        status = ms_files_remove(&files, err);
-    }
-    ms_files_free(&files);
-    return status;
+    return ms_files_remove(&files, status, err);
 }
 
 ms_status ms_scene_charts_draw(const ms_scene *scene, const ms_goal *goal, const char *folder, FILE *words,

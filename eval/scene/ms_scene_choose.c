@@ -65,17 +65,9 @@ static ms_status choose_together(ms_scene *scene, const ms_share *share, size_t 
 static ms_status size_templates(ms_scene *scene, ms_error *err)
 {
     ms_status status = MS_OK;
-    for (size_t s = 0; s < scene->count; s++) {
+    for (size_t s = 0; s < scene->count && status == MS_OK; s++) {
         ms_scene_shape *shape = &scene->shape[s];
-        const ms_clump *own = &shape->clump[shape->chosen - 1];
-        for (size_t b = 0; b < own->n_spheres && status == MS_OK; b++) {
-            ms_sphere sphere = own->sphere[b];
-            for (int k = 0; k < 3; k++) {
-                sphere.centre[k] *= shape->factor;
-            }
-            sphere.radius *= shape->factor;
-            status = ms_clump_add(&shape->sized, &sphere, err);
-        }
+        status = ms_clump_scale(&shape->sized, &shape->templates.clump[shape->chosen - 1], shape->factor, err);
     }
     return status;
 }

@@ -4,6 +4,7 @@
 #define MS_SCENE_ENGINES_H
 
 #include "cli/ms_outputs.h"
+#include "clump/formats/ms_scene_script.h"
 #include "ms_scene.h"
 
 /* clang-format off */
@@ -15,8 +16,7 @@
 
 typedef struct ms_scene_engines {
     ms_mass_flags mass; /* density 0: no masses, and no engines */
-    double width[2];    /* of the vessel, a cylinder's diameter twice; 0: chosen by the scripts */
-    int is_round;
+    ms_scene_vessel vessel;
 } ms_scene_engines;
 
 /** Takes a flag if it is one of MS_SCENE_ENGINE_FLAGS. @param[out] taken 0 if it is not */
@@ -40,14 +40,6 @@ ms_status ms_scene_engines_correct(ms_scene *scene, const ms_scene_engines *e, s
  */
 ms_status ms_scene_engines_check(const ms_scene *scene, const ms_scene_engines *e, const ms_outputs *outputs,
                                  ms_error *err);
-
-/**
- * FOLDER/scene.ENDING, and behind it, if asked for, the suffix of the format's script; the caller frees it.
- *
- * @param format one with a script of scenes
- * @return NULL without memory
- */
-char *ms_scene_engines_path(const char *folder, const ms_format *format, int suffix);
 
 /**
  * Writes the scripts of all formats that have one, and says so on `words`.

@@ -4,30 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ms_escape.h"
 #include "ms_scene_charts.h"
 #include "ms_scene_engines.h"
 
 /* The caller frees it; NULL without memory. */
 static char *template_path(const char *folder, const ms_manifest_row *row, const ms_format *format)
 {
-    size_t length;
-    const char *stem = ms_files_stem(&length, row->path);
     char size[32] = "";
     if (!isnan(row->size)) {
         snprintf(size, sizeof size, "-%.6g", row->size);
     }
-    const size_t room = strlen(folder) + length + strlen(size) + strlen(format->ending) + 3;
-    char *path = malloc(room);
-    if (path) {
-        const int start = snprintf(path, room, "%s/", folder);
-        snprintf(path + start, room - (size_t)start, "%.*s%s.%s", (int)length, stem, size, format->ending);
-        ms_escape_file_name(path + start);
-        if (ms_write_check_path(path, format, NULL) != MS_OK) {
-            ms_escape_script_name(path + start);
-        }
-    }
-    return path;
+    return ms_write_path(folder, row->path, size, format);
 }
 
 /* The shape before, if there is one, whose template would be the same file. */
@@ -68,7 +55,7 @@ static ms_status list_scripts(ms_files *files, const ms_scene_files *asked, ms_e
     ms_status status = MS_OK;
     for (size_t f = 0; asked->folder && f < asked->n_formats && status == MS_OK; f++) {
         if (asked->format[f]->scene.suffix) {
-            char *path = ms_scene_engines_path(asked->folder, asked->format[f], 1);
+            char *path = ms_scene_script_path(asked->folder, asked->format[f]);
             status = path ? ms_files_add(files, path, MS_FILE_WRITTEN, err)
                           : ms_fail(err, MS_ERR_NOMEM, "no memory for the names of the scripts");
             free(path);

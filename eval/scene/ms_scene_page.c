@@ -26,7 +26,7 @@ static void print_row(FILE *stream, const ms_scene_shape *shape)
     ms_csv_put_number(stream, -ms_scene_gain(shape));
     ms_csv_put_number(stream, ms_clump_smallest_radius(ms_scene_clump(shape)));
     fputc(',', stream);
-    ms_escape_csv(stream, shape->remarks[shape->chosen - 1].text);
+    ms_escape_csv(stream, shape->templates.remarks[shape->chosen - 1].text);
     ms_csv_put_number(stream, shape->row->size);
 }
 

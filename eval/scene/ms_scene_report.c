@@ -148,8 +148,8 @@ static json_t *goal_json(const ms_goal *goal)
 static json_t *shape_json(const ms_scene *scene, const ms_goal *goal, const ms_scene_shape *shape)
 {
     json_t *curve = json_array();
-    for (size_t n = 0; n < shape->most; n++) {
-        ms_json_object_append(&curve, ms_report_number(shape->dice[n]));
+    for (size_t n = 0; n < shape->templates.most; n++) {
+        ms_json_object_append(&curve, ms_report_number(shape->templates.dice[n]));
     }
     json_t *json = json_pack("{s:I,s:o,s:o,s:f,s:o,s:O,s:o}", "particles", (json_int_t)shape->row->particles,
                              "tolerance", ms_report_number(goal->length > 0 ? shape->tolerance : shape->row->tolerance),

@@ -8,9 +8,9 @@
  * Runs the numbers that it takes, but none that is there already, and sets `chosen`; 0 where no number reaches it.
  *
  * @param shape with room for its templates and with its tolerance
- * @return MS_OK; as ms_generator_run, ms_equal_volume_scale, ms_metrics_compute_kinds
+ * @return as ms_templates_search
  */
-ms_status ms_scene_search(ms_scene_shape *shape, const ms_input *input, const ms_run *run, const ms_scene_run *how,
+ms_status ms_scene_search(ms_scene_shape *shape, const ms_input *input, const ms_templates_how *how,
                           const ms_goal *goal, ms_error *err);
 
 #endif

@@ -148,12 +148,8 @@ static int is_known(const ms_stability_run *runs, size_t r)
 static ms_status remove_charts(const char *folder, const ms_methods *methods, ms_error *err)
 {
     ms_files files = {0};
-    ms_status status = ms_stability_charts_list(&files, folder, methods, err);
-    if (status == MS_OK) {
-        status = ms_files_remove(&files, err);
-    }
-    ms_files_free(&files);
-    return status;
+    const ms_status status = ms_stability_charts_list(&files, folder, methods, err);
+    return ms_files_remove(&files, status, err);
 }
 
 ms_status ms_stability_charts(const char *folder, const ms_methods *methods, const ms_stability_run *runs,

@@ -89,9 +89,8 @@ static ms_status put_chart(FILE *stream, const char *path, ms_error *err)
     ms_bytes bytes;
     const ms_status status = ms_file_read(&bytes, path, err);
     if (status == MS_OK) {
-        const char *slash = strrchr(path, '/');
         fputs("<img class=\"chart\" alt=\"", stream);
-        ms_escape_html(stream, slash ? slash + 1 : path);
+        ms_escape_html(stream, ms_file_base_name(path));
         fputs("\" src=\"data:image/svg+xml;base64,", stream);
         ms_view_base64_put(stream, bytes.data, bytes.size, 1);
         fputs("\">\n", stream);

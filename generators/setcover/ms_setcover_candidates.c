@@ -273,7 +273,7 @@ static ms_status start_maximal(ms_setcover_pool *pool, const ms_setcover_field *
 void ms_setcover_pool_fit(const ms_setcover_pool *pool, double from, double below)
 {
     const ptrdiff_t all = (ptrdiff_t)pool->count;
-#pragma omp parallel for schedule(dynamic, 64)
+#pragma omp parallel for schedule(dynamic, 8)
     for (ptrdiff_t b = 0; b < all; b++) {
         if (pool->start[b].scale >= from && pool->start[b].scale < below) {
             const ms_sphere sphere = fit_start(&pool->start[b], pool->target->closest, pool->step);

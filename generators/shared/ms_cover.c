@@ -19,7 +19,7 @@
 enum { AT_ONCE = 8 };
 
 /* From so many rows on counting them takes longer than waking a thread for it. */
-static const double ROWS_FOR_THREADS = 2500;
+static const double ROWS_FOR_THREADS = 800;
 
 #define NEVER (UINT32_MAX >> 1)
 

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "voxel/ms_window.h"
+
 enum { WORD = 64, TILE = 8 };
 
 /* What is done with what a row of a ball holds of the set. */
@@ -18,30 +20,20 @@ static inline size_t popcount(uint64_t x)
     return (size_t)(x * 0x0101010101010101u >> 56);
 }
 
-/* The least whole number not below the value, from 0 to n. */
-static int round_up(double value, int n)
+/* The whole numbers between two places, as bits of a window of at most 64 that begins with `base`. */
+static inline uint64_t window_mask(double from, double to, int base, int end)
 {
-    if (!(value > 0)) {
+    if (!(from < end) || !(to >= base)) {
         return 0;
     }
-    return value >= n ? n : (int)value + ((int)value < value);
+    const int first = from > base ? (int)from + ((int)from < from) : base, last = to < end ? (int)to : end - 1;
+    return first <= last ? UINT64_MAX << (first - base) & UINT64_MAX >> (WORD - 1 - (last - base)) : 0;
 }
 
-/* One more than the largest whole number not above the value, from 0 to n. */
-static int round_above(double value, int n)
+/* The end of a window of 64 voxels, or before that of the set. */
+static inline int end_window(int base, int n)
 {
-    if (!(value >= 0)) {
-        return 0;
-    }
-    return value >= n ? n : (int)value + 1;
-}
-
-/* Bits from..to-1 of a word, cut to the word. */
-static uint64_t run_mask(int from, int to)
-{
-    const uint64_t above = from > 0 ? (from < WORD ? UINT64_MAX << from : 0) : UINT64_MAX;
-    const uint64_t below = to < WORD ? (to > 0 ? UINT64_MAX >> (WORD - to) : 0) : UINT64_MAX;
-    return above & below;
+    return base + WORD < n ? base + WORD : n;
 }
 
 /* Takes a run out of the set. */
@@ -64,45 +56,42 @@ static inline void keep_run(ms_cover_room *room, size_t *n_found, ms_cover_run f
     *n_found += found.bits != 0;
 }
 
-/* Of the 64 rows of plane k from j = 64 g on those that have anything left near the ball: in a tile of the slab from
- * x = base on that its disc, of squared radius `disc`, may reach. */
-static inline uint64_t find_rows_left(const ms_cover_bits *set, const ms_ball *ball, int base, int k, int g,
-                                      double disc)
-{
-    const double x = ball->centre[0], y = ball->centre[1], reach = sqrt(disc);
-    const int above = round_above(x + reach, set->n[0]), below = round_up(x - reach, set->n[0]);
-    const int end = above < base + WORD ? above : base + WORD;
-    uint64_t rows = 0;
-    for (int tile = (below > base ? below : base) / TILE; tile * TILE < end; tile++) {
-        const uint64_t left = set->tiles[((size_t)k * set->columns + (size_t)tile) * set->groups + (size_t)g];
-        if (left) {
-            const double before = tile * TILE - x, behind = x - (tile * TILE + TILE - 1);
-            const double dx = before > 0 ? before : behind > 0 ? behind : 0, rest = disc - dx * dx;
-            const double half = sqrt(rest > 0 ? rest : 0);
-            rows |=
-                left & run_mask(round_up(y - half, set->n[1]) - g * WORD, round_above(y + half, set->n[1]) - g * WORD);
-        }
-    }
-    return rows;
-}
-
 /* A walk through the rows of a ball that have anything left. */
 typedef struct walk {
     ms_cover_bits *set;  /* changed by REMOVE alone */
     ms_cover_room *room; /* of FIND */
     const ms_ball *ball;
-    int step; /* every so many-th row of such planes */
+    int step;      /* every so many-th row of such planes */
+    int base, end; /* the window of voxels along x that it goes through */
     size_t n_found, sum;
 } walk;
 
-/* The row that begins with `word`, within the slab from x = base on: the ball's chord there is twice as long. */
-static inline void walk_row(walk *w, walk_purpose purpose, size_t word, int base, double chord)
+/* Of the 64 rows of plane k from j = 64 g on those that a disc may reach and have anything left in its tiles. */
+static inline uint64_t find_rows_left(const walk *w, int k, int g, double reach)
 {
-    const int shift = base % WORD, n = w->set->n[0];
+    const ms_cover_bits *set = w->set;
+    const double x = w->ball->centre[0], y = w->ball->centre[1];
+    const int above = ms_window_end(x + reach, w->end), below = ms_window_first(x - reach, w->end);
+    uint64_t rows = 0;
+    for (int tile = (below > w->base ? below : w->base) / TILE; tile * TILE < above; tile++) {
+        rows |= set->tiles[((size_t)k * set->columns + (size_t)tile) * set->groups + (size_t)g];
+    }
+    return rows & window_mask(y - reach, y + reach, g * WORD, end_window(g * WORD, set->n[1]));
+}
+
+/* A row whose window begins in `word`: of what is left `near` the ball that between its ends. `rest` is the square of
+ * half its chord there. */
+static inline void walk_row(walk *w, walk_purpose purpose, size_t word, uint64_t near, double rest)
+{
+    const int shift = w->base % WORD;
     const double x = w->ball->centre[0];
     const uint64_t *left = w->set->left + word;
-    const uint64_t bits = (left[0] >> shift | left[1] << 1 << (WORD - 1 - shift)) &
-                          run_mask(round_up(x - chord, n) - base, round_above(x + chord, n) - base);
+    near &= left[0] >> shift | left[1] << 1 << (WORD - 1 - shift);
+    if (near == 0 || !(rest >= 0)) {
+        return;
+    }
+    const double chord = sqrt(rest);
+    const uint64_t bits = near & window_mask(x - chord, x + chord, w->base, w->end);
     const ms_cover_run low = {word, bits << shift}, high = {word + 1, bits >> 1 >> (WORD - 1 - shift)};
     if (purpose == FIND) {
         keep_run(w->room, &w->n_found, low);
@@ -114,27 +103,26 @@ static inline void walk_row(walk *w, walk_purpose purpose, size_t word, int base
     w->sum += popcount(bits);
 }
 
-/* The rows of plane k within the slab from x = base on, 64 voxels wide. */
-static inline void walk_plane(walk *w, walk_purpose purpose, int base, int k)
+/* The rows of plane k within the window. */
+static inline void walk_plane(walk *w, walk_purpose purpose, int k)
 {
     static const uint64_t EVERY[] = {
         [1] = UINT64_MAX, [2] = 0x5555555555555555u, [4] = 0x1111111111111111u, [8] = 0x0101010101010101u};
     const ms_cover_bits *set = w->set;
-    const double y = w->ball->centre[1], dz = k - w->ball->centre[2], square = w->ball->radius * w->ball->radius;
-    const double disc = square - dz * dz;
+    const double x = w->ball->centre[0], y = w->ball->centre[1], dz = k - w->ball->centre[2];
+    const double square = w->ball->radius * w->ball->radius, disc = square - dz * dz;
     if (!(disc >= 0)) {
         return;
     }
     const double reach = sqrt(disc);
-    const int end = round_above(y + reach, set->n[1]);
-    for (int g = round_up(y - reach, set->n[1]) / WORD; g * WORD < end; g++) {
-        for (uint64_t rows = find_rows_left(set, w->ball, base, k, g, disc) & EVERY[w->step]; rows; rows &= rows - 1) {
+    const uint64_t near = window_mask(x - reach, x + reach, w->base, w->end);
+    const int end = ms_window_end(y + reach, set->n[1]);
+    for (int g = ms_window_first(y - reach, set->n[1]) / WORD; g * WORD < end; g++) {
+        for (uint64_t rows = find_rows_left(w, k, g, reach) & EVERY[w->step]; rows; rows &= rows - 1) {
             const int j = g * WORD + __builtin_ctzll(rows);
-            const double dy = j - y, rest = square - (dy * dy + dz * dz);
-            if (rest >= 0) {
-                const size_t row = (size_t)j + (size_t)set->n[1] * (size_t)k;
-                walk_row(w, purpose, set->words * row + (size_t)(base / WORD), base, sqrt(rest));
-            }
+            const size_t row = (size_t)j + (size_t)set->n[1] * (size_t)k;
+            const double dy = j - y;
+            walk_row(w, purpose, set->words * row + (size_t)(w->base / WORD), near, square - (dy * dy + dz * dz));
         }
     }
 }
@@ -142,11 +130,12 @@ static inline void walk_plane(walk *w, walk_purpose purpose, int base, int k)
 static inline void walk_ball(walk *w, walk_purpose purpose)
 {
     const double x = w->ball->centre[0], z = w->ball->centre[2], r = w->ball->radius;
-    const int end = round_above(x + r, w->set->n[0]), planes = round_above(z + r, w->set->n[2]);
-    const int first = (round_up(z - r, w->set->n[2]) + w->step - 1) / w->step * w->step;
-    for (int base = round_up(x - r, w->set->n[0]); base < end; base += WORD) {
+    const int end = ms_window_end(x + r, w->set->n[0]), planes = ms_window_end(z + r, w->set->n[2]);
+    const int first = (ms_window_first(z - r, w->set->n[2]) + w->step - 1) / w->step * w->step;
+    for (w->base = ms_window_first(x - r, w->set->n[0]); w->base < end; w->base += WORD) {
+        w->end = end_window(w->base, w->set->n[0]);
         for (int k = first; k < planes; k += w->step) {
-            walk_plane(w, purpose, base, k);
+            walk_plane(w, purpose, k);
         }
     }
 }

@@ -40,7 +40,7 @@ void ms_cover_bits_free(ms_cover_bits *set);
  *
  * @param[out]    n_found how many runs they are
  * @param[in,out] room    where the runs are put
- * Cost: a root for each tile in the ball's box that has anything left, and for each row of such tiles.
+ * Cost: a root for each plane, and for each row that has anything left as near as the ball reaches in its plane.
  */
 size_t ms_cover_bits_walk(const ms_cover_bits *set, ms_cover_room *room, size_t *n_found, const ms_ball *ball);
 

@@ -214,6 +214,8 @@ static void what_cannot_be_read_is_refused(void **state)
     expect_message(&err, "is a folder");
     assert_int_equal(ms_file_read(&bytes, "/dev/null", &err), MS_ERR_IO);
     expect_message(&err, "is a device or a pipe");
+    assert_int_equal(ms_file_read(&bytes, "", &err), MS_ERR_IO);
+    expect_message(&err, "the name of the file to read is empty");
     assert_int_equal(mkfifo(path, 0600), 0);
     assert_int_equal(ms_file_read(&bytes, path, &err), MS_ERR_IO);
     expect_message(&err, "is a device or a pipe");
@@ -238,6 +240,15 @@ static void checksums_are_fnv(void **state)
     bytes.size = 0;
     assert_true(ms_file_checksum(&bytes) == UINT64_C(0xcbf29ce484222325));
     ms_file_free(&bytes);
+}
+
+static void a_base_name_is_behind_the_last_slash(void **state)
+{
+    static const char *const cases[][2] = {{"a", "a"}, {"./a.b", "a.b"}, {"/x/y.z/c", "c"}, {"x/", ""}, {"", ""}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        assert_string_equal(ms_file_base_name(cases[i][0]), cases[i][1]);
+    }
 }
 
 static void endings_are_lower_case(void **state)
@@ -276,6 +287,7 @@ int main(void)
         WITH_FOLDER(what_cannot_be_read_is_refused),
         WITH_FOLDER(an_empty_file_has_no_bytes),
         cmocka_unit_test(checksums_are_fnv),
+        cmocka_unit_test(a_base_name_is_behind_the_last_slash),
         cmocka_unit_test(endings_are_lower_case),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -318,7 +318,7 @@ class Refusals(Compare):
         run = ("-g", "mss", "-n", "1", "--cells", "8")
         self.assert_refused("compare", "box.obj", "missing.stl", *run, code=1, says=("missing.stl",))
         self.assert_refused("compare", "box.obj", *run, "-o", "no/such.csv", code=1, says=("no/such.csv",))
-        self.assert_refused("compare", "box.obj", *run, "-o", "", code=1, says=("cannot be written",))
+        self.assert_refused("compare", "box.obj", *run, "-o", "", code=2, says=("--output ''",))
         self.assert_refused("compare", "box.obj", *run, "-o", "-", code=1, says=("go to a file",))
         self.assert_refused("compare", "box.obj", *run, "--charts", "no/such", code=1, says=("no/such",))
         self.assert_refused("compare", "box.obj", *run, "-o", "/dev/full", "--resume", code=1, says=("device",))

@@ -219,6 +219,8 @@ class Contact(Case):
         box = ("--target", "box.obj")
         for name, unit in (("metres", 1e-3), ("micrometres", 1e3), ("beyond", 1e200)):  # of a shape in millimetres
             self.write(name + ".csv", f"x,y,z,r\n1.5,1,0.5,{unit}\n{1.5 + unit},1,0.5,{unit}\n")
+        for name, r in (("vast", 1e150), ("tiny", 1e-150)):
+            self.write(name + ".csv", f"x,y,z,r\n0,0,0,{r}\n{r},0,0,{r}\n")
         for args, code, says in (
                 ((), 2, ("one clump file",)), (("six.csv", "six.csv"), 2, ("one clump file",)),
                 (("six.csv", "--overlap", "0.5"), 2, ("--overlap", "0.1")),
@@ -233,6 +235,8 @@ class Contact(Case):
                 (("metres.csv", *box), 1, ("metres.csv", "units")), (("beyond.csv", *box), 1, ("beyond.csv", "units")),
                 (("micrometres.csv", *box), 1, ("micrometres.csv", "units")),
                 (("six.csv", "--target", "none.obj"), 1, ("none.obj",)),
+                (("vast.csv",), 1, ("spheres over 3e+150 of length", "give lengths in a unit")),
+                (("tiny.csv",), 1, ("spheres over 3e-150 of length", "give lengths in a unit")),
                 (("six.csv", "--target", "open.obj"), 1, ("open.obj", "not closed"))):
             with self.subTest(args=args):
                 self.assert_refused("contact", *args, code=code, says=says)

@@ -108,14 +108,14 @@ class Rows(Grains):
         self.assertIn("a.lammps", os.listdir(self.path("out/0000")))
 
     def test_a_folder_for_each_thousand(self):
-        body = self.read("stones/a.obj")
-        os.mkdir(self.path("many"))
-        for k in range(1003):
-            self.write(f"many/{k:04d}.obj", body)
-        rows = self.grains("many", "-g", "mss", "-n", "1", "--cells", "3")
-        self.assertEqual(rows[999]["file"], "0000/0999.csv")
-        self.assertEqual(rows[1000]["file"], "0001/1000.csv")
-        self.assertEqual(sorted(os.listdir(self.path("out/0001"))), ["1000.csv", "1001.csv", "1002.csv"])
+        """By the number of the grain; those left out count, too."""
+        labels = [*range(1, 1000), *(k for k in range(1000, 1004) for _ in range(2))]
+        self.write("many.npy", npy(labels, (len(labels), 1, 1)))
+        rows = self.grains("many.npy", "-g", "mss", "-n", "1", "--least-voxels", "2")
+        self.assertEqual(len(rows), 1003)
+        self.assertEqual(rows[999]["file"], "0000/many-1000.csv")
+        self.assertEqual(rows[1000]["file"], "0001/many-1001.csv")
+        self.assertEqual(sorted(os.listdir(self.path("out/0001"))), [f"many-{k}.csv" for k in (1001, 1002, 1003)])
 
 
 class Faults(Grains):

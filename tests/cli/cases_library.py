@@ -1,6 +1,7 @@
 """mskit grains --choose: few grains with weights that stand for all of a run."""
 import csv
 import io
+import math
 import os
 import random
 
@@ -73,9 +74,45 @@ class Library(Case):
         self.assertEqual(self.read("one/library.csv"), self.read("two/library.csv"))
 
     def test_scene_takes_it(self):
-        self.choose()
-        self.assertEqual(self.read("few/scene.csv").decode().count("\n"), 5)
-        self.mskit("scene", "few/scene.csv", "-g", "mss", "--budget", "20000000", "--max-spheres", "6", "--cells", "10")
+        """In the sizes of its classes, or with those of the grains."""
+        for how, rows in (("--classes", "3"), 12), (("--with-size",), 4):
+            self.choose(*how)
+            scene = self.table("few/scene.csv")
+            self.assertEqual(len(scene), rows)
+            self.mskit("scene", "few/scene.csv", "-g", "mss", "--budget", "20000000", "--max-spheres", "3", "--cells",
+                       "10")
+
+    def test_sizes_of_a_scene(self):
+        """Each grain's number is dealt out to the classes."""
+        self.choose("--classes", "3")
+        numbers = {os.path.basename(r["source"]): float(r["number"]) for r in self.table("few/library.csv")}
+        sizes = {float(r["diameter"]): float(r["number"]) for r in self.table("few/sizes.csv")}
+        rows = self.table("few/scene.csv")
+        self.assertEqual({float(r["size"]) for r in rows}, set(sizes))
+        for row in rows:
+            share = numbers[os.path.basename(row["shape"])] * sizes[float(row["size"])]
+            self.assertAlmostEqual(int(row["count"]), max(1, 1e6 * share), delta=0.51)
+
+    def test_grains_of_one_size(self):
+        """Classes that are alike are one size of the scene, and its counts are those of all."""
+        for grain in range(GRAINS):
+            self.write(f"stones/s{grain:02}.obj", box_obj((0, 0, 0), (2, 2, 1) if grain % 2 else (4, 1, 1)))
+        self.mskit("grains", "stones", "-g", "mss", "-n", "1", "--cells", "4", "-o", "alike")
+        self.mskit("grains", "--choose", "2", "alike", "--classes", "4", "-o", "few")
+        rows = self.table("few/scene.csv")
+        self.assertEqual(len(rows), 2)
+        for row in rows:
+            self.assertAlmostEqual(float(row["size"]), (6 * 4 / math.pi)**(1 / 3), delta=1e-9)
+        self.assertEqual(sum(int(r["count"]) for r in rows), 1000000)
+
+    def test_a_scene_of_too_many_rows(self):
+        for grain in range(GRAINS, 32):
+            self.write(f"stones/s{grain:02}.obj", box_obj((0, 0, 0), (1, 1, 1 + grain / 10)))
+        self.mskit("grains", "stones", "-g", "mss", "-n", "1", "--cells", "4", "-o", "more")
+        said = self.mskit("grains", "--choose", "32", "more", "--classes", "32", "-o", "few")
+        self.assertIn("no scene.csv", said.out)
+        self.assertIn("1000 at most", said.out)
+        self.assertNotIn("scene.csv", os.listdir(self.path("few")))
 
     def test_grains_without_clump_are_not_chosen(self):
         self.write("stones/broken.obj", b"v 0 0 0\nf 1 2 3\n")

@@ -147,12 +147,12 @@ class Report(Case):
         grains = ("grains", "c.obj", *GRID, "-n", "2", "-o", "out", "--report")
         compare = ("compare", "c.obj", *GRID, "-n", "2", "--charts", "charts", "--report")
         for command in (scene, grains, compare, ("stability", "c.obj", "-n", "2", "--report")):
-            for other in ("", "-", "c.obj", "page", "page.txt", "x.html/page"):
+            for other in ("-", "c.obj", "page", "page.txt", "x.html/page"):
                 self.assert_refused(*command, other, code=2, says=("--report", f"'{other}'", ".html"))
         os.symlink("c.obj", self.path("c.html"))  # an input by the name of a page
         for command in (scene, grains, compare):
             self.assert_refused(*command, "c.html", code=1, says=("c.html", "input"))
-        for folder, why in (("", "No such file"), ("no/charts", "No such file"), ("c.obj", "File exists")):
+        for folder, why in (("no/charts", "No such file"), ("c.obj", "File exists")):
             self.assert_refused("stability", "c.obj", *GRID, "-n", "2", "--charts", folder, code=1,
                                 says=(f"the folder '{folder}' cannot be made: {why}",))
         self.assert_refused(*scene, "no/r.html", code=1, says=("no/r.html",))

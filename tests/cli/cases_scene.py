@@ -265,8 +265,8 @@ class Engines(Scene):
     def test_refused(self):
         script = ("--format", "liggghts", "-o", "out")
         for args, says in (
-            ((*self.SCENE, "--cylinder", "2", *script), ("box.obj reaches", "--cylinder has 2")),
-            ((*self.SCENE, "--box", "9,2", *script), ("box.obj reaches", "--box has 2")),
+            ((*self.SCENE, "--cylinder", "2", *script), ("box.obj reaches", "the cylinder has 2")),
+            ((*self.SCENE, "--box", "9,2", *script), ("box.obj reaches", "the box has 2")),
             ((*QUICK, "--budget", "300", "--density", "1", "--least-mass", "0.9", *script), ("box.obj:", "mass")),
         ):
             with self.subTest(args=args):

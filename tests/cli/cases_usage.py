@@ -38,6 +38,18 @@ class Help(Case):
             self.assert_refused(*args, code=2, says=(takes, "'x' is one too many"))
         self.assert_refused("info", code=2, says=("mskit info: takes one shape\n",))
 
+    def test_empty_names(self):
+        """Of every command, and of each of its flags that takes a file or a folder."""
+        flags = 0
+        for command in COMMANDS:
+            self.assert_refused(command, "", code=2, says=(f"mskit {command}: word 1 is empty",))
+            for flag in re.findall(r"(?m)^ .*--([a-z-]+) (?:FILE|SHAPE|DIR)\b", self.mskit(command, "--help").out):
+                self.assert_refused(command, "--" + flag, "", code=2, says=(f"--{flag} '' is an empty name",))
+                flags += 1
+        self.assertGreater(flags, 15)
+        self.assert_refused("generate", self.shape("cube"), "-n", "1", "--set", "refine=", code=2,
+                            says=("the name of the file to read is empty",))
+
     def test_value_of_a_flag_that_takes_none(self):
         self.assert_refused("generate", "a.stl", "--connected=0", code=2, says=("--set connected=0 is off",))
         self.assert_refused("generate", "a.stl", "--json=0", code=2, says=("--json takes no argument (",))
@@ -129,7 +141,7 @@ class WrongUsage(Case):
             (("shape", "ball", "R=1", "-o", "x.stl"), ("R=1", "--list")),
             (("shape", "ball", "r", "-o", "x.stl"), ("'r'", "--list")),
             (("shape", "ball", "-o", "x.nonsense"), (".stl", ".obj", ".ply", ".off")),
-            (("shape", "ball", "-o", ""), (".stl", ".obj", ".ply", ".off")),
+            (("shape", "ball", "-o", ""), ("--output ''",)),
         ):
             with self.subTest(args=args):
                 self.assert_refused(*args, code=2, says=says)

@@ -15,22 +15,18 @@ static ms_envelope find_envelope(const ms_envelope_body *body, double radius)
 
 static ms_envelope envelope_of_clump(double *volume, const ms_clump *clump, double radius)
 {
-    ms_envelope_body body;
-    assert_int_equal(ms_envelope_body_clump(&body, clump, NULL), MS_OK);
-    *volume = body.volume;
-    return find_envelope(&body, radius);
+    ms_envelope out;
+    assert_int_equal(ms_envelope_clump(&out, volume, clump, &radius, 1, NULL), MS_OK);
+    return out;
 }
 
 /* Of a mesh; its volume, too. */
 static ms_envelope envelope_of_mesh(double *volume, const ms_mesh *mesh, double radius)
 {
     ms_body solid;
-    ms_closest *closest;
+    ms_envelope out;
     assert_int_equal(ms_inertia_mesh(&solid, mesh, NULL), MS_OK);
-    assert_int_equal(ms_closest_build(&closest, mesh, NULL), MS_OK);
-    const ms_envelope_body body = ms_envelope_body_mesh(mesh, closest, solid.volume);
-    const ms_envelope out = find_envelope(&body, radius);
-    ms_closest_free(closest);
+    assert_int_equal(ms_envelope_mesh(&out, mesh, solid.volume, &radius, 1, NULL), MS_OK);
     *volume = solid.volume;
     return out;
 }
@@ -159,12 +155,14 @@ static void a_cavity(void **state)
 
 static void what_there_is_none_of(void **state)
 {
-    ms_envelope_body body;
+    ms_envelope out;
     ms_error err = {{0}};
-    const ms_clump empty = {0};
+    const double radius = 1;
+    double volume;
     (void)state;
-    assert_int_equal(ms_envelope_body_clump(&body, &empty, &err), MS_ERR_ARG);
+    assert_int_equal(ms_envelope_clump(&out, &volume, &(const ms_clump){0}, &radius, 1, &err), MS_ERR_ARG);
     assert_non_null(strstr(err.text, "no spheres"));
+    assert_int_equal(ms_envelope_mesh(&out, &(const ms_mesh){0}, 1, &radius, 1, &err), MS_ERR_ARG);
 }
 
 int main(void)

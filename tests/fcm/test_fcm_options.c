@@ -101,7 +101,7 @@ static void the_volume_of_the_hull(void **state)
     ms_mesh mesh;
     ms_target ring, box;
     ms_stop_reason reason;
-    make_shape(&mesh, "torus", "R=3 r=1 fineness=24");
+    make_shape(&mesh, "torus", "R=3 r=1 fineness=12");
     make_target(&ring, &mesh, 20, MS_VOXEL_HALF);
     ms_clump clump = run_generator(&ms_generator_fcm, &ring, stop, "volume=hull off-volume=0.5", &reason);
     assert_int_equal(reason, MS_STOP_OFF_VOLUME);

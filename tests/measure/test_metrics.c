@@ -19,7 +19,7 @@ static void scores_follow_from_the_sums(void **state)
 static void a_ball_stands_for_a_ball(void **state)
 {
     (void)state;
-    ms_mesh mesh = make_body("ball", (double[]){1, 128});
+    ms_mesh mesh = make_body("ball", (double[]){1, 64});
     for (int r = 0; r < 2; r++) {
         for (double h = 0.24; h > 0.02; h /= 2.1) {
             ms_target target = target_of(&mesh, h, both_rules[r]);

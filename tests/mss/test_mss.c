@@ -89,7 +89,7 @@ static void symmetric_targets_give_symmetric_clumps(void **state)
     for (size_t kind = 0; kind < sizeof KINDS / sizeof *KINDS; kind++) {
         ms_mesh mesh;
         make_shape(&mesh, KINDS[kind], "");
-        for (int cells = 18; cells <= 25; cells += 7) {
+        for (int cells = 14; cells <= 19; cells += 5) {
             ms_target target;
             make_target(&target, &mesh, cells, MS_VOXEL_HALF);
             for (size_t o = 0; o < sizeof OPTIONS / sizeof *OPTIONS; o++) {

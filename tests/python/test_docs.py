@@ -19,7 +19,7 @@ from support_python import PythonCase
 
 DOCS = os.environ["MSKIT_DOCS"]
 NAMES = ("_allocate", "_clumps", "_contact", "_errors", "_expect", "_generate", "_measures", "_meshes", "_methods",
-         "_shapes", "_sources", "_view", "_volumes")
+         "_scene", "_scene_files", "_scene_rows", "_shapes", "_sources", "_view", "_volumes")
 
 
 def document(name):
@@ -43,11 +43,13 @@ class Docs(PythonCase):
         self.assertGreater(tried, 15)
 
     def test_page(self):
-        code = re.search(r"```python\n(.*?)```", document("python.md"), re.S)[1]
+        code = "\n".join(re.findall(r"```python\n(.*?)```", document("python.md"), re.S))
         with contextlib.redirect_stdout(io.StringIO()) as said:
             exec(compile(code, "python.md", "exec"), {})
         self.assertRegex(said.getvalue(), r"^\(60, 3\) 0\.\d+ 0\.0\d+ spheres\n")
         self.assertTrue(os.path.exists("grain.lammps"))
+        self.assertRegex(said.getvalue(), r"\n\[\d+, \d+\] \d+ 0\.0\d+\n$")
+        self.assertTrue({"torus-2.5.yade", "scene.liggghts.in", "scene.yade.py"} <= set(os.listdir("bed")))
 
     def test_example(self):
         with contextlib.redirect_stdout(io.StringIO()) as said:

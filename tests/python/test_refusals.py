@@ -81,19 +81,22 @@ class Refusals(PythonCase):
         given = {"generate": "spheres until min_radius cells deq voxel_size max_voxels rule max_memory seed threads "
                              "progress spacing plane refine variant",
                  "score": "cells cut threads rule", "curve": "cells progress",
-                 "correct": "density unit scale axes least_mass carriers carrier_depth", "expect": "threads",
+                 "correct": "density unit scale properties axes least_mass carriers carrier_depth", "expect": "threads",
                  "contact": "poses overlap restitution factors seed threads", "volume": "spacing origin label "
                  "threshold connectivity", "grains": "spacing min_voxels border", "mesh": "weld fill_holes drop_bodies",
                  "read": "label weld", "Clump": "masses", "body": "r", "equal_volume": "", "read_clump": "",
-                 "write": "format"}
+                 "write": "format",
+                 "scene": "budget tolerance tolerance_length mean_dice knee max_spheres min_radius equal_volume cells"}
         usual = {"generate": [grain, "mss"], "volume": [labelled()], "grains": [labelled()], "mesh": [CORNERS, FACES],
                  "read": [self.path(self.grain)], "Clump": [[(0, 0, 0)], [1]], "body": ["ball"],
-                 "read_clump": ["none.csv"], "expect": [grain], "write": [clump, self.path("c.csv")]}
+                 "read_clump": ["none.csv"], "expect": [grain], "scene": [[(grain, 2)]],
+                 "write": [clump, self.path("c.csv")]}
         refused = 0
         for name, options in given.items():
             first = usual.get(name, [clump])
             least = {"generate": {"spheres": 1, "cells": 6}, "correct": {"density": 1},
-                     "contact": {"poses": 1, "overlap": 0.01}}.get(name, {})
+                     "contact": {"poses": 1, "overlap": 0.01},
+                     "scene": {"knee": 1, "generator": "mss", "cells": 6, "max_spheres": 2}}.get(name, {})
             for thing in things:
                 calls = [(first[:k] + [thing] + first[k + 1:], least) for k in range(len(first))]
                 calls += [(first, {**least, option: thing}) for option in options.split()]
@@ -229,13 +232,21 @@ class Refusals(PythonCase):
                 ((curves,), {"knee": 0.01}, "curve 0: up to the last of 2 spheres")]:
             self.refused(mskit.Error, words, mskit.allocate, *arguments, **options)
 
+    def test_masses_of_a_shape_or_a_union(self):
+        clump = mskit.generate(self.path(self.grain), "mss", spheres=3, cells=12)
+        for options, words in [({"properties": "both"}, "properties='both' is none of 'shape', 'union'"),
+                               ({"properties": "union", "shape": self.path(self.grain)}, "either a shape or")]:
+            self.refused(mskit.ArgumentError, words, mskit.correct, clump, density=1, **options)
+
     def test_contact(self):
         clump = mskit.generate(self.path(self.grain), "mss", spheres=3, cells=12)
         for options, words in [({"poses": 0}, "poses=0"), ({"overlap": 0.5}, "overlap=0.5"),
                                ({"overlap": []}, "overlap=[]"),
                                ({"overlap": [0.01] * 17}, "nor 1 to 16 of them"), ({"overlap": "x"}, "overlap='x'"),
                                ({"restitution": 0}, "restitution=0"), ({"seed": -1}, "seed=-1"),
-                               ({"factors": 2}, "factors=2"),
+                               ({"factors": 2}, "factors=2"), ({"envelope": 0}, "envelope=0.0 is not a number from"),
+                               ({"envelope": [1] * 17}, "nor 1 to 16 of them"), ({"envelope": "x"}, "envelope='x'"),
+                               ({"envelope": 1, "shape": mskit.volume(labelled(), label=3)}, "envelope takes a mesh"),
                                ({"shape": 3}, "is no shape"), ({"threads": 0}, "threads=0"),
                                ({"shape": mskit.mesh(CORNERS, FACES[1:], allow_open=True)}, "is not closed"),
                                ({"shape": mskit.mesh(numpy.array(CORNERS) * 1e-4, FACES)}, "check units and frame")]:

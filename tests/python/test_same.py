@@ -133,6 +133,8 @@ class Same(PythonCase):
         heavy = mskit.correct(clump[:6], density=2650, scale=0.001, axes="input", least_mass=0.01)
         clump[:6].write(self.path("c.csv"))
         self.expect_same(heavy, *common, "--axes", "input", "--least-mass", 0.01)
+        self.expect_same(mskit.correct(self.path("c.csv"), density=2650, unit="mm", properties="union"), "correct",
+                         "c.csv", "--density", 2650, "--unit", "mm", "--properties", "union")
         self.assertAlmostEqual(heavy.masses.sum() / heavy.particle.mass, 1, delta=1e-12)
         self.assertAlmostEqual(heavy.particle.mass / (2650e-9 * clump.shape.volume), 1, delta=1e-12)
 
@@ -205,6 +207,8 @@ class Same(PythonCase):
         numpy.save(self.path("v.npy"), labelled())
         clump = mskit.generate(self.path(self.grain), "mss", spheres=6, cells=20)
         clump.write(self.path("c.csv"))
+        self.shape("cube", "a=2", "fineness=1", name="cube.stl")
+        cube = mskit.read(self.path("cube.stl"))
         in_voxels = mskit.generate(mskit.volume(labelled(), label=3), "mss", spheres=3)
         in_voxels.write(self.path("v.csv"))
         mskit.correct(clump, density=2650, unit="mm").write(self.path("m.json"))
@@ -213,7 +217,11 @@ class Same(PythonCase):
                  ("c.csv", "--target", self.grain, "--overlap", 0.001, "--factors", "--restitution", 0.7, "--seed", 3)),
                 (mskit.contact(in_voxels, poses=20), ("v.csv", "--target", "v.npy", "--label", 3)),
                 (mskit.contact(self.path("m.json"), poses=20, threads=1), ("m.json",)),
-                (mskit.contact(clump.spheres, poses=20, overlap=[0.002, 0.1]), ("c.csv", "--overlap", "0.002,0.1"))]:
+                (mskit.contact(clump.spheres, poses=20, overlap=[0.002, 0.1]), ("c.csv", "--overlap", "0.002,0.1")),
+                (mskit.contact(clump.spheres, poses=20, overlap=0.01, envelope=0.3),
+                 ("c.csv", "--overlap", 0.01, "--envelope", 0.3)),
+                (mskit.contact(clump, cube, poses=20, overlap=0.01, envelope=[0.1, 2]),
+                 ("c.csv", "--target", "cube.stl", "--overlap", 0.01, "--envelope", "0.1,2"))]:
             told = self.mskit("contact", *flags, "--poses", 20, "--json").json
             for name in ("path", "target", "spheres", "orientations", "single_restitution", "seed"):
                 del told[name]

@@ -52,7 +52,7 @@ ROOMS = {
     "eval/population": ["common/base", "common/clump", "common/clump/formats", "eval/chart", "eval/cli", "eval/grains"],
     "eval/queue": ["common/base", "eval/cli"],
     "eval/scene": ["common/base", "common/clump", "common/clump/formats", "common/expect", "common/measure",
-                   "generators", "eval/chart", "eval/cli", "eval/queue", "eval/view"],
+                   "common/mesh", "generators", "eval/chart", "eval/cli", "eval/queue", "eval/view"],
     "eval/stability": ["common/base", "common/clump", "common/measure", "common/mesh", "common/shape", "common/voxel",
                        "generators", "eval/chart", "eval/cli", "eval/queue", "eval/view"],
     "eval/view": ["common/base", "common/clump", "common/clump/formats", "common/measure", "common/mesh",

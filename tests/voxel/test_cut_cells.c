@@ -34,7 +34,7 @@ static void cells_have_the_volume_and_the_centre(void **state)
     for (size_t s = 0; s < sizeof KINDS / sizeof *KINDS; s++) {
         ms_mesh mesh = default_body(KINDS[s]);
         move_body(&mesh, 3.3, -7.1, 0.77);
-        for (double h = 0.31; h > 0.04; h /= 2.3) {
+        for (double h = 0.31; h > 0.1; h /= 2.9) {
             ms_target target = target_of(&mesh, h, MS_VOXEL_HALF);
             ms_cut_cells *cells = cut(&target.grid, &mesh);
             double moment[3] = {0}, volume = 0;

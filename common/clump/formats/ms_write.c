@@ -121,7 +121,7 @@ static ms_status write_part(const ms_content *content, const char *path, size_t 
 /* Length of the path without the ending of its file. */
 static size_t stem_length(const char *path)
 {
-    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
+    const char *base = ms_file_base_name(path), *dot = strrchr(base, '.');
     return dot && dot > base ? (size_t)(dot - path) : strlen(path);
 }
 
@@ -187,7 +187,7 @@ ms_status ms_write_list(const char *path, const ms_format *format,
 
 ms_status ms_write_check_path(const char *path, const ms_format *format, ms_error *err)
 {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *name = ms_file_base_name(path);
     int fits = 1;
     for (const ms_part *part = format->part; part->suffix; part++) {
         fits = fits && (part->write != ms_lammps_script || ms_escape_fits_lammps(name)) &&
@@ -200,15 +200,31 @@ ms_status ms_write_check_path(const char *path, const ms_format *format, ms_erro
                           path, format->name);
 }
 
+char *ms_write_path(const char *folder, const char *source, const char *behind, const ms_format *format)
+{
+    size_t length;
+    const char *stem = ms_file_stem(&length, source);
+    const size_t room = strlen(folder) + length + strlen(behind) + strlen(format->ending) + 3;
+    char *path = malloc(room);
+    if (path) {
+        const int start = snprintf(path, room, "%s%s", folder, folder[0] ? "/" : "");
+        snprintf(path + start, room - (size_t)start, "%.*s%s.%s", (int)length, stem, behind, format->ending);
+        ms_escape_file_name(path + start);
+        if (ms_write_check_path(path, format, NULL) != MS_OK) {
+            ms_escape_script_name(path + start);
+        }
+    }
+    return path;
+}
+
 ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err)
 {
-    const char *slash = strrchr(path, '/');
     ms_content named = *content;
     format = format ? format : ms_write_format_of_path(path, err);
     if (!format) {
         return MS_ERR_ARG;
     }
-    named.name = slash ? slash + 1 : path;
+    named.name = ms_file_base_name(path);
     ms_status status = ms_write_check(content, format, err);
     if (status == MS_OK) {
         status = ms_write_check_path(path, format, err);

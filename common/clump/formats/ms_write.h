@@ -110,6 +110,15 @@ MS_API ms_status ms_write_list(const char *path, const ms_format *format,
 MS_API ms_status ms_write_check_path(const char *path, const ms_format *format, ms_error *err);
 
 /**
+ * Path of a file that is named after another one: FOLDER/STEM+BEHIND.ENDING, where STEM is of ms_file_stem. What the
+ * name of a file, or the script of the format, cannot hold becomes '_'.
+ *
+ * @param folder "" for none
+ * @return the caller frees it; NULL without memory
+ */
+MS_API char *ms_write_path(const char *folder, const char *source, const char *behind, const ms_format *format);
+
+/**
  * Writes a clump, each file under a temporary name that is then renamed. Beside a template stands the way back to the
  * frame of the shape, STEM.frame.json, where STEM is the path without its ending.
  *

@@ -14,7 +14,6 @@ static ms_status write_packing_part(const ms_packing *packing, const char *path,
                                     ms_error *err)
 {
     const size_t size = strlen(path) + strlen(part->suffix) + 1;
-    const char *slash = strrchr(path, '/');
     char *file = malloc(size);
     ms_output output;
     if (!file) {
@@ -23,7 +22,7 @@ static ms_status write_packing_part(const ms_packing *packing, const char *path,
     snprintf(file, size, "%s%s", path, part->suffix);
     ms_status status = ms_output_open(&output, file, err);
     if (status == MS_OK) {
-        status = part->write(output.stream, packing, slash ? slash + 1 : path, err);
+        status = part->write(output.stream, packing, ms_file_base_name(path), err);
         status = ms_output_close(&output, status, err);
     }
     free(file);

@@ -28,6 +28,9 @@ from ._library import lib as _lib
 from ._measures import Measure, measures
 from ._methods import Generator, Option, generators
 from ._meshes import body, mesh
+from ._scene import Scene, scene
+from ._scene_files import Kind
+from ._scene_rows import Sieved, sieve
 from ._shapes import Shape
 from ._sources import read
 from ._volumes import grains, volume
@@ -35,9 +38,10 @@ from ._volumes import grains, volume
 __version__: str = _ffi.string(_lib.ms_version()).decode()
 __all__ = [
     "Allocation", "ArgumentError", "Clump", "Error", "Expectation", "FileError", "FormatError", "Generator",
-    "LimitError", "Measure", "Option", "OutOfMemoryError", "Particle", "Progress", "Remark", "Shape", "ShapeError",
+    "Kind", "LimitError", "Measure", "Option", "OutOfMemoryError", "Particle", "Progress", "Remark", "Scene", "Shape",
+    "ShapeError", "Sieved",
     "allocate", "body", "contact", "correct", "curve", "equal_volume", "expect", "formats", "generate", "generators",
-    "grains", "measures", "mesh", "read", "read_clump", "score", "volume", "write",
+    "grains", "measures", "mesh", "read", "read_clump", "scene", "score", "sieve", "volume", "write",
 ]
 
 # Forked while OpenMP has threads, a child waits for them for ever: its runs take the one thread that it has.

@@ -235,6 +235,11 @@ def write(clump: Any, path: Path, format: Optional[str] = None) -> None:
         return
     row = (find(lib.ms_write_format_of_path, name) if format is None else
            find(lib.ms_write_format_find, word("format", format)))
+    write_as(clump, name, row)
+
+
+def write_as(clump: Clump, name: bytes, row: Any) -> None:
+    """In the format of this row."""
     c, kept = lend(clump)
     particle = c_particle_of(clump.particle)
     record = ffi.NULL if clump.run is None else ffi.new("char[]", clump.run.record().encode())

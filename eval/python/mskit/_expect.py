@@ -70,6 +70,17 @@ def _refuse_open(shape: Shape) -> None:
         raise ShapeError(f"{shape.name}: of a mesh that {what} nothing can be expected")
 
 
+def find_expectation(shape: Shape, grid: Any = None) -> Any:
+    """The ms_expect of a shape. grid: the voxels of a volume, where they are at hand."""
+    made = ffi.new("ms_expect *")
+    _refuse_open(shape)
+    if shape.is_mesh:
+        call(lib.ms_expect_mesh, made, shape._mesh, name=shape.name)
+    else:
+        call(lib.ms_expect_grid, made, shape.c_grid() if grid is None else grid, name=shape.name)
+    return made
+
+
 def expect(shape: Any, *, threads: Optional[int] = None) -> Expectation:
     """The least mismatch D to be expected by number of spheres, as `mskit info --expect`.
 
@@ -81,11 +92,6 @@ def expect(shape: Any, *, threads: Optional[int] = None) -> Expectation:
     >>> expected.spheres(0.05)
     16.0
     """
-    shape, made = as_shape(shape), ffi.new("ms_expect *")
-    _refuse_open(shape)
+    shape = as_shape(shape)
     with use_threads(threads):
-        if shape.is_mesh:
-            call(lib.ms_expect_mesh, made, shape._mesh, name=shape.name)
-        else:
-            call(lib.ms_expect_grid, made, shape.c_grid(), name=shape.name)
-    return Expectation(made)
+        return Expectation(find_expectation(shape))

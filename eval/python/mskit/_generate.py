@@ -88,7 +88,7 @@ class _Bar:
 
 
 @contextmanager
-def _watched(name: str, progress: Listener) -> Iterator[_Watch]:
+def watched(name: str, progress: Listener) -> Iterator[_Watch]:
     """What was raised while the run was told of is raised when it is over, in place of what the run says."""
     bar = _Bar(name) if progress is True else None
     listener = bar or (progress if callable(progress) else None)
@@ -110,11 +110,12 @@ def _watched(name: str, progress: Listener) -> Iterator[_Watch]:
 class Run:
     """How a clump was made, so that it can be repeated."""
 
-    def __init__(self, generator: str, stop: Any, seed: int, grid: Grid, options: Dict[str, Any]) -> None:
+    def __init__(self, generator: str, stop: Any, seed: int, grid: Grid, options: Dict[str, Any], *,
+                 cut: bool = False) -> None:
         self.row = find_generator(generator)
         self.settings = make_settings(self.row, options)
         self.stop, self.seed, self.grid, self.options = stop, whole("seed", seed, 0, 2**53), grid, options
-        self.cut = stop.coverage_cut > 0
+        self.cut = cut or stop.coverage_cut > 0
         self.need = lib.ms_generator_need(self.row, self.settings, self.cut)
         self.nested = bool(lib.ms_generator_is_nested(self.row, self.settings))
 
@@ -175,7 +176,7 @@ def generate(shape: Any, generator: str = DEFAULT, *, spheres: Optional[int] = N
     grid = make_grid(cells, deq, voxel_size, max_voxels, rule, max_memory)
     run = Run(generator, _make_stop(spheres, until, min_radius), seed, grid, options)
     made, reason = new_c_clump(), ffi.new("ms_stop_reason *")
-    with use_threads(threads), _watched(shape.name, progress) as watch:
+    with use_threads(threads), watched(shape.name, progress) as watch:
         target = shape.c_target(grid, run.need)
         call(lib.ms_generator_run, made, reason, run.row, run.c_run(target, watch), name=shape.name)
     if reason[0] == lib.MS_STOP_INTERRUPTED:
@@ -246,7 +247,7 @@ def curve(clump: Any, shape: Any = None, *, cells: Optional[int] = None, deq: Op
     scores = ffi.new("ms_score[]", len(clump))
     if not clump.ordered and (shape is not None or grid != Grid()):
         raise ArgumentError("each clump of this curve is a run of its own, on shape and grid of the first: give none")
-    with use_threads(threads), _watched("curve", progress) as watch:
+    with use_threads(threads), watched("curve", progress) as watch:
         target, most = _target_for(clump, shape, grid)
         c, kept = lend(clump)
         if clump.ordered:
@@ -265,15 +266,16 @@ def _body_for(clump: Clump, shape: Any) -> Tuple[Shape, Any]:
 
 
 def correct(clump: Any, shape: Any = None, *, density: float, unit: str = "m", scale: Optional[float] = None,
-            axes: str = "principal", least_mass: Optional[float] = None, most_mass: Optional[float] = None,
-            centre_tolerance: Optional[float] = None, carriers: bool = False,
+            properties: str = "shape", axes: str = "principal", least_mass: Optional[float] = None,
+            most_mass: Optional[float] = None, centre_tolerance: Optional[float] = None, carriers: bool = False,
             carrier_depth: Optional[float] = None) -> Clump:
     """The clump with masses that sum to mass, centre and inertia of the particle, as `mskit correct`.
 
-    density: kg/m^3. unit: of length, "m", "mm" or "um"; or scale: metres in one. axes: of the equations, "principal" or
-    "input". least_mass, most_mass: of a sphere / that of the particle. centre_tolerance: how far the centre may be
-    off / radius of gyration. carriers: small spheres inside others, of mass and without contact, make all sums exact;
-    carrier_depth: below the surface, in the unit of the clump.
+    density: kg/m^3. unit: of length, "m", "mm" or "um"; or scale: metres in one. properties: the particle is the
+    "shape", or the "union" of the spheres, which takes no shape. axes: of the equations, "principal" or "input".
+    least_mass, most_mass: of a sphere / that of the particle. centre_tolerance: how far the centre may be off / radius
+    of gyration. carriers: small spheres inside others, of mass and without contact, make all sums exact; carrier_depth:
+    below the surface, in the unit of the clump.
 
     >>> clump = mskit.generate(mskit.body("grain", fineness=12), "mss", spheres=40, cells=30)
     >>> heavy = mskit.correct(clump, density=2650, unit="mm")
@@ -281,6 +283,32 @@ def correct(clump: Any, shape: Any = None, *, density: float, unit: str = "m", s
     True
     """
     clump = as_clump(clump)
+    how = read_masses(density, unit, scale, properties, axes, least_mass, most_mass, centre_tolerance, carriers,
+                      carrier_depth)
+    if how.of_union and shape is not None:
+        raise ArgumentError("correct takes either a shape or properties='union'")
+    if how.of_union:
+        return give_masses(clump, ffi.NULL, how)
+    chosen, solid = _body_for(clump, shape)
+    done = give_masses(clump, ffi.addressof(solid), how)
+    done.shape = chosen
+    return done
+
+
+class Masses(NamedTuple):
+    """How masses are given."""
+    density: float
+    metres: float  # in a unit of length
+    of_union: bool  # and not of the shape
+    options: Any  # ms_carriers_options
+    carriers: bool
+
+
+def read_masses(density: float, unit: str, scale: Optional[float], properties: str, axes: str,
+                least_mass: Optional[float], most_mass: Optional[float], centre_tolerance: Optional[float],
+                carriers: bool, carrier_depth: Optional[float]) -> Masses:
+    """Checks what `correct` is given."""
+    choice("properties", properties, ("shape", "union"))
     choice("axes", axes, ("principal", "input"))
     if not flag("carriers", carriers) and carrier_depth is not None:
         raise ArgumentError("carrier_depth takes carriers=True beside it")
@@ -294,15 +322,27 @@ def correct(clump: Any, shape: Any = None, *, density: float, unit: str = "m", s
         "most": bound("most_mass", most_mass, _TINY, 1),
         "centre_tolerance": bound("centre_tolerance", centre_tolerance, 0, 1e300)},
         "depth": bound("carrier_depth", carrier_depth, _TINY, 1e300)})
-    chosen, solid = _body_for(clump, shape)
+    return Masses(number("density", density, _TINY, 1e300), metres, properties == "union", options, carriers)
+
+
+def union_body(c: Any) -> Any:
+    """The ms_body of the union of the spheres of an ms_clump."""
+    body = ffi.new("ms_body *")
+    call(lib.ms_particle_union, body, c, voxels_within(Grid(), ffi.new("ms_target_need *")[0]))
+    return body
+
+
+def give_masses(clump: Clump, body: Any, how: Masses, name: str = "") -> Clump:
+    """Those of the particle with this ms_body."""
     particle, report, made = ffi.new("ms_particle *"), ffi.new("ms_density_report *"), own(clump)
-    call(lib.ms_particle_from_body, particle, ffi.addressof(solid), number("density", density, _TINY, 1e300), metres)
-    if carriers:
-        call(lib.ms_carriers_solve, made, report, particle, options)
+    if how.of_union:
+        body = union_body(made)
+    call(lib.ms_particle_from_body, particle, body, how.density, how.metres, name=name)
+    if how.carriers:
+        call(lib.ms_carriers_solve, made, report, particle, how.options, name=name)
     else:
-        call(lib.ms_density_solve, made, report, particle, ffi.addressof(options, "masses"))
+        call(lib.ms_density_solve, made, report, particle, ffi.addressof(how.options, "masses"), name=name)
     done = from_c(made, clump, particle)
-    done.shape = chosen
     done.mass_report = {name: _plain(getattr(report, name)) for name, _ in ffi.typeof("ms_density_report").fields}
     return done
 

@@ -168,6 +168,10 @@ class Shape:
             made = self._made = (grid, self._make_target(grid, need))
         return made[1]
 
+    def drop_voxels(self) -> None:
+        """Frees those of the last grid, which are made again where they are asked for."""
+        self._made = None
+
     def _make_target(self, grid: Grid, need: Any) -> Any:
         # They borrow the mesh, which must outlive them.
         target = ffi.gc(ffi.new("ms_target *"), lambda made, mesh=self._mesh: lib.ms_target_free(made))

@@ -35,7 +35,7 @@ static int know_header(manifest_header *header, const ms_word field[COLUMNS])
     return 1;
 }
 
-static ms_status read_header(manifest_header *header, ms_text *text, ms_error *err)
+static ms_status read_manifest_header(manifest_header *header, ms_text *text, ms_error *err)
 {
     ms_word field[COLUMNS] = {{0}};
     if (!ms_text_seek(text)) {
@@ -117,7 +117,7 @@ static ms_status read_numbers(ms_manifest_row *row, const ms_word field[COLUMNS]
 }
 
 /* Adds a row; on failure what it holds is freed with the manifest. */
-static ms_status read_row(ms_manifest *manifest, const manifest_header *header, ms_text *text, ms_error *err)
+static ms_status read_manifest_row(ms_manifest *manifest, const manifest_header *header, ms_text *text, ms_error *err)
 {
     ms_word field[COLUMNS] = {{0}}, by_name[COLUMNS] = {{0}};
     const ms_word line = ms_text_rest(text);
@@ -154,9 +154,9 @@ static ms_status parse(ms_manifest *manifest, const ms_bytes *bytes, const char 
     }
     ms_text_start(&text, bytes, path);
     text.comment = '#';
-    ms_status status = read_header(&header, &text, err);
+    ms_status status = read_manifest_header(&header, &text, err);
     while (status == MS_OK && ms_text_seek(&text)) {
-        status = read_row(manifest, &header, &text, err);
+        status = read_manifest_row(manifest, &header, &text, err);
     }
     if (status == MS_OK && manifest->count == 0) {
         status = ms_fail(err, MS_ERR_FORMAT, "%s: no shape stands below the header", path);

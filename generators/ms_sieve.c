@@ -13,7 +13,7 @@ typedef struct sieve_curve {
     double size[MS_SIEVE_MAX_ROWS], passing[MS_SIEVE_MAX_ROWS];
 } sieve_curve;
 
-static ms_status read_header(ms_text *text, ms_error *err)
+static ms_status read_sieve_header(ms_text *text, ms_error *err)
 {
     ms_word field[2];
     if (!ms_text_seek(text)) {
@@ -26,7 +26,7 @@ static ms_status read_header(ms_text *text, ms_error *err)
                : ms_text_fail(err, text, "the header is '%s', not size,passing", ms_text_quote(&line).text);
 }
 
-static ms_status read_row(sieve_curve *curve, ms_text *text, ms_error *err)
+static ms_status read_sieve_row(sieve_curve *curve, ms_text *text, ms_error *err)
 {
     ms_word field[2];
     const size_t at = curve->count;
@@ -67,9 +67,9 @@ static ms_status read_curve(sieve_curve *curve, const ms_bytes *bytes, const cha
     }
     ms_text_start(&text, bytes, path);
     text.comment = '#';
-    ms_status status = read_header(&text, err);
+    ms_status status = read_sieve_header(&text, err);
     while (status == MS_OK && ms_text_seek(&text)) {
-        status = read_row(curve, &text, err);
+        status = read_sieve_row(curve, &text, err);
     }
     if (status == MS_OK && (curve->count == 0 || curve->passing[curve->count - 1] < 1)) {
         status = ms_fail(err, MS_ERR_FORMAT,
@@ -119,21 +119,28 @@ static ms_status make_classes(ms_sieve *sieve, const sieve_curve *curve, size_t 
     return MS_OK;
 }
 
-ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_error *err)
+ms_status ms_sieve_parse(ms_sieve *sieve, const ms_bytes *bytes, const char *name, size_t classes, ms_error *err)
 {
-    ms_bytes bytes;
     *sieve = (ms_sieve){0};
     sieve_curve *curve = calloc(1, sizeof *curve);
     ms_status status =
-        curve ? ms_file_read(&bytes, path, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the sieve curve");
-    if (status == MS_OK) {
-        status = read_curve(curve, &bytes, path, err);
-        ms_file_free(&bytes);
-    }
+        curve ? read_curve(curve, bytes, name, err) : ms_fail(err, MS_ERR_NOMEM, "no memory for the sieve curve");
     if (status == MS_OK) {
         status = make_classes(sieve, curve, classes, err);
     }
     free(curve);
+    return status;
+}
+
+ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_error *err)
+{
+    ms_bytes bytes;
+    *sieve = (ms_sieve){0};
+    ms_status status = ms_file_read(&bytes, path, err);
+    if (status == MS_OK) {
+        status = ms_sieve_parse(sieve, &bytes, path, classes, err);
+        ms_file_free(&bytes);
+    }
     return status;
 }
 
@@ -198,10 +205,10 @@ static ms_status spread_rows(ms_manifest *made, const ms_manifest *manifest, con
     return status;
 }
 
-ms_status ms_sieve_apply(ms_sieve *sieve, ms_manifest *manifest, ms_error *err)
+ms_status ms_sieve_apply(ms_manifest *made, ms_sieve *sieve, const ms_manifest *manifest, ms_error *err)
 {
-    ms_manifest made = {0};
     uint64_t particles = 0;
+    *made = (ms_manifest){0};
     for (size_t r = 0; r < manifest->count; r++) {
         particles += manifest->row[r].particles;
     }
@@ -215,15 +222,12 @@ ms_status ms_sieve_apply(ms_sieve *sieve, ms_manifest *manifest, ms_error *err)
     }
     ms_status status = count_classes(sieve, particles, err);
     if (status == MS_OK) {
-        status = spread_rows(&made, manifest, sieve, err);
+        status = spread_rows(made, manifest, sieve, err);
     }
     if (status != MS_OK) {
-        ms_manifest_free(&made);
-        return status;
+        ms_manifest_free(made);
     }
-    ms_manifest_free(manifest);
-    *manifest = made;
-    return MS_OK;
+    return status;
 }
 
 void ms_sieve_free(ms_sieve *sieve)

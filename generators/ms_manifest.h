@@ -7,6 +7,8 @@
 
 #include "base/ms_error.h"
 
+MS_C_BEGIN
+
 enum { MS_MANIFEST_MAX_SHAPES = 1000, MS_MANIFEST_MAX_PARTICLES = 1000000000 };
 
 /* Of sizes, so that their fifth powers are numbers. */
@@ -36,24 +38,26 @@ typedef struct ms_manifest {
  *         one size, a count that is no whole number from 1 to MS_MANIFEST_MAX_PARTICLES, a tolerance that is none from
  *         0 to 1, a size that is none above 0, no shape or too many; MS_ERR_NOMEM
  */
-ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *err);
+MS_API ms_status ms_manifest_read(ms_manifest *manifest, const char *path, ms_error *err);
 
 /** Particles of one shape. @return MS_OK; MS_ERR_NOMEM */
-ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, uint64_t particles, ms_error *err);
+MS_API ms_status ms_manifest_of_shape(ms_manifest *manifest, const char *shape, uint64_t particles, ms_error *err);
 
 /** What messages call it: "grain.stl", or "grain.stl, size 0.5". */
 typedef struct ms_manifest_name {
     char text[512];
 } ms_manifest_name;
 
-ms_manifest_name ms_manifest_name_row(const ms_manifest_row *row);
+MS_API ms_manifest_name ms_manifest_name_row(const ms_manifest_row *row);
 
 /** Index of the first row of the same shape; its own for the first. */
-size_t ms_manifest_first(const ms_manifest *manifest, size_t row);
+MS_API size_t ms_manifest_first(const ms_manifest *manifest, size_t row);
 
 /** Nonzero if a row has a size. */
-int ms_manifest_has_sizes(const ms_manifest *manifest);
+MS_API int ms_manifest_has_sizes(const ms_manifest *manifest);
 
-void ms_manifest_free(ms_manifest *manifest);
+MS_API void ms_manifest_free(ms_manifest *manifest);
+
+MS_C_END
 
 #endif

@@ -3,7 +3,10 @@
 #ifndef MS_SIEVE_H
 #define MS_SIEVE_H
 
+#include "base/ms_file.h"
 #include "ms_manifest.h"
+
+MS_C_BEGIN
 
 enum { MS_SIEVE_MAX_ROWS = 1000, MS_SIEVE_MAX_CLASSES = 100, MS_SIEVE_MAX_KINDS = 10000 };
 
@@ -31,18 +34,26 @@ typedef struct ms_sieve {
  *         share that falls or is none from 0 to 1, a curve that does not begin with 0 or end with 1, more rows
  *         than MS_SIEVE_MAX_ROWS; MS_ERR_NOMEM
  */
-ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_error *err);
+MS_API ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_error *err);
+
+/** The same from memory. @param name what messages call it */
+MS_API ms_status ms_sieve_parse(ms_sieve *sieve, const ms_bytes *bytes, const char *name, size_t classes,
+                                ms_error *err);
 
 /**
  * Gives the particles of each row sizes: the row becomes one for each class that it has particles of. The numbers of
  * rows are kept, those of classes are the best whole ones for all rows together (ms_sieve_counts.h).
  *
- * @param manifest without sizes; on failure it is as it was
+ * @param[out]    made     the rows, one of the manifest after the other; the caller frees it; empty on failure
+ * @param[in,out] sieve    gets the counts of its classes, and their shares of the mass
+ * @param         manifest without sizes
  * @return MS_OK; MS_ERR_LIMIT for more than MS_SIEVE_MAX_KINDS kinds or MS_MANIFEST_MAX_PARTICLES particles;
  *         MS_ERR_NOMEM
  */
-ms_status ms_sieve_apply(ms_sieve *sieve, ms_manifest *manifest, ms_error *err);
+MS_API ms_status ms_sieve_apply(ms_manifest *made, ms_sieve *sieve, const ms_manifest *manifest, ms_error *err);
 
-void ms_sieve_free(ms_sieve *sieve);
+MS_API void ms_sieve_free(ms_sieve *sieve);
+
+MS_C_END
 
 #endif
