@@ -9,7 +9,7 @@ from contrasts_tables import HERE, pool_cells, take
 from intervals import quantile
 
 CHART = os.path.join(HERE, "beds.svg")
-COLOURS = ["#666666", "#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c510a", "#56b4e9"]
+COLOURS = ["#666666", "#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c510a", "#56b4e9", "#e69f00"]
 TITLES = {"fraction": "packing fraction", "start": "start angle, degrees"}
 
 

@@ -277,12 +277,13 @@ class Chart(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed (package gnuplot-nox)")
     def test_drawn(self):
+        self.rows = [{**self.rows[0], "cell": cell, "fraction": k / 100} for cell in cells.CELLS for k in (0, 2)]
         with tempfile.TemporaryDirectory() as folder:
             with mock.patch.object(chart, "CHART", os.path.join(folder, "beds.svg")):
                 chart.draw(self.rows)
             with open(os.path.join(folder, "beds.svg"), encoding="utf-8") as stream:
                 drawn = stream.read()
-        for text in ("packing fraction", "start angle, degrees", "variational", "euclid"):
+        for text in ("packing fraction", "start angle, degrees", *map(chart.find_group, cells.CELLS)):
             self.assertIn(text, drawn)
 
 
