@@ -56,7 +56,8 @@ def write_commands(rows):
             data, style = f"${field}{k}", "yerrorlines" if len(points) > 1 else "yerrorbars"
             lines.append(f"{data} << END\n" + "".join(f"{n} {mean} {half}\n" for n, mean, half in points) + "END")
             # as many spheres: beside each other
-            plots.append(f"{data} using ($1*{0.94 + 0.06 * k}):2:3 with {style} linecolor rgb '{COLOURS[k]}' "
+            shift = 1 if name == "smooth" else 0.94 + 0.06 * k
+            plots.append(f"{data} using ($1*{shift}):2:3 with {style} linecolor rgb '{COLOURS[k]}' "
                          f"pointtype {k + 4} title '{name}'")
         lines += [f"set title '{title}'", "plot " + ", ".join(plots)]
     return "\n".join(lines) + "\n"

@@ -176,7 +176,8 @@ PREDICTORS = {"": "none", "dice": "D", "mean_width": "mean width", "normal_media
 CONTRASTS = [
     ("radii -3 %", "variational-10-small", "variational-10"), ("radii +3 %", "variational-10-large", "variational-10"),
     ("20 spheres, other D", "euclid-20", "variational-20"), ("10 spheres, other D", "setcover-10", "variational-10"),
-    ("equal D, other n", "euclid-20", "variational-10"), ("rolling friction", "sphere-0.1", "sphere-0"),
+    ("10 and 20 spheres", "variational-10", "variational-20"), ("equal D, other n", "euclid-20", "variational-10"),
+    ("rolling friction", "sphere-0.1", "sphere-0"),
     ("a ball as a superquadric", "smooth-ball", "sphere-0"),
 ]
 

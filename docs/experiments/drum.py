@@ -135,6 +135,8 @@ def run(folder, n, seed):
 def make_table(rows):
     """Mean and half of its 90 % interval by blocks, whose spread is pooled over all runs; difference from the most
     spheres."""
+    if not rows:
+        return "None was run yet."
     blocks = {n: [[float(x) for x in row["blocks"].split()] for row in rows if int(row["n"]) == n]
               for n in sorted({int(row["n"]) for row in rows})}
     deviation, freedom = pool([run for runs in blocks.values() for run in runs])
@@ -170,7 +172,7 @@ def main():
             tables.add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in ("n", "seed", "angle", "correlation", "cpu_seconds")),
                   flush=True)
-    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"drum": make_table(tables.read(TABLE))})
+    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"drum": make_table(tables.read(TABLE) if os.path.exists(TABLE) else [])})
 
 
 if __name__ == "__main__":

@@ -132,6 +132,8 @@ def run(folder, names, kinds, seed):
 
 def make_table(rows):
     """Means, spread within rows of the same kinds, and differences from the powder with half of their 90 % interval."""
+    if not rows:
+        return "None was run yet."
     groups = {k: [row for row in rows if int(row["kinds"]) == k] for k in KINDS}
     groups = {k: these for k, these in groups.items() if these}
     values = {f: {k: [float(row[f]) for row in these] for k, these in groups.items()} for f in MEASURED}
@@ -167,7 +169,7 @@ def main():
             row = run(asked.work, names, kinds, seed)
             tables.add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in COLUMNS if key not in ("particles", "version")), flush=True)
-    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"library": make_table(tables.read(TABLE))})
+    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"library": make_table(tables.read(TABLE) if os.path.exists(TABLE) else [])})
 
 
 if __name__ == "__main__":
