@@ -11,6 +11,11 @@ def read(path):
         return list(csv.DictReader(stream))
 
 
+def read_if_there(path):
+    """The rows so far of a table that grows run by run."""
+    return read(path) if os.path.exists(path) else []
+
+
 def add_row(path, columns, row):
     """At the end of a CSV file, with the head of a new one."""
     new = not os.path.exists(path)

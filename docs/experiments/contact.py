@@ -33,7 +33,7 @@ class Table:
 
     def __init__(self, name, fields, keys):
         self.path, self.fields, self.keys = os.path.join(HERE, name), fields.split(), keys
-        self.rows = contact_tables.tables.read(self.path) if os.path.exists(self.path) else []
+        self.rows = contact_tables.tables.read_if_there(self.path)
         self.seen = {self.key(row) for row in self.rows}
 
     def key(self, row):

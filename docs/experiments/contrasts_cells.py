@@ -147,7 +147,7 @@ def describe(folder, name):
 
 def describe_all(folder, path):
     """Adds those that are not in the table yet."""
-    there = {row["cell"] for row in tables.read(path)} if os.path.exists(path) else set()
+    there = {row["cell"] for row in tables.read_if_there(path)}
     for name, cell in CELLS.items():
         if name not in there and cell.method != "smooth":
             tables.add_row(path, COLUMNS, describe(folder, name))

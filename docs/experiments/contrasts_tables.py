@@ -19,7 +19,7 @@ MEASURED = {"fraction": ("fraction", 4, ("relative", 0.01)), "start": ("start, d
 
 
 def read_runs(path=RUNS):
-    return tables.read(path) if os.path.exists(path) else []
+    return tables.read_if_there(path)
 
 
 def take(rows, field, cell, step=STEP, rate=RATE):

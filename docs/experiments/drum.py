@@ -162,7 +162,7 @@ def main():
     parser.add_argument("--most", type=float, default=1e9, help="no run is begun after so many minutes")
     asked = parser.parse_args()
     os.makedirs(asked.work, exist_ok=True)
-    begun, rows = time.time(), tables.read(TABLE) if os.path.exists(TABLE) else []
+    begun, rows = time.time(), tables.read_if_there(TABLE)
     there = {(int(row["n"]), int(row["seed"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
         for n in map(int, asked.spheres.split(",")):
@@ -172,7 +172,7 @@ def main():
             tables.add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in ("n", "seed", "angle", "correlation", "cpu_seconds")),
                   flush=True)
-    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"drum": make_table(tables.read(TABLE) if os.path.exists(TABLE) else [])})
+    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"drum": make_table(tables.read_if_there(TABLE))})
 
 
 if __name__ == "__main__":

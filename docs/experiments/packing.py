@@ -224,7 +224,7 @@ def main():
     parser.add_argument("--most", type=float, default=1e9, help="no packing is begun after so many minutes")
     asked = parser.parse_args()
     os.makedirs(asked.work, exist_ok=True)
-    start, rows = time.time(), tables.read(TABLE) if os.path.exists(TABLE) else []
+    start, rows = time.time(), tables.read_if_there(TABLE)
     there = {(int(row["n"]), int(row["seed"]), float(row["step"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
         if (asked.spheres, seed, asked.step) in there or time.time() - start > 60 * asked.most:
