@@ -201,6 +201,32 @@ static void one_sphere_for_liggghts(void **state)
     assert_int_equal(rmdir(folder), 0);
 }
 
+/* Its volume is 0 in doubles, and its density none: no format writes inf. */
+static void density_is_a_number(void **state)
+{
+    static const char *const NAME[] = {"a.csv", "a.json", "a.vtk", "a.lammps"};
+    char folder[64], path[128];
+    ms_clump clump = {0};
+    double mass[2] = {0.5, 0.2};
+    ms_error err = {{0}};
+    const ms_particle particle = {
+        .scale = 1, .density = 1000, .mass = 0.7, .inertia = {{0.1, 0, 0}, {0, 0.2, 0}, {0, 0, 0.25}}};
+    (void)state;
+    add_sphere(&clump, 0, 0, 0, 2.385);
+    add_sphere(&clump, 0, 0, 1, 1e-150);
+    clump.mass = mass;
+    make_folder(folder);
+    const ms_content content = {.clump = &clump, .particle = &particle};
+    for (int n = 0; n < 4; n++) {
+        snprintf(path, sizeof path, "%s/%s", folder, NAME[n]);
+        assert_int_equal(ms_write_clump(&content, path, NULL, &err), MS_ERR_ARG);
+        expect_message(&err, "sphere 2, of radius 1e-150 and 0.2 kg, has a density that no number holds");
+    }
+    assert_int_equal(rmdir(folder), 0); /* nothing is left there */
+    clump.mass = NULL;
+    ms_clump_free(&clump);
+}
+
 static void the_ending_names_the_format(void **state)
 {
     (void)state;
@@ -323,13 +349,10 @@ static void a_grid_is_written_as_it_is(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_format_restores_the_spheres),
-        cmocka_unit_test(one_sphere_for_liggghts),
-        cmocka_unit_test(a_decimal_comma_changes_nothing),
-        cmocka_unit_test(the_ending_names_the_format),
-        cmocka_unit_test(a_failure_leaves_the_file_that_was_there),
-        cmocka_unit_test(what_cannot_be_written_is_said),
-        cmocka_unit_test(a_grid_is_written_as_it_is),
+        cmocka_unit_test(every_format_restores_the_spheres), cmocka_unit_test(one_sphere_for_liggghts),
+        cmocka_unit_test(a_decimal_comma_changes_nothing),   cmocka_unit_test(density_is_a_number),
+        cmocka_unit_test(the_ending_names_the_format),       cmocka_unit_test(a_failure_leaves_the_file_that_was_there),
+        cmocka_unit_test(what_cannot_be_written_is_said),    cmocka_unit_test(a_grid_is_written_as_it_is),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 #include "ms_write.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -8,6 +9,7 @@
 #include "base/ms_choice.h"
 #include "base/ms_escape.h"
 #include "base/ms_file.h"
+#include "ms_fields.h"
 #include "ms_formats.h"
 
 const ms_format ms_formats[] = {
@@ -217,6 +219,20 @@ char *ms_write_path(const char *folder, const char *source, const char *behind, 
     return path;
 }
 
+/* A sphere that is next to nothing beside its mass has a density that no file could give back. */
+static ms_status check_densities(const ms_content *content, ms_error *err)
+{
+    for (size_t s = 0; ms_fields_has_masses(content) && s < ms_fields_count(content); s++) {
+        if (!isfinite(ms_fields_density(content, s))) {
+            return ms_fail(err, MS_ERR_ARG,
+                           "sphere %zu, of radius %g and %g kg, has a density that no number holds; are clump and "
+                           "particle in one unit?",
+                           s + 1, content->clump->sphere[s].radius, content->clump->mass[s]);
+        }
+    }
+    return MS_OK;
+}
+
 ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err)
 {
     ms_content named = *content;
@@ -226,6 +242,9 @@ ms_status ms_write_clump(const ms_content *content, const char *path, const ms_f
     }
     named.name = ms_file_base_name(path);
     ms_status status = ms_write_check(content, format, err);
+    if (status == MS_OK) {
+        status = check_densities(content, err);
+    }
     if (status == MS_OK) {
         status = ms_write_check_path(path, format, err);
     }

@@ -126,7 +126,8 @@ MS_API char *ms_write_path(const char *folder, const char *source, const char *b
  *
  * @param path   "-" for standard output, which takes the first file of the format alone
  * @param format NULL: by the ending of the path; csv for standard output
- * @return MS_OK; MS_ERR_ARG for an unknown ending, or as ms_write_check; MS_ERR_IO; MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for an unknown ending, a sphere so small beside its mass that its density is no number, or
+ *         as ms_write_check; MS_ERR_IO; MS_ERR_NOMEM
  */
 MS_API ms_status ms_write_clump(const ms_content *content, const char *path, const ms_format *format, ms_error *err);
 
