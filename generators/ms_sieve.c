@@ -151,6 +151,9 @@ static void add_class(ms_sieve *sieve, const sieve_curve *curve, double lo, doub
 
 static ms_status make_classes(ms_sieve *sieve, const sieve_curve *curve, size_t classes, ms_error *err)
 {
+    if (classes > MS_SIEVE_MAX_CLASSES) {
+        return ms_fail(err, MS_ERR_ARG, "%zu classes of size; %d at most are made", classes, MS_SIEVE_MAX_CLASSES);
+    }
     *sieve = (ms_sieve){.of = calloc(classes > 0 ? classes : curve->count, sizeof *sieve->of)};
     if (!sieve->of) {
         return ms_fail(err, MS_ERR_NOMEM, "no memory for the classes of size");
@@ -270,9 +273,14 @@ ms_status ms_sieve_apply(ms_manifest *made, ms_sieve *sieve, const ms_manifest *
     uint64_t particles = 0;
     *made = (ms_manifest){0};
     for (size_t r = 0; r < manifest->count; r++) {
-        particles += manifest->row[r].particles;
+        const uint64_t room = UINT64_MAX - particles;
+        particles += manifest->row[r].particles < room ? manifest->row[r].particles : room;
     }
-    if (particles > MS_MANIFEST_MAX_PARTICLES || manifest->count * sieve->count > MS_SIEVE_MAX_KINDS) {
+    if (sieve->count == 0 || particles == 0) {
+        return ms_fail(err, MS_ERR_ARG, "%s; there is nothing to give sizes to",
+                       sieve->count == 0 ? "the sieve has no classes of size" : "the manifest has no particles");
+    }
+    if (particles > MS_MANIFEST_MAX_PARTICLES || manifest->count > MS_SIEVE_MAX_KINDS / sieve->count) {
         return ms_fail(
             err, MS_ERR_LIMIT,
             "%llu particles of %zu shapes in %zu sizes; with a sieve curve there are %d particles at most, and "

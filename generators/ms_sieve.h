@@ -28,10 +28,11 @@ typedef struct ms_sieve {
  * rows it grows with the logarithm of the size.
  *
  * @param[out] sieve   the caller frees it; empty on failure
- * @param      classes 0: one between each row and the next, without those that hold nothing; else as many of equal mass
+ * @param      classes 0: one between each row and the next, without those that hold nothing; else as many of equal
+ *                     mass, MS_SIEVE_MAX_CLASSES at most
  * @return MS_OK; MS_ERR_IO; MS_ERR_FORMAT with the line: another header, a size that is not above the one before, a
  *         share that falls or is none from 0 to 1, a curve that does not begin with 0 or end with 1, more rows
- *         than MS_SIEVE_MAX_ROWS; MS_ERR_NOMEM
+ *         than MS_SIEVE_MAX_ROWS; MS_ERR_ARG for too many classes; MS_ERR_NOMEM
  */
 MS_API ms_status ms_sieve_read(ms_sieve *sieve, const char *path, size_t classes, ms_error *err);
 
@@ -44,10 +45,10 @@ MS_API ms_status ms_sieve_make(ms_sieve *sieve, const double *size, const double
  * rows are kept, those of classes are the best whole ones for all rows together (ms_sieve_counts.h).
  *
  * @param[out]    made     the rows, one of the manifest after the other; the caller frees it; empty on failure
- * @param[in,out] sieve    not empty; gets the counts of its classes, and their shares of the mass
+ * @param[in,out] sieve    gets the counts of its classes, and their shares of the mass
  * @param         manifest without sizes
- * @return MS_OK; MS_ERR_LIMIT for more than MS_SIEVE_MAX_KINDS kinds or MS_MANIFEST_MAX_PARTICLES particles;
- *         MS_ERR_NOMEM
+ * @return MS_OK; MS_ERR_ARG for a sieve without classes or a manifest without particles; MS_ERR_LIMIT for more than
+ *         MS_SIEVE_MAX_KINDS kinds or MS_MANIFEST_MAX_PARTICLES particles; MS_ERR_NOMEM
  */
 MS_API ms_status ms_sieve_apply(ms_manifest *made, ms_sieve *sieve, const ms_manifest *manifest, ms_error *err);
 

@@ -266,6 +266,7 @@ static void test_curves_in_memory(void **state)
     assert_non_null(strstr(err.text, "lets 0 of the mass pass"));
     assert_int_equal(ms_sieve_make(&made, FALLING, PASSING, 4, 0, &err), MS_ERR_FORMAT);
     assert_non_null(strstr(err.text, "row 0: the size '0' is not a number"));
+    assert_int_equal(ms_sieve_make(&made, SIZE, PASSING, 4, MS_SIEVE_MAX_CLASSES + 1, &err), MS_ERR_ARG);
     assert_null(made.of);
 }
 
@@ -311,6 +312,30 @@ static void test_apply(void **state)
     row[0].particles = MS_MANIFEST_MAX_PARTICLES;
     assert_int_equal(ms_sieve_apply(&manifest, &sieve, &rows, &err), MS_ERR_LIMIT);
     assert_int_equal(manifest.count, 0);
+    row[0].particles = UINT64_MAX - 40; /* with those of the others 0, if the sum began anew */
+    assert_int_equal(ms_sieve_apply(&manifest, &sieve, &rows, &err), MS_ERR_LIMIT);
+    assert_int_equal(manifest.count, 0);
+    ms_sieve_free(&sieve);
+}
+
+/* Nothing to divide by, and nothing to divide. */
+static void test_apply_nothing(void **state)
+{
+    ms_sieve empty = {0}, sieve;
+    char path[] = "a";
+    ms_manifest_row row = {path, 1, (double)NAN, (double)NAN};
+    const ms_manifest rows = {&row, 1}, none = {0};
+    ms_manifest manifest;
+    ms_error err;
+    (void)state;
+    assert_int_equal(ms_sieve_apply(&manifest, &empty, &rows, &err), MS_ERR_ARG);
+    assert_non_null(strstr(err.text, "no classes"));
+    assert_int_equal(read_text(&sieve, "size,passing\n1,0\n2,1\n", 0, &err), MS_OK);
+    assert_int_equal(ms_sieve_apply(&manifest, &sieve, &none, &err), MS_ERR_ARG);
+    row.particles = 0;
+    assert_int_equal(ms_sieve_apply(&manifest, &sieve, &rows, &err), MS_ERR_ARG);
+    assert_non_null(strstr(err.text, "no particles"));
+    assert_int_equal(manifest.count, 0);
     ms_sieve_free(&sieve);
 }
 
@@ -326,6 +351,7 @@ int main(void)
         cmocka_unit_test(test_refused),
         cmocka_unit_test(test_curves_in_memory),
         cmocka_unit_test(test_apply),
+        cmocka_unit_test(test_apply_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
