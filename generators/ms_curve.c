@@ -43,16 +43,6 @@ static ms_run copy_for_one(const ms_run *run, const ms_settings *settings)
     return one;
 }
 
-/* One that its listener ends fails; what it gives is the caller's even so. */
-static ms_status run_smaller(ms_clump *next, const ms_generator *generator, const ms_run *run, ms_error *err)
-{
-    ms_stop_reason reason;
-    const ms_status status = ms_generator_run(next, &reason, generator, run, err);
-    return status == MS_OK && reason == MS_STOP_INTERRUPTED
-               ? ms_fail(err, MS_ERR_INTERRUPTED, "interrupted at %zu spheres", run->stop.spheres)
-               : status;
-}
-
 /*
  * A run for each number of spheres, from the largest down. Where a generator gives fewer spheres than asked for, their
  * score stands for both numbers. Without `each` a clump is freed when the next has started from it.
@@ -91,7 +81,7 @@ static ms_status run_each(ms_score *curve, ms_clump *each, ms_error *remarks, co
         if (status != MS_OK) {
             break;
         }
-        status = run_smaller(&next, generator, &one, err);
+        status = ms_generator_run_whole(&next, generator, &one, err);
         ms_clump_free(&last);
         last = next;
         larger = &last;

@@ -162,3 +162,15 @@ ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_gen
     }
     return status;
 }
+
+ms_status ms_generator_run_whole(ms_clump *clump, const ms_generator *generator, const ms_run *run, ms_error *err)
+{
+    ms_stop_reason reason;
+    const ms_status status = ms_generator_run(clump, &reason, generator, run, err);
+    if (status != MS_OK || reason != MS_STOP_INTERRUPTED) {
+        return status;
+    }
+    const size_t spheres = clump->n_spheres;
+    ms_clump_free(clump);
+    return ms_fail(err, MS_ERR_INTERRUPTED, "interrupted at %zu spheres", spheres);
+}

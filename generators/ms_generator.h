@@ -109,6 +109,11 @@ MS_API const ms_generator *ms_generator_find(const char *name, ms_error *err);
 MS_API ms_status ms_generator_run(ms_clump *clump, ms_stop_reason *reason, const ms_generator *generator,
                                   const ms_run *run, ms_error *err);
 
+/** The same for a clump that has to be whole. @return as ms_generator_run; MS_ERR_INTERRUPTED where the run's listener
+ * ends it, whatever it has by then */
+MS_API ms_status ms_generator_run_whole(ms_clump *clump, const ms_generator *generator, const ms_run *run,
+                                        ms_error *err);
+
 /** Has what a run remarks added to a text, sentences with "; " between; what it has no room for is cut. @param kept
  * borrowed while the run lasts */
 MS_API void ms_generator_keep_remarks(ms_run *run, ms_error *kept);

@@ -57,18 +57,12 @@ static ms_status run_once(ms_clump *clump, ms_error *remarks, const ms_templates
 {
     ms_run one = *how->run;
     part_listener listener = {how->run, 0};
-    ms_stop_reason reason;
     one.stop.spheres = spheres;
     one.progress = tell_spheres;
     one.stage = ask_listener;
     one.progress_context = one.stage_context = &listener;
     ms_generator_keep_remarks(&one, remarks);
-    const ms_status status = ms_generator_run(clump, &reason, how->generator, &one, err);
-    if (status != MS_OK || reason != MS_STOP_INTERRUPTED) {
-        return status;
-    }
-    ms_clump_free(clump);
-    return ms_fail(err, MS_ERR_INTERRUPTED, "interrupted at %zu spheres", spheres);
+    return ms_generator_run_whole(clump, how->generator, &one, err);
 }
 
 /* Scaled, where that is asked for, and judged. */

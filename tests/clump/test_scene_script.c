@@ -53,13 +53,13 @@ static void a_vessel_has_room(void **state)
 /* The script names the template, without which it is none. */
 static void a_script_is_written(void **state)
 {
-    char folder[] = "/tmp/test_scene_script_XXXXXX";
+    char folder[64];
     ms_clump clump;
     ms_particle particle;
     ms_bytes bytes;
     (void)state;
     make_pair(&clump, &particle);
-    assert_non_null(mkdtemp(folder));
+    make_folder(folder);
     const ms_scene_vessel vessel = {0};
     const ms_scene_kind kind = {&clump, &particle, "elsewhere/a pair.yade", "pair", 5};
     assert_int_equal(ms_scene_script_write(&kind, 1, &vessel, folder, format_of("yade"), NULL), MS_OK);

@@ -44,7 +44,7 @@ MS_API ms_status ms_scene_script_check(const ms_scene_kind *kind, size_t count, 
 MS_API ms_status ms_scene_script_write(const ms_scene_kind *kind, size_t count, const ms_scene_vessel *vessel,
                                        const char *folder, const ms_format *format, ms_error *err);
 
-/** Where it stands. @return the caller frees it; NULL without memory */
+/** Where it stands. @param format one with a script of scenes @return the caller frees it; NULL without memory */
 MS_API char *ms_scene_script_path(const char *folder, const ms_format *format);
 
 MS_C_END
