@@ -23,8 +23,18 @@ static ms_status grow(ms_clump *clump, ms_stop_reason *reason, const ms_run *run
     return status;
 }
 
+/* The same with one ball less for odd numbers, which says of what number it is. */
+static ms_status grow_by_pairs(ms_clump *clump, ms_stop_reason *reason, const ms_run *run, ms_error *err)
+{
+    const ms_status status = grow(clump, reason, run, err);
+    ms_generator_remark(run, "of %zu", run->stop.spheres);
+    clump->n_spheres -= clump->n_spheres > 1 && clump->n_spheres % 2;
+    return status;
+}
+
 static const ms_option NO_OPTIONS[] = {{0}};
 static const ms_generator GROWING = {.name = "growing", .options = NO_OPTIONS, .generate = grow};
+static const ms_generator BY_PAIRS = {.name = "pairs", .options = NO_OPTIONS, .generate = grow_by_pairs};
 
 /* @param[out] mesh outlives the target */
 static void make_ball(ms_target *target, ms_mesh *mesh, double h)
@@ -139,6 +149,32 @@ static void an_interrupted_run_ends_it(void **state)
     ms_mesh_free(&mesh);
 }
 
+/* Of two clumps of as many spheres the better one stands at their number, with its score and remarks. */
+static void the_better_clump_has_the_number(void **state)
+{
+    static const size_t FROM[] = {1, 3, 2, 5, 4, 7, 6, 9}, HAS[] = {1, 2, 2, 4, 4, 6, 6, 8};
+    ms_target target;
+    ms_mesh mesh;
+    ms_templates all;
+    (void)state;
+    make_ball(&target, &mesh, 1);
+    const ms_run run = {.target = &target, .stop = {.spheres = 9}};
+    const ms_templates_how how = {.generator = &BY_PAIRS, .run = &run, .max_voxels = 1u << 24};
+    assert_int_equal(ms_templates_make(&all, &how, NULL), MS_OK);
+    assert_int_equal(all.most, 8);
+    for (size_t n = 0; n < 8; n++) {
+        char remark[16];
+        snprintf(remark, sizeof remark, "of %zu", FROM[n]);
+        assert_int_equal(all.clump[n].n_spheres, HAS[n]);
+        expect_close(all.clump[n].sphere[0].radius, 10 * pow((double)FROM[n] / MOST, 0.25), 1e-12);
+        assert_string_equal(all.remarks[n].text, remark);
+        assert_true(all.dice[n] == all.score[n].dice && (FROM[n] <= n + 1 || all.dice[n] < all.dice[n + 1] || n == 7));
+    }
+    ms_templates_free(&all);
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
 /* Each has the volume asked for before it is judged: here they are all the ball itself. */
 static void templates_of_equal_volume(void **state)
 {
@@ -214,9 +250,13 @@ static void a_body_in_its_size(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_search_finds_the_least_number), cmocka_unit_test(where_none_reaches_it),
-        cmocka_unit_test(an_interrupted_run_ends_it),      cmocka_unit_test(templates_of_equal_volume),
-        cmocka_unit_test(a_length_is_a_mismatch),          cmocka_unit_test(a_body_in_its_size),
+        cmocka_unit_test(a_search_finds_the_least_number),
+        cmocka_unit_test(where_none_reaches_it),
+        cmocka_unit_test(an_interrupted_run_ends_it),
+        cmocka_unit_test(the_better_clump_has_the_number),
+        cmocka_unit_test(templates_of_equal_volume),
+        cmocka_unit_test(a_length_is_a_mismatch),
+        cmocka_unit_test(a_body_in_its_size),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
