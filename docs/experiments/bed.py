@@ -7,7 +7,8 @@ import sys
 
 import numpy
 
-from packing import CLUMPS, ENERGY, LIGGGHTS, MATERIAL, REST, SETTLE, ask_version, read_dump, run_to_rest
+from packing import CLUMPS, ENERGY, LIGGGHTS, MATERIAL, REST, SETTLE, read_dump, run_to_rest
+from program import ask_version
 
 COUNT, SIDE, PASS = 250, 60.0, 0.01  # particles, mm, s between two looks at the velocity
 # An engine with superquadrics, for the cell smooth: the packaged one has none.
@@ -118,7 +119,7 @@ def ball(x, y, z, r):
     return x, y, z, r, chords
 
 
-def spheroid(x, y, z, axes, quaternion):
+def ellipsoid(x, y, z, axes, quaternion):
     """The same, of half axes in mm that the quaternion w, x, y, z turns."""
     w, (i, j, k) = quaternion[0], quaternion[1:]
     cross = numpy.array([[0, -k, j], [k, 0, -i], [-j, i, 0]])
@@ -158,7 +159,7 @@ def read_bodies(path, clump):
     if len(rows) != COUNT * clump["members"]:
         sys.exit(f"{path}: {len(rows)} are not those of {COUNT} particles")
     if clump["smooth"]:
-        return [spheroid(*(1000 * row[:3]), 1000 * row[3:6], row[6:]) for row in rows]
+        return [ellipsoid(*(1000 * row[:3]), 1000 * row[3:6], row[6:]) for row in rows]
     return [ball(*row) for row in 1000 * rows]
 
 

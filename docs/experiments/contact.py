@@ -11,16 +11,15 @@ import json
 import math
 import os
 import resource
-import subprocess
 import sys
 import tempfile
 
 import contact_tables
 import dem
 import oracle
+from program import run_mskit
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-MSKIT = os.path.abspath(os.environ.get("MSKIT", "build/eval/mskit"))
 GLASS = dem.Law("hertz", 70e9, 0.3, 0.5)
 LOCK = 1e9  # moments of inertia times this: rotation is locked
 # What points down, in the frame of the shape.
@@ -82,11 +81,9 @@ def make_clump(folder, shape, n):
     path = os.path.join(folder, f"{shape}-{n}.json")
     if not os.path.exists(path):
         mesh = os.path.join(folder, shape + ".stl")
-        quiet = {"check": True, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        size = ["a=10"] if shape == "cube" else []
-        subprocess.run([MSKIT, "shape", shape, *size, "-o", mesh], **quiet)
-        subprocess.run([MSKIT, "generate", mesh, "-g", "setcover", "-n", str(n), "--cells", "50", "--correct",
-                        "--density", str(dem.DENSITY), "--unit", "mm", "-o", path], **quiet)
+        run_mskit("shape", shape, *(["a=10"] if shape == "cube" else []), "-o", mesh)
+        run_mskit("generate", mesh, "-g", "setcover", "-n", n, "--cells", 50, "--correct", "--density", dem.DENSITY,
+                  "--unit", "mm", "-o", path)
     return path
 
 

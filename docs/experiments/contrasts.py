@@ -48,8 +48,14 @@ def run(folder, name, seed, step, rate):
 def choose_cells(names, largest):
     if not names and not LIGGGHTS_SMOOTH:
         print("smooth: left out, as LIGGGHTS_SMOOTH names no engine", file=sys.stderr)
-    asked = names.split(",") if names else [name for name in [*cells.CELLS, *cells.CONTROLS]
+    known = [*cells.CELLS, *cells.CONTROLS]
+    asked = names.split(",") if names else [name for name in known
                                             if LIGGGHTS_SMOOTH or cells.find_cell(name).method != "smooth"]
+    for name in asked:
+        if name not in known:
+            sys.exit(f"there is no cell {name!r}; choose from {', '.join(known)}")
+        if cells.find_cell(name).method == "smooth" and not LIGGGHTS_SMOOTH:
+            sys.exit(f"{name}: LIGGGHTS_SMOOTH names no engine with superquadrics; build-smooth.sh makes one")
     return [name for name in asked if cells.find_cell(name).n <= largest]
 
 

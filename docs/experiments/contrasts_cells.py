@@ -1,10 +1,10 @@
 """The clumps of contrasts.py: for the M&M candy of packing.py, of its volume unless their radii were changed."""
 import json
 import os
-import subprocess
 from collections import namedtuple
 
-from packing import A, C, DENSITY, MASS, MSKIT, RESTITUTION, YOUNG
+from packing import A, C, DENSITY, MASS, RESTITUTION, YOUNG, find_candy
+from program import run_mskit
 import tables  # of docs, where packing looks
 
 # radii: factor on all of them, with places, mass and inertia as they were; rolling: coefficient of rolling friction;
@@ -37,18 +37,6 @@ def find_cell(name):
     return CELLS.get(name) or CONTROLS[name]
 
 
-def run_mskit(*words):
-    done = subprocess.run([MSKIT, *map(str, words)], check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    return done.stdout
-
-
-def find_shape(folder):
-    shape = os.path.join(folder, "candy.stl")
-    if not os.path.exists(shape):
-        run_mskit("shape", "ellipsoid", f"a={A}", f"b={A}", f"c={C}", "-o", shape)
-    return shape
-
-
 def write_rows(path, rows, head="", between=" "):
     with open(path, "w", encoding="ascii") as stream:
         stream.write(head + "".join(between.join(repr(x) for x in row) + "\n" for row in rows))
@@ -59,15 +47,21 @@ def read_rows(path):
         return [[float(x) for x in line.split()] for line in stream]
 
 
+def tell_template(name, file, spheres, tensor, prime=15485863, number=1):
+    """LIGGGHTS' line for a template of the candy's mass and density, no line end. tensor: xx, xy, xz, yy, yz, zz in
+    kg m^2; prime and number: each template's own."""
+    return (f"fix {name} all particletemplate/multisphere {prime} atom_type 1 volume_limit 1e-300 "
+            f"density constant {DENSITY} nspheres {spheres} ntry 1000 spheres file \"{file}\" "
+            f"scale 1.0 type {number} mass {MASS!r} inertia_tensor {' '.join(map(repr, tensor))} use_density")
+
+
 def write_sphere(path):
     """A ball of the candy's volume and density, with the inertia of a ball."""
     r = (A * A * C) ** (1 / 3) * 1e-3
     write_rows(path, [[0.0, 0.0, 0.0, r], [0.0, 0.0, 0.0, HIDDEN * r]])
     i = 0.4 * MASS * r * r
     with open(path + ".in", "w", encoding="ascii") as stream:
-        stream.write("fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit 1e-300 "
-                     f"density constant {DENSITY} nspheres 2 ntry 1000 spheres file \"{os.path.basename(path)}\" "
-                     f"scale 1.0 type 1 mass {MASS!r} inertia_tensor {i!r} 0 0 {i!r} 0 {i!r} use_density\n")
+        stream.write(tell_template("clump", os.path.basename(path), 2, [i, 0, 0, i, 0, i]) + "\n")
 
 
 def write_clump(folder, path, cell):
@@ -76,7 +70,7 @@ def write_clump(folder, path, cell):
     else:
         # Scaled after the fit, as other methods are: the rows that are there are of these clumps.
         scaled = ["--set", "hold-volume=0"] if cell.method == "variational" else []
-        run_mskit("generate", find_shape(folder), "-g", cell.method, *scaled, "-n", cell.n, "--deq", 100,
+        run_mskit("generate", find_candy(folder), "-g", cell.method, *scaled, "-n", cell.n, "--deq", 100,
                   "--equal-volume", "--correct", "--density", DENSITY, "--unit", "mm", "-o", path)
     write_rows(path, [[x, y, z, cell.radii * r] for x, y, z, r in read_rows(path)])
 
@@ -91,7 +85,7 @@ def write_spheres(folder, name):
 
 
 def ask_contact(folder, name, *words):
-    return json.loads(run_mskit("contact", write_spheres(folder, name), "--target", find_shape(folder), "--overlap",
+    return json.loads(run_mskit("contact", write_spheres(folder, name), "--target", find_candy(folder), "--overlap",
                                 0.002, "--json", *words))
 
 
@@ -133,7 +127,7 @@ def make(folder, name):
 
 def describe(folder, name):
     """A row of contrasts-clumps.csv: what may predict how the clump acts."""
-    cell, shape = CELLS[name], find_shape(folder)
+    cell, shape = CELLS[name], find_candy(folder)
     make(folder, name)
     scores = json.loads(run_mskit("score", write_spheres(folder, name), "--target", shape, "--deq", 100,
                                   "--json"))["scores"]

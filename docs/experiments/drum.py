@@ -29,7 +29,8 @@ import numpy
 import contrasts_tables
 from bed import root_or_nan
 from intervals import interval, pool, quantile
-from packing import CLUMPS, ENERGY, MATERIAL, RESTITUTION, SEEDS, YOUNG, ask_version, make_clump, run_engine
+from packing import CLUMPS, ENERGY, MATERIAL, RESTITUTION, SEEDS, YOUNG, make_clump, read_dumps, run_engine
+from program import ask_version
 import tables  # of docs, where packing looks
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -77,20 +78,8 @@ def make_script(template, seed, step):
                          e=RESTITUTION, **CLUMPS)
 
 
-def read_looks(path):
-    """x, y, z, r of all spheres, in mm, one look after the other."""
-    with open(path, encoding="utf-8") as stream:
-        while stream.readline():
-            for _ in range(2):
-                stream.readline()
-            count = int(stream.readline())
-            for _ in range(5):
-                stream.readline()
-            yield 1000 * numpy.array([stream.readline().split()[2:6] for _ in range(count)], dtype=float)
-
-
 def measure(spheres, h=1.0):
-    """The angle of a look, in degrees."""
+    """The angle of a look, in degrees, of spheres in mm; NaN where the bed is bare."""
     x = numpy.arange(-RADIUS / 2, RADIUS / 2 + h / 2, h)
     z = (numpy.arange(round(LENGTH / h)) + 0.5) * h
     top = numpy.full((len(x), len(z)), numpy.nan)
@@ -98,9 +87,8 @@ def measure(spheres, h=1.0):
         i = slice(*numpy.searchsorted(x, [cx - r, cx + r]))
         along = (z - cz + LENGTH / 2) % LENGTH - LENGTH / 2
         top[i] = numpy.fmax(top[i], cy + root_or_nan(r * r - (x[i, None] - cx) ** 2 - along[None, :] ** 2))
-    bare = numpy.isnan(top).all(axis=1)
-    if bare.any():
-        sys.exit(f"the bed is bare {x[bare][0]:g} mm from the plumb line: no angle")
+    if numpy.isnan(top).all(axis=1).any():
+        return math.nan
     return abs(math.degrees(math.atan(numpy.polyfit(x, numpy.nanmean(top, axis=1), 1)[0])))
 
 
@@ -121,11 +109,14 @@ def run(folder, n, seed):
     template, said = make_clump(folder, n)
     work = os.path.join(folder, f"{n}-{seed}")
     _, cpu = run_engine(work, make_script(template, seed, contrasts_tables.STEP))
-    # The first look is that of before.
-    looks = list(read_looks(os.path.join(work, "looks.dump")))[1:]
-    if any(len(spheres) != COUNT * n for spheres in looks):
-        sys.exit(f"{work}: {len(looks[0])} spheres are not those of {COUNT} particles of {n}")
-    angles = [measure(spheres) for spheres in looks]
+    angles = []
+    for spheres in read_dumps(os.path.join(work, "looks.dump")):
+        if len(spheres) != COUNT * n:
+            sys.exit(f"{work}: {len(spheres)} spheres are not those of {COUNT} particles of {n}")
+        angles.append(measure(1000 * spheres))
+    del angles[0]  # of before the first turn that counts
+    if any(map(math.isnan, angles)):
+        sys.exit(f"{work}: the bed is bare in the middle, where its angle would be")
     blocks = [statistics.mean(block) for block in numpy.array_split(angles, BLOCKS)]
     return {"n": n, "dice": said["scores"]["dice"], "seed": seed, "step": contrasts_tables.STEP, "particles": COUNT,
             "angle": round(statistics.mean(angles), 3), "correlation": round(find_correlation(angles), 3),

@@ -16,16 +16,17 @@ by the seed of the run. Of K grains there are as many as their weights say, to t
 import argparse
 import math
 import os
-import subprocess
+import re
 import time
 
 import numpy
 
 import contrasts_tables
 from bed import COUNT, SIDE, run_bed
-from contrasts_cells import read_rows, run_mskit, write_rows
+from contrasts_cells import read_rows, tell_template, write_rows
 from intervals import interval, pool
 from packing import DENSITY, MASS, RESTITUTION, SEEDS, YOUNG, read_spheres
+from program import run_mskit
 import tables  # of docs, where packing looks
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -33,7 +34,7 @@ TABLE = os.path.join(HERE, "library.csv")
 COLUMNS = ["kinds", "seed", "step", "rate", "particles", "height", "fraction", "contacts", "start", "stop", "flowed",
            "kinetic_over_m_g_d", "seconds", "cpu_seconds", "version"]
 KINDS, SPHERES = [0, 1, 5, 20], 20
-FLOOR = numpy.array([[7.5 * i, 7.5 * j, 0.0, 3.75] for i in range(8) for j in range(8)])  # mm, as in contrasts.py
+FLOOR = numpy.array([[7.5 * i, 7.5 * j, 0.0, 3.75] for i in range(8) for j in range(8)])  # mm, as in bed.py
 # what is measured: heading, digits
 MEASURED = {"fraction": ("fraction", 4), "contacts": ("contacts", 2), "start": ("start, degrees", 2),
             "stop": ("stop, degrees", 2), "flowed": ("fraction after flow", 4)}
@@ -81,26 +82,25 @@ def list_primes(count):
     return (10 ** 6 + numpy.flatnonzero(sieve[10 ** 6:]))[:count].tolist()
 
 
-def scale_template(folder, name, number, prime):
-    """The line of a template for LIGGGHTS, of the candy's mass and volume; its spheres go into a file of the folder."""
-    source = os.path.join(folder, "clumps", name)
+def scale_template(source, folder, number, prime):
+    """The line of a template for LIGGGHTS, of the candy's mass and volume; its spheres go into a file of the folder,
+    whose name is a number, since those of grains come from outside."""
     with open(source + ".in", encoding="utf-8") as stream:
-        words = next(line for line in stream if line.startswith("fix clump ")).split()
-    mass, tensor = words.index("mass") + 1, words.index("inertia_tensor") + 1
-    factor = (MASS / float(words[mass])) ** (1 / 3)
-    path = os.path.abspath(os.path.join(folder, f"{os.path.basename(name)}.scaled"))
-    write_rows(path, [[factor * x for x in row] for row in read_rows(source)])
-    words[tensor:tensor + 6] = [repr(float(x) * factor ** 5) for x in words[tensor:tensor + 6]]
-    words[mass], words[1], words[words.index("file") + 1] = repr(MASS), f"clump{number}", f'"{path}"'
-    words[words.index("particletemplate/multisphere") + 1], words[words.index("type") + 1] = str(prime), str(number + 1)
-    return " ".join(words)
+        line = next(line for line in stream if line.startswith("fix clump "))
+    mass, tensor = re.search(r" mass (\S+) inertia_tensor ((?:\S+ ){6})use_density$", line.strip()).groups()
+    factor = (MASS / float(mass)) ** (1 / 3)
+    file = f"{number}.spheres"
+    write_rows(os.path.join(folder, file), [[factor * x for x in row] for row in read_rows(source)])
+    return tell_template(f"clump{number}", file, SPHERES, [float(x) * factor ** 5 for x in tensor.split()], prime,
+                         number + 1)
 
 
-def make_bed(folder, drawn):
-    """What bed.run_bed wants."""
+def make_bed(folder, work, drawn):
+    """What bed.run_bed wants, to run in the folder work."""
+    os.makedirs(work, exist_ok=True)
     # A template a particle: of shares that are not alike LIGGGHTS rounds some down and draws what is missing.
     names = [name for name, count in drawn for _ in range(count)]
-    lines = [scale_template(folder, name, number, prime)
+    lines = [scale_template(os.path.join(folder, "clumps", name), work, number, prime)
              for (number, name), prime in zip(enumerate(names), list_primes(len(names)))]
     shares = " ".join(f"clump{number} {1 / COUNT!r}" for number in range(len(names)))
     return {"template": "\n".join(lines), "kinds": f"{len(names)} {shares}", "members": SPHERES, "rolling": 0.0,
@@ -124,7 +124,7 @@ def count_contacts(spheres):
 def run(folder, names, kinds, seed):
     """One row."""
     work = os.path.join(folder, f"{kinds}-{seed}")
-    clump = make_bed(folder, draw(names, folder, kinds, seed))
+    clump = make_bed(folder, work, draw(names, folder, kinds, seed))
     measured = run_bed(work, clump, seed, contrasts_tables.STEP, contrasts_tables.RATE)
     contacts = count_contacts(read_spheres(os.path.join(work, "settled.dump")))
     return {"kinds": kinds, **measured, "contacts": round(contacts, 3)}

@@ -32,7 +32,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import tables  # noqa: E402
 from intervals import interval_of_mean  # noqa: E402
-MSKIT = os.environ.get("MSKIT", os.path.join(HERE, "..", "..", "build", "eval", "mskit"))
+from program import ask_version, run_mskit  # noqa: E402
 LIGGGHTS = os.environ.get("LIGGGHTS", "liggghts")
 TABLE = os.path.join(HERE, "packing.csv")
 COLUMNS = ["method", "n", "dice", "coverage", "scaled_by", "seed", "step", "particles", "height_envelope", "height_top",
@@ -99,25 +99,38 @@ run {filling}
 """
 
 
+def find_candy(folder):
+    shape = os.path.join(folder, "candy.stl")
+    if not os.path.exists(shape):
+        run_mskit("shape", "ellipsoid", f"a={A}", f"b={A}", f"c={C}", "-o", shape)
+    return shape
+
+
 def make_clump(folder, n):
     """The template's line for LIGGGHTS, and what mskit says of the clump."""
-    shape, clump = os.path.join(folder, "candy.stl"), os.path.join(folder, f"candy-{n}.liggghts")
-    subprocess.run([MSKIT, "shape", "ellipsoid", f"a={A}", f"b={A}", f"c={C}", "-o", shape], check=True,
-                   stderr=subprocess.DEVNULL)
-    said = subprocess.run([MSKIT, "generate", shape, "-g", "setcover", "-n", str(n), "--deq", "100", "--equal-volume",
-                           "--correct", "--density", str(DENSITY), "--unit", "mm", "-o", clump, "--json"], check=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    clump = os.path.join(folder, f"candy-{n}.liggghts")
+    said = run_mskit("generate", find_candy(folder), "-g", "setcover", "-n", n, "--deq", 100, "--equal-volume",
+                     "--correct", "--density", DENSITY, "--unit", "mm", "-o", clump, "--json")
     with open(clump + ".in", encoding="utf-8") as stream:
         line = next(line for line in stream if line.startswith("fix clump "))
-    return line.replace(os.path.basename(clump), os.path.abspath(clump)), json.loads(said.stdout)
+    return line.replace(os.path.basename(clump), os.path.abspath(clump)), json.loads(said)
+
+
+def read_dumps(path):
+    """Of each dump in a file what stands behind id and type, as x, y, z, r, in the engine's units."""
+    with open(path, encoding="utf-8") as stream:
+        while stream.readline():  # ITEM: TIMESTEP, its number, ITEM: NUMBER OF ATOMS; box and columns stand behind that
+            stream.readline(), stream.readline()
+            count = int(stream.readline())
+            for _ in range(5):
+                stream.readline()
+            yield numpy.array([stream.readline().split()[2:] for _ in range(count)], dtype=float)
 
 
 def read_dump(path):
-    """x, y, z, r of the last dump, or what else stands there, in the engine's units."""
-    with open(path, encoding="utf-8") as stream:
-        lines = stream.read().splitlines()
-    start = max(k for k, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
-    return numpy.array([line.split()[2:] for line in lines[start + 1:]], dtype=float)
+    """The last one."""
+    *_, last = read_dumps(path)
+    return last
 
 
 def read_spheres(path):
@@ -153,8 +166,11 @@ def run_engine(work, script, engine=LIGGGHTS):
         stream.write(script)
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     with open(os.path.join(work, "out"), "w", encoding="utf-8") as out:
-        done = subprocess.run([engine, "-in", "in.bed", "-log", "none"], cwd=work, stdout=out,
-                              stderr=subprocess.STDOUT, check=False)
+        try:
+            done = subprocess.run([engine, "-in", "in.bed", "-log", "none"], cwd=work, stdout=out,
+                                  stderr=subprocess.STDOUT, check=False)
+        except OSError as error:
+            sys.exit(f"{engine}: {error.strerror}; LIGGGHTS names the engine, LIGGGHTS_SMOOTH one with superquadrics")
     if done.returncode:
         sys.exit(f"{work}: {engine} failed; see {work}/out")
     with open(os.path.join(work, "out"), encoding="utf-8") as out:
@@ -168,11 +184,6 @@ def run_to_rest(work, script, engine=LIGGGHTS):
     if not rest or float(rest[1]) >= REST:
         sys.exit(f"{work}: no rest; see {work}/out")
     return text, f"{float(rest[1]) / REST * 1e-6:.2g}", cpu
-
-
-def ask_version():
-    said = subprocess.run([MSKIT, "--version"], check=True, stdout=subprocess.PIPE, encoding="utf-8")
-    return said.stdout.strip()
 
 
 def pack(folder, n, seed, step):

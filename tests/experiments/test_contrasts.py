@@ -26,6 +26,7 @@ import contrasts_chart as chart  # noqa: E402
 import contrasts_tables as tables  # noqa: E402
 import intervals  # noqa: E402
 import packing  # noqa: E402
+import program  # noqa: E402
 from tables import add_row  # noqa: E402
 
 
@@ -60,22 +61,22 @@ class Beds(unittest.TestCase):
         for one, other in zip(bed.measure(balls(spheres)), bed.measure(balls(shifted))):
             self.assertAlmostEqual(one, other, places=12)
 
-    def test_a_spheroid_that_is_turned(self):
+    def test_an_ellipsoid_that_is_turned(self):
         """A quarter turn about y lays the short axis along x; any turn leaves the volume and a ball as they are."""
         half, lines = math.sqrt(0.5), numpy.arange(-7, 7, 0.1) + 0.05
-        _, _, _, reach, chords = bed.spheroid(30, 30, 30, (6, 6, 3), (half, 0, half, 0))
+        _, _, _, reach, chords = bed.ellipsoid(30, 30, 30, (6, 6, 3), (half, 0, half, 0))
         self.assertEqual(reach, 6)
         low, high = chords(numpy.array([0.0, 2.9, 3.1, 0.0]), numpy.array([0.0, 0.0, 0.0, 5.9]))
         for got, expected in zip(high, (6, 6 * math.sqrt(1 - (2.9 / 3) ** 2), math.nan, math.sqrt(36 - 5.9 ** 2))):
             self.assertTrue(abs(got - expected) < 1e-12 or math.isnan(got) and math.isnan(expected), (got, expected))
         turned = numpy.array([0.3, 0.5, -0.2, 0.7]) / math.sqrt(0.87)
-        low, high = bed.spheroid(0, 0, 0, (6, 5, 3), turned)[4](lines[:, None], lines[None, :])
+        low, high = bed.ellipsoid(0, 0, 0, (6, 5, 3), turned)[4](lines[:, None], lines[None, :])
         self.assertAlmostEqual(numpy.nansum(high - low) * 0.01, 4 / 3 * math.pi * 6 * 5 * 3, delta=0.5)
         # Across, from the matrix of the turn: the furthest point along z is the root of the sum of (axis times R3k)^2.
         w, x, y, z = turned
         third = numpy.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
         self.assertAlmostEqual(numpy.nanmax(high), numpy.linalg.norm(third * [6, 5, 3]), delta=0.01)
-        ball, same = balls([[30, 30, 20, 5]]), [bed.spheroid(30, 30, 20, (5, 5, 5), turned)]
+        ball, same = balls([[30, 30, 20, 5]]), [bed.ellipsoid(30, 30, 20, (5, 5, 5), turned)]
         for one, other in zip(bed.measure(ball), bed.measure(same)):
             self.assertAlmostEqual(one, other, places=12)
 
@@ -212,7 +213,8 @@ class Clumps(unittest.TestCase):
 
     def test_radii_alone_differ(self):
         """Places, mass and inertia of the small and the large clump are those of the one between."""
-        with tempfile.TemporaryDirectory() as folder, mock.patch.object(cells, "run_mskit", self.write_fake):
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(cells, "run_mskit", self.write_fake), \
+                mock.patch.object(cells, "find_candy", lambda folder: "candy.stl"):
             lines, rows = {}, {}
             for name in ("variational-10", "variational-10-small", "variational-10-large"):
                 lines[name] = cells.make(folder, name)["template"].replace(name, "")
@@ -236,6 +238,14 @@ class Clumps(unittest.TestCase):
 ENGINE = """#!/bin/sh
 echo called >> ../calls
 cat > settled.dump <<end
+ITEM: TIMESTEP
+1000
+ITEM: NUMBER OF ATOMS
+{count}
+ITEM: BOX BOUNDS pp pp ff
+0 0.06
+0 0.06
+-0.01 0.55
 ITEM: ATOMS id type x y z radius
 {atoms}
 end
@@ -297,7 +307,7 @@ class Resumption(unittest.TestCase):
         self.table = os.path.join(self.folder, "contrasts.csv")
         self.write_engine(SAID)
         mskit = self.write("mskit", "#!/bin/sh\necho mskit 0\n")
-        for target, name, value in ((contrasts, "TABLE", self.table), (packing, "MSKIT", mskit),
+        for target, name, value in ((contrasts, "TABLE", self.table), (program, "MSKIT", mskit),
                                     (bed, "LIGGGHTS", os.path.join(self.folder, "engine")),
                                     (tables, "fill", lambda: None),
                                     (chart, "draw", lambda rows: None),
@@ -316,7 +326,7 @@ class Resumption(unittest.TestCase):
     def write_engine(self, said, count=bed.COUNT):
         atoms = [f"{k} 1 {0.005 * (k % 12)} {0.005 * (k // 12 % 12)} {0.01 + 0.005 * (k // 144)} 0.003"
                  for k in range(2 * count)]
-        self.write("engine", ENGINE.format(atoms="\n".join(atoms), said=said))
+        self.write("engine", ENGINE.format(atoms="\n".join(atoms), count=len(atoms), said=said))
 
     def call(self, *words):
         with mock.patch.object(sys, "argv", ["contrasts.py", "--work", os.path.join(self.folder, "work"), *words]), \
@@ -351,6 +361,23 @@ class Resumption(unittest.TestCase):
     def test_no_time_left(self):
         self.call("--cells", "sphere-0", "--most", "-1")
         self.assertEqual(self.calls(), 0)
+
+    def test_what_is_not_there_is_named(self):
+        for words, sentence in ((("--cells", "cube-7"), "there is no cell 'cube-7'; choose from sphere-0"),
+                                (("--cells", "smooth"), "LIGGGHTS_SMOOTH names no engine")):
+            with self.assertRaisesRegex(SystemExit, sentence):
+                self.call(*words)
+        with mock.patch.object(bed, "LIGGGHTS", os.path.join(self.folder, "none")), \
+                self.assertRaisesRegex(SystemExit, "none: No such file or directory; LIGGGHTS names the engine"):
+            self.call("--cells", "sphere-0")
+        with mock.patch.object(program, "MSKIT", os.path.join(self.folder, "none")), \
+                self.assertRaisesRegex(SystemExit, "none: No such file or directory; build the program"):
+            self.call("--cells", "variational-2")
+
+    def test_the_program_s_own_sentence(self):
+        self.write("mskit", "#!/bin/sh\necho 'mskit generate: no such shape' >&2\nexit 1\n")
+        with self.assertRaisesRegex(SystemExit, "^mskit generate: no such shape$"):
+            self.call("--cells", "variational-2")
 
     def test_a_run_that_failed_is_no_row(self):
         for said, count, word in ((SAID.replace("at rest: 1e-20 J", ""), bed.COUNT, "no rest"),

@@ -41,26 +41,31 @@ class Shares(unittest.TestCase):
 
 class Templates(unittest.TestCase):
     def test_scaled_to_the_candy(self):
-        """Lengths by a factor, mass by its cube, moments by its fifth power."""
-        mass = 8 * packing.MASS
+        """Lengths by a factor, mass by its cube, moments by its fifth power; a grain's name is in no script."""
+        mass, name = 8 * packing.MASS, "0000/a \"grain\" $x.liggghts"
         with tempfile.TemporaryDirectory() as folder:
-            os.makedirs(os.path.join(folder, "clumps", "0000"))
-            path = os.path.join(folder, "clumps", "0000", "grain.liggghts")
+            path = os.path.join(folder, "clumps", name)
+            os.makedirs(os.path.dirname(path))
             cells.write_rows(path, [[0.002, 0, -0.004, 0.006]] * library.SPHERES)
             with open(path + ".in", "w", encoding="ascii") as stream:
-                stream.write("fix clump all particletemplate/multisphere 15485863 atom_type 1 spheres file "
-                             f"\"grain.liggghts\" scale 1.0 type 1 mass {mass!r} inertia_tensor 32 0 0 64 0 96\n")
-            made = library.make_bed(folder, [("0000/grain.liggghts", 2)])
-            lines = [line.split() for line in made["template"].splitlines()]
-            rows = cells.read_rows(lines[0][lines[0].index("file") + 1].strip('"'))
+                stream.write("fix clump all particletemplate/multisphere 15485863 atom_type 1 nspheres 20 spheres file "
+                             f"\"a mass 3 grain\" scale 1.0 type 1 mass {mass!r} inertia_tensor 32 0 0 64 0 96 "
+                             "use_density\n")
+            made = library.make_bed(folder, os.path.join(folder, "work"), [(name, 2)])
+            rows = cells.read_rows(os.path.join(folder, "work", "1.spheres"))
         self.assertEqual(made["kinds"], "2 clump0 0.004 clump1 0.004")
+        self.assertNotIn("grain", made["template"])
         for got, expected in zip(rows[0], (0.001, 0, -0.002, 0.003)):
             self.assertAlmostEqual(got, expected, places=15)
+        lines = [line.split() for line in made["template"].splitlines()]
         for number, words in enumerate(lines):
-            after = {word: words[words.index(word) + 1] for word in ("mass", "type", "particletemplate/multisphere")}
-            self.assertEqual((words[1], after["type"]), (f"clump{number}", str(number + 1)))
+            after = {word: words[words.index(word) + 1] for word in ("mass", "type", "file")}
+            self.assertEqual((words[1], after["type"], after["file"]),
+                             (f"clump{number}", str(number + 1), f'"{number}.spheres"'))
             self.assertAlmostEqual(float(after["mass"]), packing.MASS)
-            self.assertAlmostEqual(float(words[words.index("inertia_tensor") + 4]), 2)
+            tensor = words.index("inertia_tensor") + 1
+            for got, expected in zip(words[tensor:tensor + 6], (1, 0, 0, 2, 0, 3)):
+                self.assertAlmostEqual(float(got), expected)
         self.assertNotEqual(*(words[4] for words in lines))
 
 
@@ -88,8 +93,8 @@ class Drum(unittest.TestCase):
         self.assertAlmostEqual(drum.measure(spheres), 30, delta=0.1)
 
     def test_a_bare_line_is_no_angle(self):
-        with self.assertRaisesRegex(SystemExit, "bare -25 mm"):
-            drum.measure(numpy.array([[x, 0.0, z, 3.0] for x in numpy.arange(0, 40, 0.25) for z in range(40)]))
+        spheres = numpy.array([[x, 0.0, z, 3.0] for x in numpy.arange(0, 40, 0.25) for z in range(40)])
+        self.assertTrue(math.isnan(drum.measure(spheres)))
 
     def test_correlation_time(self):
         """Half a look where neighbours alternate; of a series that forgets by a half a look, 3/2 looks."""
@@ -114,8 +119,9 @@ class Drum(unittest.TestCase):
                 for k in range(2):
                     stream.write(f"ITEM: TIMESTEP\n{k}\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n"
                                  f"0 1\nITEM: ATOMS id type x y z radius\n1 1 0.00{k} 0 0 0.003\n")
-            looks = list(drum.read_looks(path))
-        self.assertEqual([look.tolist() for look in looks], [[[0, 0, 0, 3]], [[1, 0, 0, 3]]])
+            looks, last = list(packing.read_dumps(path)), packing.read_dump(path)
+        self.assertEqual([look.tolist() for look in looks], [[[0, 0, 0, 0.003]], [[0.001, 0, 0, 0.003]]])
+        self.assertEqual(last.tolist(), looks[1].tolist())
 
 
 if __name__ == "__main__":
