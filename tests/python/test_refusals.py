@@ -145,7 +145,7 @@ class Refusals(PythonCase):
     def test_runs(self):
         for options, words in [
                 ({"generator": "mms"}, "mms"), ({"generator": None}, "generator=None is no name"),
-                ({"generator": "é"}, "é"), ({"spheres": 0}, "spheres=0 is not a number from 1 to 65534"),
+                ({"generator": "é"}, "é"), ({"spheres": 0}, "spheres=0 is not a whole number from 1 to 65534"),
                 ({"spheres": 2.5}, "spheres=2.5 is not a whole number"), ({"spheres": 10**30}, "spheres=1"),
                 ({"spheres": "10"}, "spheres='10'"), ({"until": 3}, "until=3"), ({"until": {"dice": -1}}, "dice"),
                 ({"until": {"dice": 2}}, "dice"), ({"min_radius": 0}, "min_radius=0"), ({"cells": 0}, "cells=0"),

@@ -12,6 +12,7 @@ import numpy
 
 from ._library import ffi, lib
 
+TINY = sys.float_info.min  #: The least normal double.
 Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 
 
@@ -138,21 +139,26 @@ def as_floats(values: Any) -> numpy.ndarray:
     return array.astype(numpy.float64) if array.dtype.kind in "biuf" else numpy.empty(0)
 
 
+def _within(value: Any, low: float, high: float) -> float:
+    """As a float; NaN for what is none within bounds."""
+    try:
+        wide = math.nan if isinstance(value, (str, bytes)) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        return math.nan
+    return wide if low <= wide <= high else math.nan
+
+
 def number(name: str, value: Any, low: float, high: float) -> float:
     """A finite number within bounds."""
-    try:
-        wide = float(value)
-    except (TypeError, ValueError, OverflowError):
-        wide = math.nan
-    if not low <= wide <= high or isinstance(value, (str, bytes)):
+    wide = _within(value, low, high)
+    if math.isnan(wide):
         raise ArgumentError(f"{name}={show(value)} is not a number from {low:g} to {high:g}")
     return wide
 
 
 def whole(name: str, value: Any, low: int, high: int) -> int:
     """A whole number within bounds."""
-    wide = number(name, value, low, high)
-    if wide != int(wide):
+    if not _within(value, low, high).is_integer():
         raise ArgumentError(f"{name}={show(value)} is not a whole number from {low} to {high}")
     return int(value)
 

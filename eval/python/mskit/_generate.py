@@ -10,7 +10,7 @@ from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Tuple, T
 import numpy
 
 from ._clumps import Clump, as_clump, from_c, lend, new_c_clump, own
-from ._errors import ArgumentError, call, choice, flag, number, remark, show, text, use_threads, whole, word
+from ._errors import TINY, ArgumentError, call, choice, flag, number, remark, show, text, use_threads, whole, word
 from ._library import ffi, lib
 from ._measures import curve_of, scores_of
 from ._methods import DEFAULT, find_generator, generators, make_settings
@@ -19,7 +19,6 @@ from ._sources import as_shape
 
 _DEFAULT_SPHERES = 50
 _UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
-_TINY = 2.2250738585072014e-308  # the least normal double: 0, where it is allowed, is not "not asked for"
 
 
 class Progress(NamedTuple):
@@ -320,17 +319,17 @@ def read_masses(density: float, unit: str, scale: Optional[float], properties: s
         raise ArgumentError("carrier_depth takes carriers=True beside it")
     if choice("unit", unit, _UNITS) != "m" and scale is not None:
         raise ArgumentError("unit and scale exclude one another")
-    metres = _UNITS[unit] if scale is None else number("scale", scale, _TINY, 1e300)
+    metres = _UNITS[unit] if scale is None else number("scale", scale, TINY, 1e300)
 
     def bound(name: str, value: Optional[float], low: float, high: float) -> float:
-        return 0 if value is None else max(_TINY, number(name, value, low, high))
+        return 0 if value is None else max(TINY, number(name, value, low, high))  # 0 would be "not asked for"
 
     options = ffi.new("ms_carriers_options *", {"masses": {
-        "input_frame": axes == "input", "least": bound("least_mass", least_mass, _TINY, 1),
-        "most": bound("most_mass", most_mass, _TINY, 1),
+        "input_frame": axes == "input", "least": bound("least_mass", least_mass, TINY, 1),
+        "most": bound("most_mass", most_mass, TINY, 1),
         "centre_tolerance": bound("centre_tolerance", centre_tolerance, 0, 1e300)},
-        "depth": bound("carrier_depth", carrier_depth, _TINY, 1e300)})
-    return Masses(number("density", density, _TINY, 1e300), metres, properties == "union", options, carriers)
+        "depth": bound("carrier_depth", carrier_depth, TINY, 1e300)})
+    return Masses(number("density", density, TINY, 1e300), metres, properties == "union", options, carriers)
 
 
 def union_body(c: Any) -> Any:

@@ -7,8 +7,8 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 import numpy
 
 from ._clumps import from_c
-from ._errors import (ArgumentError, Error, LimitError, Path, call, find, flag, number, show, use_threads, whole,
-                      word)
+from ._errors import (TINY, ArgumentError, Error, LimitError, Path, call, find, flag, number, show, use_threads,
+                      whole, word)
 from ._expect import find_expectation
 from ._generate import Listener, Run, give_masses, read_masses, watched
 from ._library import ffi, lib
@@ -18,7 +18,6 @@ from ._scene_rows import Row, Rows, read_rows
 from ._shapes import Shape, make_grid, voxels_within
 
 _MOST_SPHERES = 1000
-_TINY = 2.2250738585072014e-308
 
 
 class Scene(NamedTuple):
@@ -111,7 +110,7 @@ def _read_goal(rows: List[Row], **given: Any) -> _Goal:
     if name == "tolerance":
         return _read_tolerance(value)
     if name == "tolerance_length":
-        return _Goal("tolerance", math.nan, dice, number(name, value, _TINY, 1e300))
+        return _Goal("tolerance", math.nan, dice, number(name, value, TINY, 1e300))
     if name == "budget":
         particles = sum(row.particles for row in rows)
         budget = whole(name, value, 1, 10**15)

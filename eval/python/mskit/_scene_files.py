@@ -9,8 +9,8 @@ from typing import Any, Dict, Iterator, List, NamedTuple, NoReturn, Optional, Se
 import numpy
 
 from ._clumps import Clump, c_particle_of, lend, write_as
-from ._errors import (ArgumentError, FileError, OutOfMemoryError, Path, as_floats, call, encode, find, number, remark,
-                      show, word)
+from ._errors import (TINY, ArgumentError, FileError, OutOfMemoryError, Path, as_floats, call, encode, find, number,
+                      remark, show, word)
 from ._library import ffi, lib
 from ._scene_rows import name_row
 from ._shapes import Grid, Shape
@@ -75,7 +75,7 @@ def _vessel(formats: List[Any], box: Any, cylinder: Any) -> Any:
         raise ArgumentError(f"cylinder={show(cylinder)} is no diameter" if box is None else
                             f"box={show(box)} is not two widths x, y")
     name = "cylinder" if box is None else "box"
-    made.width = [number(name, width, 1e-300, _WIDEST) for width in widths.tolist()]
+    made.width = [number(name, width, TINY, _WIDEST) for width in widths.tolist()]
     made.is_round = box is None
     return made
 
