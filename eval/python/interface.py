@@ -41,6 +41,9 @@ int ms_mesh_read_is_mesh_path(const char *path);
 ms_status ms_solid_mesh(ms_solid *solid, const ms_mesh *mesh, ms_error *err);
 ms_status ms_file_read(ms_bytes *bytes, const char *path, ms_error *err);
 void ms_file_free(ms_bytes *bytes);
+typedef struct { ...; } ms_output;
+ms_status ms_output_open(ms_output *output, const char *path, ms_error *err);
+ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err);
 
 /* bodies to test with */
 typedef struct { const char *name; double fallback, min, max; const char *help; ...; } ms_shape_parameter;
@@ -331,6 +334,7 @@ const ms_format *ms_write_format_find(const char *name, ms_error *err);
 const ms_format *ms_write_format_of_path(const char *path, ms_error *err);
 ms_status ms_write_remark(char *text, const ms_content *content, const ms_format *format, ms_error *err);
 ms_status ms_write_check(const ms_content *content, const ms_format *format, ms_error *err);
+int ms_write_format_is_folder(const ms_format *format);
 ms_status ms_write_list(const char *path, const ms_format *format,
                         ms_status (*take)(void *context, const char *path, int is_frame, ms_error *err), void *context,
                         ms_error *err);

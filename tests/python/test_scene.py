@@ -207,6 +207,10 @@ class Scenes(PythonCase):
         other.name, cube.name = "a.frame.json", "a.x"  # the stem of the first is a.frame
         self.refused(mskit.ArgumentError, "a.frame.json; rename one of the shapes", scene.write, self.path("out"),
                      ["json", "yade"])
+        for particles in (0, 1.5, -1, 10**12):
+            self.refused(mskit.ArgumentError, f"particles={particles} is not a whole number from 1",
+                         scene._replace(kinds=[scene.kinds[0]._replace(particles=particles)]).write,
+                         self.path("out"), "yade")
         near = mskit.scene([{"shape": cube, "count": 1, "size": size} for size in (1.2345678, 1.2345679)], knee=1,
                            generator="mss", max_spheres=8, cells=8)
         self.refused(mskit.ArgumentError, "in the sizes 1.2345678 and 1.2345679", near.write, self.path("out"))
@@ -218,7 +222,12 @@ class Scenes(PythonCase):
         self.refused(mskit.FileError, "aaa.csv: ", scene.write, self.path("out"))
         self.assertFalse(os.path.exists(self.path("out")))
         self.write("file", "")
-        self.refused(mskit.FileError, "cannot be made", scene.write, self.path("file/out"), "yade")
+        for folder in ("file/out", "file", "none/out", "/".join(3000 * "a")):
+            self.refused(mskit.FileError, "cannot be made", scene.write, self.path(folder), "yade")
+        cube.name = "cube"
+        os.makedirs(self.path("out/scene.liggghts.in"))
+        self.refused(mskit.FileError, "scene.liggghts.in: is a folder", scene.write, self.path("out"), "liggghts")
+        self.assertEqual(os.listdir(self.path("out")), ["scene.liggghts.in"])
         numpy.testing.assert_array_equal(bare.kinds[0].clump.radii, scene.kinds[0].clump.radii)
 
 

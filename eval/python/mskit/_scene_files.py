@@ -3,14 +3,14 @@ from __future__ import annotations
 
 import math
 import os
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, Dict, Iterator, List, NamedTuple, NoReturn, Optional, Sequence, Tuple
 
 import numpy
 
 from ._clumps import Clump, c_particle_of, lend, write_as
 from ._errors import (TINY, ArgumentError, FileError, OutOfMemoryError, Path, as_floats, call, encode, find, number,
-                      remark, show, word)
+                      remark, show, whole, word)
 from ._library import ffi, lib
 from ._scene_rows import name_row
 from ._shapes import Grid, Shape
@@ -123,8 +123,10 @@ def _refuse_twice(path: bytes, before: Optional[Kind], kind: Kind) -> NoReturn:
                         "shapes (shape.name)")
 
 
-def _check_files(kinds: List[Kind], formats: List[Any], paths: List[List[bytes]], scripts: List[bytes]) -> None:
-    """Is none written twice? The frame is that of the kind in all formats."""
+def _check_files(kinds: List[Kind], formats: List[Any], paths: List[List[bytes]],
+                 scripts: List[bytes]) -> List[bytes]:
+    """Is none written twice? The frame is that of the kind in all formats. Returns those that stand in the folder."""
+    inside = list(scripts)
     taken: Dict[bytes, Tuple[Optional[Kind], bool]] = {script: (None, False) for script in scripts}
     for format, files in zip(formats, paths):
         for kind, path in zip(kinds, files):
@@ -133,6 +135,9 @@ def _check_files(kinds: List[Kind], formats: List[Any], paths: List[List[bytes]]
                 before = taken.setdefault(file, mine)
                 if before is not mine and not (before[0] is kind and before[1] and is_frame):
                     _refuse_twice(file, before[0], kind)
+                if is_frame or not lib.ms_write_format_is_folder(format):
+                    inside.append(file)
+    return inside
 
 
 class _Lent:
@@ -154,7 +159,8 @@ class _Lent:
     def as_scene(self, paths: List[bytes]) -> Any:
         self._paths = [ffi.new("char[]", path) for path in paths]
         return ffi.new("ms_scene_kind[]", [
-            {"clump": clump, "particle": particle, "name": name, "path": path, "count": kind.particles}
+            {"clump": clump, "particle": particle, "name": name, "path": path,
+             "count": whole(f"{kind.name}: particles", kind.particles, 1, lib.MS_MANIFEST_MAX_PARTICLES)}
             for kind, clump, particle, name, path in zip(self.kinds, self.clumps, self.particles, self.names,
                                                          self._paths)])
 
@@ -164,14 +170,25 @@ def _open_folder(folder: bytes) -> Iterator[None]:
     """Makes it if it is not there; then it does not stay if nothing could be written."""
     is_there = os.path.isdir(folder)
     try:
-        os.makedirs(folder, exist_ok=True)
+        if not is_there:
+            os.mkdir(folder)
     except OSError as failure:
-        raise FileError(f"the folder '{os.fsdecode(folder)}' cannot be made: {failure.strerror}") from None
+        if not os.path.isdir(folder):  # else another thread has made it meanwhile
+            raise FileError(f"the folder '{os.fsdecode(folder)}' cannot be made: {failure.strerror}; name one within a "
+                            "folder that exists") from None
     try:
         yield
     finally:
-        if not is_there and not os.listdir(folder):
-            os.rmdir(folder)
+        if not is_there:
+            with suppress(OSError):  # something is in it
+                os.rmdir(folder)
+
+
+def _try_file(path: bytes) -> None:
+    """Can it be written? Writing is begun and broken off."""
+    output = ffi.new("ms_output *")
+    call(lib.ms_output_open, output, path)
+    lib.ms_output_close(output, lib.MS_ERR_IO, ffi.NULL)  # removes it
 
 
 def write_scene(kinds: List[Kind], folder: Path, names: Any, box: Optional[Any], cylinder: Any) -> List[str]:
@@ -183,12 +200,14 @@ def write_scene(kinds: List[Kind], folder: Path, names: Any, box: Optional[Any],
     paths = [[_path(kind, place, format) for kind in kinds] for format in formats]
     scripts = [_take(lib.ms_scene_script_path(place, format)) for format in formats
                if format.scene.suffix != ffi.NULL]
-    _check_files(kinds, formats, paths, scripts)
+    inside = _check_files(kinds, formats, paths, scripts)
     for format, files in zip(formats, paths):
         lent.check(format)
         if format.scene.suffix != ffi.NULL:
             call(lib.ms_scene_script_check, lent.as_scene(files), len(kinds), vessel)
     with _open_folder(place):
+        for file in inside:
+            _try_file(file)
         for at, kind in enumerate(kinds):
             for format, files in zip(formats, paths):
                 write_as(kind.clump, files[at], format)
