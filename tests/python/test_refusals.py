@@ -203,6 +203,10 @@ class Refusals(PythonCase):
         self.refused(mskit.ArgumentError, "cvs", clump.write, self.path("c"), "cvs")
         self.refused(mskit.FileError, "none.csv", mskit.read_clump, self.path("none.csv"))
         self.assertEqual(self.files(), [self.grain], "a refusal leaves no file")
+        os.mkdir(self.path("c.frame.json"))
+        self.refused(mskit.FileError, "c.frame.json: is a folder", mskit.correct(clump, density=1).write,
+                     self.path("c.yade"))
+        self.assertEqual(self.files(), ["c.frame.json", self.grain])
 
     def test_expected(self):
         opened = mskit.mesh(CORNERS, FACES[1:], allow_open=True)

@@ -242,7 +242,36 @@ def write(clump: Any, path: Path, format: Optional[str] = None) -> None:
         return
     row = (find(lib.ms_write_format_of_path, name) if format is None else
            find(lib.ms_write_format_find, word("format", format)))
+    try_files(name, row)
     write_as(clump, name, row)
+
+
+@ffi.def_extern(error=lib.MS_ERR_NOMEM)
+def take_file(context: Any, path: Any, is_frame: int, err: Any) -> int:
+    ffi.from_handle(context).append((bytes(ffi.string(path)), bool(is_frame)))
+    return int(lib.MS_OK)
+
+
+def list_files(path: bytes, format: Any) -> List[Tuple[bytes, bool]]:
+    """Those of a clump: name, and is it the frame beside it?"""
+    found: List[Tuple[bytes, bool]] = []
+    handle = ffi.new_handle(found)
+    call(lib.ms_write_list, path, format, lib.take_file, handle)
+    return found
+
+
+def try_file(path: bytes) -> None:
+    """Can it be written? Writing is begun and broken off."""
+    output = ffi.new("ms_output *")
+    call(lib.ms_output_open, output, path)
+    lib.ms_output_close(output, lib.MS_ERR_IO, ffi.NULL)  # removes it
+
+
+def try_files(path: bytes, format: Any) -> None:
+    """Those of a clump, so that not only some are written; but what stands in a folder yet to be made."""
+    for file, is_frame in list_files(path, format):
+        if is_frame or not lib.ms_write_format_is_folder(format):
+            try_file(file)
 
 
 def write_as(clump: Clump, name: bytes, row: Any) -> None:

@@ -8,7 +8,7 @@ from typing import Any, Dict, Iterator, List, NamedTuple, NoReturn, Optional, Se
 
 import numpy
 
-from ._clumps import Clump, c_particle_of, lend, write_as
+from ._clumps import Clump, c_particle_of, lend, list_files, try_file, try_files, write_as
 from ._errors import (TINY, ArgumentError, FileError, OutOfMemoryError, Path, as_floats, call, encode, find, number,
                       remark, show, whole, word)
 from ._library import ffi, lib
@@ -97,20 +97,6 @@ def _path(kind: Kind, folder: bytes, format: Any) -> bytes:
     return path
 
 
-@ffi.def_extern(error=lib.MS_ERR_NOMEM)
-def take_file(context: Any, path: Any, is_frame: int, err: Any) -> int:
-    ffi.from_handle(context).append((bytes(ffi.string(path)), bool(is_frame)))
-    return int(lib.MS_OK)
-
-
-def _list_files(path: bytes, format: Any) -> List[Tuple[bytes, bool]]:
-    """Those of a template: name, and is it the frame beside it?"""
-    found: List[Tuple[bytes, bool]] = []
-    handle = ffi.new_handle(found)
-    call(lib.ms_write_list, path, format, lib.take_file, handle)
-    return found
-
-
 def _refuse_twice(path: bytes, before: Optional[Kind], kind: Kind) -> NoReturn:
     file, name = os.fsdecode(path), kind.shape.name
     if before is None:
@@ -123,21 +109,16 @@ def _refuse_twice(path: bytes, before: Optional[Kind], kind: Kind) -> NoReturn:
                         "shapes (shape.name)")
 
 
-def _check_files(kinds: List[Kind], formats: List[Any], paths: List[List[bytes]],
-                 scripts: List[bytes]) -> List[bytes]:
-    """Is none written twice? The frame is that of the kind in all formats. Returns those that stand in the folder."""
-    inside = list(scripts)
+def _check_files(kinds: List[Kind], formats: List[Any], paths: List[List[bytes]], scripts: List[bytes]) -> None:
+    """Is none written twice? The frame is that of the kind in all formats."""
     taken: Dict[bytes, Tuple[Optional[Kind], bool]] = {script: (None, False) for script in scripts}
     for format, files in zip(formats, paths):
         for kind, path in zip(kinds, files):
-            for file, is_frame in _list_files(path, format):
+            for file, is_frame in list_files(path, format):
                 mine = (kind, is_frame)
                 before = taken.setdefault(file, mine)
                 if before is not mine and not (before[0] is kind and before[1] and is_frame):
                     _refuse_twice(file, before[0], kind)
-                if is_frame or not lib.ms_write_format_is_folder(format):
-                    inside.append(file)
-    return inside
 
 
 class _Lent:
@@ -184,13 +165,6 @@ def _open_folder(folder: bytes) -> Iterator[None]:
                 os.rmdir(folder)
 
 
-def _try_file(path: bytes) -> None:
-    """Can it be written? Writing is begun and broken off."""
-    output = ffi.new("ms_output *")
-    call(lib.ms_output_open, output, path)
-    lib.ms_output_close(output, lib.MS_ERR_IO, ffi.NULL)  # removes it
-
-
 def write_scene(kinds: List[Kind], folder: Path, names: Any, box: Optional[Any], cylinder: Any) -> List[str]:
     """As Scene.write."""
     place, formats = encode(folder), _find_formats(names)
@@ -200,14 +174,17 @@ def write_scene(kinds: List[Kind], folder: Path, names: Any, box: Optional[Any],
     paths = [[_path(kind, place, format) for kind in kinds] for format in formats]
     scripts = [_take(lib.ms_scene_script_path(place, format)) for format in formats
                if format.scene.suffix != ffi.NULL]
-    inside = _check_files(kinds, formats, paths, scripts)
+    _check_files(kinds, formats, paths, scripts)
     for format, files in zip(formats, paths):
         lent.check(format)
         if format.scene.suffix != ffi.NULL:
             call(lib.ms_scene_script_check, lent.as_scene(files), len(kinds), vessel)
     with _open_folder(place):
-        for file in inside:
-            _try_file(file)
+        for format, files in zip(formats, paths):
+            for path in files:
+                try_files(path, format)
+        for script in scripts:
+            try_file(script)
         for at, kind in enumerate(kinds):
             for format, files in zip(formats, paths):
                 write_as(kind.clump, files[at], format)
