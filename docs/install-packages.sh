@@ -2,7 +2,7 @@
 # Installs the Debian packages that building mskit takes; further ones as arguments.
 set -eu
 packages="gcc libc6-dev meson ninja-build pkg-config libgsl-dev libglpk-dev libjansson-dev zlib1g-dev libqhull-dev
-libtiff-dev libniftiio-dev $*"
+libtiff-dev libnifti2-dev $*"
 missing=""
 for package in $packages; do
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
