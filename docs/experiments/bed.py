@@ -20,6 +20,7 @@ SMOOTH = {"style": "superquadric", "surface": " surface superquadric",
           "group": "candies", "move": "nve/superquadric integration_scheme 1", "ke": "ke",
           "erotate": "erotate/superquadric", "columns": "shapex shapey shapez quat1 quat2 quat3 quat4"}
 MOVES, FLOWS, STANDS = 0.01, 0.05, 0.002  # m/s
+FRICTION = 0.35
 
 TILT = """variable angle equal ${{next}}
 variable x equal sin(${{angle}}*PI/180)
@@ -39,7 +40,7 @@ region box block 0 0.06 0 0.06 -0.01 0.55 units box
 create_box 2 box
 neighbor 0.001 bin
 neigh_modify delay 0
-""" + MATERIAL + """fix friction all property/global coefficientFriction peratomtypepair 2 0.35 0.35 0.35 0.35
+""" + MATERIAL + """fix friction all property/global coefficientFriction peratomtypepair 2 {frictions}
 fix rolling all property/global coefficientRollingFriction peratomtypepair 2 {rolling} {rolling} {rolling} {rolling}
 pair_style gran model hertz tangential history {model}{surface}
 pair_coeff * *
@@ -147,8 +148,9 @@ def make_script(clump, seed, step, rate):
     """clump: as of contrasts_cells.make; template and kinds may name several."""
     each, rolling = round(PASS / step), clump["rolling"]
     return SCRIPT.format(template=clump["template"], kinds=clump["kinds"], spheres=COUNT * clump["members"],
-                         rolling=rolling, model="rolling_friction epsd2" if rolling else "", seed=seed, step=step,
-                         count=COUNT, rest=REST, each=each, falling=60 * each, tenth=10 * each, slow=rate * PASS,
+                         frictions=" ".join([repr(clump["friction"])] * 4), rolling=rolling,
+                         model="rolling_friction epsd2" if rolling else "", seed=seed, step=step, count=COUNT,
+                         rest=REST, each=each, falling=60 * each, tenth=10 * each, slow=rate * PASS,
                          fast=4 * rate * PASS, flows=FLOWS, stands=STANDS, young=clump["young"], e=clump["e"],
                          **(SMOOTH if clump["smooth"] else SPHERES))
 

@@ -48,7 +48,7 @@ def run(folder, name, seed, step, rate):
 def choose_cells(names, largest):
     if not names and not LIGGGHTS_SMOOTH:
         print("smooth: left out, as LIGGGHTS_SMOOTH names no engine", file=sys.stderr)
-    known = [*cells.CELLS, *cells.CONTROLS]
+    known = [*cells.CELLS, *cells.CONTROLS, *cells.FRICTIONS]
     asked = names.split(",") if names else [name for name in known
                                             if LIGGGHTS_SMOOTH or cells.find_cell(name).method != "smooth"]
     for name in asked:

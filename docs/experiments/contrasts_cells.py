@@ -3,13 +3,16 @@ import json
 import os
 from collections import namedtuple
 
+from bed import FRICTION
 from packing import A, C, DENSITY, MASS, RESTITUTION, YOUNG, find_candy
 from program import run_mskit
 import tables  # of docs, where packing looks
 
 # radii: factor on all of them, with places, mass and inertia as they were; rolling: coefficient of rolling friction;
-# e: restitution asked for; undone: modulus and restitution by which mskit contact undoes contacts side by side
-Cell = namedtuple("Cell", "method n radii rolling e undone", defaults=(1.0, 0.0, RESTITUTION, False))
+# e: restitution asked for; undone: modulus and restitution by which mskit contact undoes contacts side by side;
+# friction: of particles with each other and with the floor
+Cell = namedtuple("Cell", "method n radii rolling e undone friction",
+                  defaults=(1.0, 0.0, RESTITUTION, False, FRICTION))
 CELLS = {
     "sphere-0": Cell("sphere", 1),
     **{f"variational-{n}": Cell("variational", n) for n in (2, 3, 5, 10, 20)},
@@ -26,6 +29,9 @@ CELLS = {
 CONTROLLED = ["variational-3", "variational-10"]
 CONTROLS = {f"{name}-{what}": CELLS[name]._replace(**changed) for name in CONTROLLED for what, changed in
             (("e0.2", {"e": 0.2}), ("e0.8", {"e": 0.8}), ("undone", {"undone": True}))}
+# Whether bumps act as friction does: the candy with more of it, and the clump with less.
+FRICTIONS = {f"{name}-f{friction}": CELLS[name]._replace(friction=friction) for name, friction in
+             (("smooth", 0.5), ("smooth", 0.7), ("variational-10", 0.2))}
 SERIES = ["sphere-0"] + [f"variational-{n}" for n in (2, 3, 5, 10, 20, 60)]
 HIDDEN = 1e-2  # radius of a sphere within a single one, which LIGGGHTS wants beside it, over that of the latter
 
@@ -34,7 +40,7 @@ COLUMNS = ["cell", "method", "n", "radii", "rolling", "dice", "volume", "mean_wi
 
 
 def find_cell(name):
-    return CELLS.get(name) or CONTROLS[name]
+    return {**CELLS, **CONTROLS, **FRICTIONS}[name]
 
 
 def write_rows(path, rows, head="", between=" "):
@@ -108,12 +114,13 @@ def make_smooth(name):
     axes = " ".join(repr(1e-3 * x) for x in ([(A * A * C) ** (1 / 3)] * 3 if name == "smooth-ball" else (A, A, C)))
     return {"template": f"fix clump all particletemplate/superquadric 15485863 atom_type 1 volume_limit 1e-300 density "
                         f"constant {DENSITY} shape constant {axes} blockiness constant 2 2",
-            "kinds": "1 clump 1.0", "rolling": 0.0, "members": 1, "young": YOUNG, "e": RESTITUTION, "smooth": True}
+            "kinds": "1 clump 1.0", "rolling": 0.0, "friction": find_cell(name).friction, "members": 1, "young": YOUNG,
+            "e": RESTITUTION, "smooth": True}
 
 
 def make(folder, name):
     """The template's line for LIGGGHTS and what its distribution names, its number of spheres, rolling friction,
-    modulus in Pa, restitution. What is in the folder is taken."""
+    friction, modulus in Pa, restitution. What is in the folder is taken."""
     cell, path = find_cell(name), os.path.join(folder, name + ".liggghts")
     if cell.method == "smooth":
         return make_smooth(name)
@@ -122,7 +129,8 @@ def make(folder, name):
     with open(path + ".in", encoding="utf-8") as stream:
         line = next(line for line in stream if line.startswith("fix clump "))
     return {"template": line.replace(os.path.basename(path), os.path.abspath(path)).strip(), "kinds": "1 clump 1.0",
-            "rolling": cell.rolling, "members": len(read_rows(path)), "smooth": False, **find_law(folder, name)}
+            "rolling": cell.rolling, "friction": cell.friction, "members": len(read_rows(path)), "smooth": False,
+            **find_law(folder, name)}
 
 
 def describe(folder, name):

@@ -7,7 +7,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import tables  # noqa: E402
-from contrasts_cells import CELLS, CONTROLLED, CONTROLS, SERIES  # noqa: E402
+from contrasts_cells import CELLS, CONTROLLED, CONTROLS, FRICTIONS, SERIES  # noqa: E402
 from intervals import interval, pool  # noqa: E402
 
 RUNS, CLUMPS = (os.path.join(HERE, name) for name in ("contrasts.csv", "contrasts-clumps.csv"))
@@ -180,6 +180,12 @@ CONTRASTS = [
     ("rolling friction", "sphere-0.1", "sphere-0"),
     ("a ball as a superquadric", "smooth-ball", "sphere-0"),
 ]
+FRICTION_CONTRASTS = [
+    ("more friction", "smooth-f0.5", "smooth"), ("more friction", "smooth-f0.7", "smooth"),
+    ("less friction", "variational-10-f0.2", "variational-10"),
+    ("bumps for friction", "variational-10", "smooth-f0.5"), ("bumps for friction", "variational-10", "smooth-f0.7"),
+    ("bumps for friction", "variational-10-f0.2", "smooth"),
+]
 
 
 def fill():
@@ -188,6 +194,7 @@ def fill():
         "bed-clumps": table_clumps(rows), "bed-runs": table_runs(rows),
         "bed-contrasts": table_contrasts(rows, CONTRASTS),
         "bed-controls": table_contrasts(rows, list_controls(), [*CONTROLLED, *CONTROLS]),
+        "bed-friction": table_contrasts(rows, FRICTION_CONTRASTS, ["smooth", "variational-10", *FRICTIONS]),
         "bed-enough": table_enough(rows, [cell for cell in SERIES if take(rows, "fraction", cell)][-1]),
         "bed-smooth": table_enough(rows, "smooth"), "bed-predictors": table_predictors(rows),
         "bed-checks": table_checks(rows)})

@@ -22,7 +22,7 @@ import time
 import numpy
 
 import contrasts_tables
-from bed import COUNT, SIDE, run_bed
+from bed import COUNT, FRICTION, SIDE, run_bed
 from contrasts_cells import read_rows, tell_template, write_rows
 from intervals import interval, pool
 from packing import DENSITY, MASS, RESTITUTION, SEEDS, YOUNG, read_spheres
@@ -104,7 +104,7 @@ def make_bed(folder, work, drawn):
              for (number, name), prime in zip(enumerate(names), list_primes(len(names)))]
     shares = " ".join(f"clump{number} {1 / COUNT!r}" for number in range(len(names)))
     return {"template": "\n".join(lines), "kinds": f"{len(names)} {shares}", "members": SPHERES, "rolling": 0.0,
-            "young": YOUNG, "e": RESTITUTION, "smooth": False}
+            "friction": FRICTION, "young": YOUNG, "e": RESTITUTION, "smooth": False}
 
 
 def count_contacts(spheres):
