@@ -7,7 +7,7 @@
 A cell is a clump (contrasts_cells.py); a run is a cell with a seed. Each adds a row to contrasts.csv beside this file;
 rows that are there are not run again. Then tables and chart of all of them go into docs/behaviour.md, which --seeds 0
 does alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine (liggghts), LIGGGHTS_SMOOTH one that was
-built with superquadrics, for the candy itself. Takes numpy, and gnuplot.
+built with superquadrics, for the candy itself, GRAIN the mesh of a second body. Takes numpy, and gnuplot.
 
 Material, friction and stiffness are Yuan's (packing.py). A box of 60 x 60 mm, periodic in x and y, has a floor of 8 x 8
 fixed spheres that touch. 250 candies in random orientations fall onto it from up to half a metre, all at once. At rest
@@ -45,17 +45,24 @@ def run(folder, name, seed, step, rate):
     return {"cell": name, **run_bed(work, cells.make(folder, name), seed, step, rate)}
 
 
+def can_run(cell):
+    return (LIGGGHTS_SMOOTH or cell.method != "smooth") and (cells.GRAIN or cell.body == "candy")
+
+
 def choose_cells(names, largest):
     if not names and not LIGGGHTS_SMOOTH:
         print("smooth: left out, as LIGGGHTS_SMOOTH names no engine", file=sys.stderr)
-    known = [*cells.CELLS, *cells.CONTROLS, *cells.FRICTIONS]
-    asked = names.split(",") if names else [name for name in known
-                                            if LIGGGHTS_SMOOTH or cells.find_cell(name).method != "smooth"]
+    known = [*cells.CELLS, *cells.CONTROLS, *cells.FRICTIONS, *cells.GRAINS]
+    if not names and not cells.GRAIN:
+        print("grain-N: left out, as GRAIN names no mesh", file=sys.stderr)
+    asked = names.split(",") if names else [name for name in known if can_run(cells.find_cell(name))]
     for name in asked:
         if name not in known:
             sys.exit(f"there is no cell {name!r}; choose from {', '.join(known)}")
         if cells.find_cell(name).method == "smooth" and not LIGGGHTS_SMOOTH:
             sys.exit(f"{name}: LIGGGHTS_SMOOTH names no engine with superquadrics; build-smooth.sh makes one")
+        if name in cells.GRAINS and not cells.GRAIN:
+            sys.exit(f"{name}: GRAIN names no mesh")
     return [name for name in asked if cells.find_cell(name).n <= largest]
 
 

@@ -1,5 +1,7 @@
-"""The clumps of contrasts.py: for the M&M candy of packing.py, of its volume unless their radii were changed."""
+"""The clumps of contrasts.py: for the M&M candy of packing.py and for a grain, of the candy's volume unless their radii
+were changed."""
 import json
+import math
 import os
 from collections import namedtuple
 
@@ -10,9 +12,10 @@ import tables  # of docs, where packing looks
 
 # radii: factor on all of them, with places, mass and inertia as they were; rolling: coefficient of rolling friction;
 # e: restitution asked for; undone: modulus and restitution by which mskit contact undoes contacts side by side;
-# friction: of particles with each other and with the floor
-Cell = namedtuple("Cell", "method n radii rolling e undone friction",
-                  defaults=(1.0, 0.0, RESTITUTION, False, FRICTION))
+# friction: of particles with each other and with the floor; body: candy or grain
+Cell = namedtuple("Cell", "method n radii rolling e undone friction body",
+                  defaults=(1.0, 0.0, RESTITUTION, False, FRICTION, "candy"))
+GRAIN = os.environ.get("GRAIN")  # names the mesh of the cells grain-N
 CELLS = {
     "sphere-0": Cell("sphere", 1),
     **{f"variational-{n}": Cell("variational", n) for n in (2, 3, 5, 10, 20)},
@@ -32,6 +35,8 @@ CONTROLS = {f"{name}-{what}": CELLS[name]._replace(**changed) for name in CONTRO
 # Whether bumps act as friction does: the candy with more of it, and the clump with less.
 FRICTIONS = {f"{name}-f{friction}": CELLS[name]._replace(friction=friction) for name, friction in
              (("smooth", 0.5), ("smooth", 0.7), ("variational-10", 0.2))}
+# A second body, of which nothing is fitted.
+GRAINS = {f"grain-{n}": Cell("variational", n, body="grain") for n in (2, 3, 5, 10, 20, 60)}
 SERIES = ["sphere-0"] + [f"variational-{n}" for n in (2, 3, 5, 10, 20, 60)]
 HIDDEN = 1e-2  # radius of a sphere within a single one, which LIGGGHTS wants beside it, over that of the latter
 
@@ -40,7 +45,7 @@ COLUMNS = ["cell", "method", "n", "radii", "rolling", "dice", "volume", "mean_wi
 
 
 def find_cell(name):
-    return {**CELLS, **CONTROLS, **FRICTIONS}[name]
+    return {**CELLS, **CONTROLS, **FRICTIONS, **GRAINS}[name]
 
 
 def write_rows(path, rows, head="", between=" "):
@@ -70,29 +75,43 @@ def write_sphere(path):
         stream.write(tell_template("clump", os.path.basename(path), 2, [i, 0, 0, i, 0, i]) + "\n")
 
 
+def find_body(folder, cell):
+    """Its mesh, and what else generate takes: the unit in which it has the candy's volume."""
+    if cell.body == "candy":
+        return find_candy(folder), ["--unit", "mm"]
+    volume = json.loads(run_mskit("info", GRAIN, "--json"))["volume"]
+    return GRAIN, ["--scale", repr(1e-3 * (4 / 3 * math.pi * A * A * C / volume) ** (1 / 3))]
+
+
 def write_clump(folder, path, cell):
     if cell.method == "sphere":
         write_sphere(path)
     else:
         # Scaled after the fit, as other methods are: the rows that are there are of these clumps.
         scaled = ["--set", "hold-volume=0"] if cell.method == "variational" else []
-        run_mskit("generate", find_candy(folder), "-g", cell.method, *scaled, "-n", cell.n, "--deq", 100,
-                  "--equal-volume", "--correct", "--density", DENSITY, "--unit", "mm", "-o", path)
+        mesh, unit = find_body(folder, cell)
+        run_mskit("generate", mesh, "-g", cell.method, *scaled, "-n", cell.n, "--deq", 100, "--equal-volume",
+                  "--correct", "--density", DENSITY, *unit, "-o", path, "-o", find_spheres(path))
     write_rows(path, [[x, y, z, cell.radii * r] for x, y, z, r in read_rows(path)])
 
 
+def find_spheres(template):
+    return template.replace(".liggghts", ".csv")
+
+
 def write_spheres(folder, name):
-    """The clump as CSV in mm: templates lie along principal axes, which are the candy's own but for a turn about its
-    axis."""
-    path = os.path.join(folder, name + ".csv")
-    spheres = [[1000 * x for x in row] for row in read_rows(os.path.join(folder, name + ".liggghts"))]
-    write_rows(path, spheres[:find_cell(name).n], "x,y,z,r\n", ",")
-    return path
+    """The clump as CSV in the unit and frame of its body. Templates lie along principal axes, which are the candy's own
+    but for a turn about its axis; a grain's is left as generate wrote it."""
+    template, cell = os.path.join(folder, name + ".liggghts"), find_cell(name)
+    if cell.body == "candy":
+        spheres = [[1000 * x for x in row] for row in read_rows(template)]
+        write_rows(find_spheres(template), spheres[:cell.n], "x,y,z,r\n", ",")
+    return find_spheres(template)
 
 
 def ask_contact(folder, name, *words):
-    return json.loads(run_mskit("contact", write_spheres(folder, name), "--target", find_candy(folder), "--overlap",
-                                0.002, "--json", *words))
+    return json.loads(run_mskit("contact", write_spheres(folder, name), "--target",
+                                find_body(folder, find_cell(name))[0], "--overlap", 0.002, "--json", *words))
 
 
 def at_random(rows):
@@ -135,22 +154,23 @@ def make(folder, name):
 
 def describe(folder, name):
     """A row of contrasts-clumps.csv: what may predict how the clump acts."""
-    cell, shape = CELLS[name], find_candy(folder)
+    cell = find_cell(name)
     make(folder, name)
-    scores = json.loads(run_mskit("score", write_spheres(folder, name), "--target", shape, "--deq", 100,
-                                  "--json"))["scores"]
+    scores = json.loads(run_mskit("score", write_spheres(folder, name), "--target", find_body(folder, cell)[0], "--deq",
+                                  100, "--json"))["scores"]
     contact = ask_contact(folder, name)
     return {"cell": name, "method": cell.method, "n": cell.n, "radii": cell.radii, "rolling": cell.rolling,
             "dice": scores["dice"], "volume": scores["off_volume"],
             "mean_width": contact["clump"]["mean_width"] / contact["shape"]["mean_width"],
-            "normal_median": scores["normal_median"], "convexity": scores["clump_convexity"],
+            "normal_median": scores["normal_median"],
+            "convexity": scores["clump_convexity"] / scores["shape_convexity"],
             "contacts": at_random(contact["contacts"])["contacts"]}
 
 
 def describe_all(folder, path):
     """Adds those that are not in the table yet."""
     there = {row["cell"] for row in tables.read_if_there(path)}
-    for name, cell in CELLS.items():
+    for name, cell in {**CELLS, **(GRAINS if GRAIN else {})}.items():
         if name not in there and cell.method != "smooth":
             tables.add_row(path, COLUMNS, describe(folder, name))
 

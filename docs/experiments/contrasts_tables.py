@@ -7,7 +7,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import tables  # noqa: E402
-from contrasts_cells import CELLS, CONTROLLED, CONTROLS, FRICTIONS, SERIES  # noqa: E402
+from contrasts_cells import CELLS, CONTROLLED, CONTROLS, FRICTIONS, GRAINS, SERIES  # noqa: E402
 from intervals import interval, pool  # noqa: E402
 
 RUNS, CLUMPS = (os.path.join(HERE, name) for name in ("contrasts.csv", "contrasts-clumps.csv"))
@@ -59,16 +59,18 @@ def table_clumps(rows):
          for r in tables.read(CLUMPS) if take(rows, "fraction", r["cell"])])
 
 
-def table_runs(rows):
+def table_runs(rows, cells=CELLS):
     out = []
-    for cell in CELLS:
+    for cell in cells:
         found = {field: take(rows, field, cell) for field in [*MEASURED, "cpu_seconds"]}
         if found["fraction"]:
             out.append([cell, str(len(found["fraction"]))] + [f"{statistics.mean(found[f]):.{MEASURED[f][1]}f}"
                                                               for f in MEASURED]
                        + [f"{statistics.mean(found['cpu_seconds']):.0f}"])
-    spread = [f"{pool_cells(rows, f)[0]:.{MEASURED[f][1]}f}" for f in MEASURED]
-    out.append(["spread within cells", str(pool_cells(rows, "fraction")[1])] + spread + [""])
+    if not out:
+        return "None was run yet."
+    spread = [f"{pool_cells(rows, f, cells)[0]:.{MEASURED[f][1]}f}" for f in MEASURED]
+    out.append(["spread within cells", str(pool_cells(rows, "fraction", cells)[1])] + spread + [""])
     return tables.markdown(["cell", "runs"] + [head for head, _, _ in MEASURED.values()] + ["CPU s"], out)
 
 
@@ -133,6 +135,12 @@ def table_checks(rows):
                            out)
 
 
+def list_grains():
+    """Each clump of the grain against that of the most spheres."""
+    *fewer, most = GRAINS
+    return [("fewer spheres", cell, most) for cell in fewer]
+
+
 def fit_line(points):
     """Slope and intercept of least squares."""
     x, y = ([point[k] for point in points] for k in (0, 1))
@@ -141,20 +149,28 @@ def fit_line(points):
     return slope, height - slope * middle
 
 
+def root_mean_square(values):
+    return math.sqrt(statistics.mean(x * x for x in values)) if values else math.nan
+
+
 def judge_predictor(rows, clumps, field, predictor):
     """Root mean square errors of a line through the cells of the series, but for the sphere: on these, on cells of
-    other methods and radii, which had no part in it, and on the candy itself, NaN where that was not run. None predicts
-    the mean of the series."""
+    other methods and radii, which had no part in it, on the candy itself, and of the line's slope on the differences of
+    the grain's clumps from the largest; NaN where those were not run. None predicts the mean of the series, and no
+    difference."""
     points = {}
     for row in clumps:
         values = take(rows, field, row["cell"])
         if values and row["method"] != "sphere":
             points[row["cell"]] = (float(row[predictor]) if predictor else 0.0, statistics.mean(values))
-    inside, outside = ([point for cell, point in points.items() if (cell in SERIES) == part] for part in (True, False))
+    *grains, last = [points[cell] for cell in GRAINS if cell in points] or [(math.nan, math.nan)]
+    inside, outside = ([point for cell, point in points.items() if cell in CELLS and (cell in SERIES) == part]
+                       for part in (True, False))
     slope, at = fit_line(inside) if predictor else (0.0, statistics.mean(y for _, y in inside))
     of_body = take(rows, field, "smooth")
-    body = [(BODY[predictor] if predictor else 0.0, statistics.mean(of_body) if of_body else math.nan)]
-    return [math.sqrt(statistics.mean((at + slope * x - y) ** 2 for x, y in part)) for part in (inside, outside, body)]
+    body = [(BODY[predictor] if predictor else 0.0, statistics.mean(of_body))] if of_body else []
+    return [*(root_mean_square([at + slope * x - y for x, y in part]) for part in (inside, outside, body)),
+            root_mean_square([slope * (x - last[0]) - (y - last[1]) for x, y in grains])]
 
 
 def table_predictors(rows):
@@ -195,6 +211,8 @@ def fill():
         "bed-contrasts": table_contrasts(rows, CONTRASTS),
         "bed-controls": table_contrasts(rows, list_controls(), [*CONTROLLED, *CONTROLS]),
         "bed-friction": table_contrasts(rows, FRICTION_CONTRASTS, ["smooth", "variational-10", *FRICTIONS]),
+        "bed-grain": table_runs(rows, GRAINS),
+        "bed-grain-contrasts": table_contrasts(rows, list_grains(), GRAINS),
         "bed-enough": table_enough(rows, [cell for cell in SERIES if take(rows, "fraction", cell)][-1]),
         "bed-smooth": table_enough(rows, "smooth"), "bed-predictors": table_predictors(rows),
         "bed-checks": table_checks(rows)})

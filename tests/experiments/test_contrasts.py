@@ -155,9 +155,18 @@ class Intervals(unittest.TestCase):
             errors = tables.judge_predictor(rows, clumps, "start", predictor)
             self.assertAlmostEqual(errors[0], inside)
             self.assertAlmostEqual(errors[1], outside)
-            self.assertTrue(math.isnan(errors[2]))
+            self.assertTrue(math.isnan(errors[2]) and math.isnan(errors[3]))
         rows += [{**rows[0], "cell": "smooth", "start": value} for value in (23, 25)]  # D nil: 20 of the line
         self.assertAlmostEqual(tables.judge_predictor(rows, clumps, "start", "dice")[2], 4)
+        # The grain starts elsewhere, and by 70 degrees for 100 D: 30 D are missed.
+        grains = [{"cell": f"grain-{n}", "method": "variational", "dice": dice}
+                  for n, dice in ((2, 0.4), (5, 0.3), (60, 0))]
+        rows += [{**rows[0], "cell": grain["cell"], "start": 9 + 70 * grain["dice"]} for grain in grains]
+        self.assertAlmostEqual(tables.judge_predictor(rows, clumps + grains, "start", "dice")[3],
+                               math.hypot(12, 9) / math.sqrt(2))
+        self.assertAlmostEqual(tables.judge_predictor(rows, clumps + grains, "start", "")[3],
+                               math.hypot(28, 21) / math.sqrt(2))
+        self.assertAlmostEqual(tables.judge_predictor(rows, clumps + grains, "start", "dice")[1], 0)
 
     def test_controls_stand_beside_their_cells_and_each_other(self):
         few, many = cells.CONTROLLED
@@ -211,6 +220,34 @@ class Clumps(unittest.TestCase):
         self.assertTrue(all("superquadric" in line or "shape" in line or "candies" in line or line.endswith(" ke")
                             for line in changed), changed)
 
+    def test_friction_alone_differs(self):
+        for name in cells.FRICTIONS:
+            with tempfile.TemporaryDirectory() as folder, mock.patch.object(cells, "run_mskit", self.write_fake), \
+                    mock.patch.object(cells, "find_candy", lambda folder: "candy.stl"):
+                of = name[:name.rindex("-f")]
+                here, there = (bed.make_script(cells.make(folder, cell), 1, tables.STEP, tables.RATE).replace(name, of)
+                               .splitlines() for cell in (name, of))
+            changed = [line for line in here if line not in there]
+            self.assertEqual([line.split()[3:] for line in changed],
+                             [["property/global", "coefficientFriction", "peratomtypepair", "2"] + [name[-3:]] * 4])
+
+    def test_a_grain_in_the_candy_s_volume(self):
+        """A mesh of the volume 1000 of its units is written in units that make it the candy's."""
+        said = []
+
+        def write(*words):
+            said.append(words)
+            self.write_fake(*words)
+            return '{"volume": 1000}'
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(cells, "run_mskit", write), \
+                mock.patch.object(cells, "GRAIN", "grain.stl"):
+            cells.make(folder, "grain-5")
+        (made,) = [words for words in said if words[0] == "generate"]
+        self.assertEqual(made[1], "grain.stl")
+        scale = float(made[made.index("--scale") + 1])
+        self.assertAlmostEqual(1377 * 1000 * scale ** 3, packing.MASS, delta=1e-12)
+        self.assertNotIn("--unit", made)
+
     def test_radii_alone_differ(self):
         """Places, mass and inertia of the small and the large clump are those of the one between."""
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(cells, "run_mskit", self.write_fake), \
@@ -229,10 +266,11 @@ class Clumps(unittest.TestCase):
     def write_fake(*words):
         """A clump of two spheres, for the generator's."""
         if words[0] == "generate":
-            with open(words[-1], "w", encoding="ascii") as stream:
+            path = next(word for word in words if str(word).endswith(".liggghts"))
+            with open(path, "w", encoding="ascii") as stream:
                 stream.write("-0.001 0 0 0.004\n0.001 0 0 0.003\n")
-            with open(words[-1] + ".in", "w", encoding="ascii") as stream:
-                stream.write(f"# a drop\nfix clump all \"{os.path.basename(words[-1])}\" mass 1\nfix kinds all\n")
+            with open(path + ".in", "w", encoding="ascii") as stream:
+                stream.write(f"# a drop\nfix clump all \"{os.path.basename(path)}\" mass 1\nfix kinds all\n")
 
 
 ENGINE = """#!/bin/sh
