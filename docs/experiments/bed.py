@@ -64,6 +64,7 @@ variable speed equal c_flow/{spheres}
 thermo_style custom step atoms v_kinetic v_speed
 thermo {each}
 run {falling}
+{forget}
 """ + SETTLE + """group candies type 1
 write_dump candies custom settled.dump id type x y z {columns} modify sort id
 variable angle equal 0
@@ -147,10 +148,13 @@ def find_angles(rise, fall):
 def make_script(clump, seed, step, rate):
     """clump: as of contrasts_cells.make; template and kinds may name several."""
     each, rolling = round(PASS / step), clump["rolling"]
+    # Each run looks through all templates for each of them: of 250 that is nine tenths of the time.
+    forget = "\n".join("unfix " + name for name in ["insert", "kinds", *re.findall(r"^fix (\S+) all particletemplate",
+                                                                               clump["template"], re.MULTILINE)])
     return SCRIPT.format(template=clump["template"], kinds=clump["kinds"], spheres=COUNT * clump["members"],
                          frictions=" ".join([repr(clump["friction"])] * 4), rolling=rolling,
                          model="rolling_friction epsd2" if rolling else "", seed=seed, step=step, count=COUNT,
-                         rest=REST, each=each, falling=60 * each, tenth=10 * each, slow=rate * PASS,
+                         forget=forget, rest=REST, each=each, falling=60 * each, tenth=10 * each, slow=rate * PASS,
                          fast=4 * rate * PASS, flows=FLOWS, stands=STANDS, young=clump["young"], e=clump["e"],
                          **(SMOOTH if clump["smooth"] else SPHERES))
 
