@@ -4,19 +4,25 @@ import shutil
 import statistics
 import subprocess
 
-from contrasts_cells import CELLS, SERIES
+from contrasts_cells import CELLS, GRAINS, SERIES, find_cell
 from contrasts_tables import HERE, pool_cells, take
 from intervals import quantile
 
 CHART = os.path.join(HERE, "beds.svg")
-COLOURS = ["#666666", "#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c510a", "#56b4e9", "#e69f00"]
+COLOURS = ["#666666", "#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c510a", "#56b4e9", "#e69f00",
+           "#b2182b"]
+SMOOTH, GRAIN = "the candy itself", "a grain, variational"
 TITLES = {"fraction": "packing fraction", "start": "start angle, degrees"}
 
 
 def find_group(name):
-    cell = CELLS[name]
+    cell = find_cell(name)
     if name in SERIES[1:]:
         return "variational"
+    if name in GRAINS:
+        return GRAIN
+    if name == "smooth":
+        return SMOOTH
     if name == "smooth-ball":
         return "a sphere, as a superquadric"
     if cell.method == "sphere":
@@ -31,13 +37,14 @@ def place(cell):
 
 def collect(rows, field):
     """Of each group of cells the points: number of spheres, mean, half of its 90 % interval by the pooled deviation."""
-    deviation, freedom = pool_cells(rows, field)
     groups = {}
-    for name, cell in CELLS.items():
-        values = take(rows, field, name)
-        if values:
-            half = quantile(freedom) * deviation / len(values) ** 0.5 if freedom else 0.0
-            groups.setdefault(find_group(name), []).append((place(cell), statistics.mean(values), half))
+    for cells in (CELLS, GRAINS):
+        deviation, freedom = pool_cells(rows, field, cells)
+        for name, cell in cells.items():
+            values = take(rows, field, name)
+            if values:
+                half = quantile(freedom) * deviation / len(values) ** 0.5 if freedom else 0.0
+                groups.setdefault(find_group(name), []).append((place(cell), statistics.mean(values), half))
     return groups
 
 
@@ -56,7 +63,7 @@ def write_commands(rows):
             data, style = f"${field}{k}", "yerrorlines" if len(points) > 1 else "yerrorbars"
             lines.append(f"{data} << END\n" + "".join(f"{n} {mean} {half}\n" for n, mean, half in points) + "END")
             # as many spheres: beside each other
-            shift = 1 if name == "smooth" else 0.94 + 0.06 * k
+            shift = {SMOOTH: 1, GRAIN: 1.03}.get(name, 0.94 + 0.06 * k)
             plots.append(f"{data} using ($1*{shift}):2:3 with {style} linecolor rgb '{COLOURS[k]}' "
                          f"pointtype {k + 4} title '{name}'")
         lines += [f"set title '{title}'", "plot " + ", ".join(plots)]
