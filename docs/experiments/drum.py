@@ -14,6 +14,8 @@ those of packing.py, the step is that of contrasts.py. What is measured, as fixe
 ten turns from the fourth on, every 0.1 s:
     angle        degrees of the line of least squares through the highest points over lines 1 mm apart, averaged along
                  the axis, of the middle part of the bed, which is as wide as the drum's radius
+    bare         looks in which the bed does not reach over all of that part, which are left out (added later, when one
+                 run had one; one of twenty or more is refused)
     correlation  its correlation time, s: the integral of its autocorrelation up to where that first falls below 0
     blocks       its means over 20 blocks of 1.2 s, taken as independent where they are ten times as long as that
 """
@@ -35,7 +37,7 @@ import tables  # of docs, where packing looks
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TABLE = os.path.join(HERE, "drum.csv")
-COLUMNS = ["n", "dice", "seed", "step", "particles", "angle", "correlation", "blocks", "cpu_seconds", "version"]
+COLUMNS = ["n", "dice", "seed", "step", "particles", "angle", "bare", "correlation", "blocks", "cpu_seconds", "version"]
 COUNT, RADIUS, LENGTH, TURN, LOOK = 130, 50.0, 40.0, 60 / 25, 0.1  # particles, mm, mm, s, s
 SKIPPED, TURNS, BLOCKS = 3, 10, 20
 
@@ -104,6 +106,15 @@ def find_correlation(series):
     return LOOK * total
 
 
+def leave_out_bare(angles, work):
+    """Those of looks with an angle, and how many have none."""
+    seen = [angle for angle in angles if not math.isnan(angle)]
+    bare = len(angles) - len(seen)
+    if 20 * bare >= len(angles):
+        sys.exit(f"{work}: in {bare} of {len(angles)} looks the bed is bare in the middle, where its angle would be")
+    return seen, bare
+
+
 def run(folder, n, seed):
     """One row."""
     template, said = make_clump(folder, n)
@@ -115,11 +126,10 @@ def run(folder, n, seed):
             sys.exit(f"{work}: {len(spheres)} spheres are not those of {COUNT} particles of {n}")
         angles.append(measure(1000 * spheres))
     del angles[0]  # of before the first turn that counts
-    if any(map(math.isnan, angles)):
-        sys.exit(f"{work}: the bed is bare in the middle, where its angle would be")
+    angles, bare = leave_out_bare(angles, work)
     blocks = [statistics.mean(block) for block in numpy.array_split(angles, BLOCKS)]
     return {"n": n, "dice": said["scores"]["dice"], "seed": seed, "step": contrasts_tables.STEP, "particles": COUNT,
-            "angle": round(statistics.mean(angles), 3), "correlation": round(find_correlation(angles), 3),
+            "angle": round(statistics.mean(angles), 3), "bare": bare, "correlation": round(find_correlation(angles), 3),
             "blocks": " ".join(f"{block:.3f}" for block in blocks), "cpu_seconds": cpu, "version": ask_version()}
 
 

@@ -95,6 +95,9 @@ class Drum(unittest.TestCase):
     def test_a_bare_line_is_no_angle(self):
         spheres = numpy.array([[x, 0.0, z, 3.0] for x in numpy.arange(0, 40, 0.25) for z in range(40)])
         self.assertTrue(math.isnan(drum.measure(spheres)))
+        self.assertEqual(drum.leave_out_bare([1.0] * 20 + [math.nan], "here"), ([1.0] * 20, 1))
+        with self.assertRaisesRegex(SystemExit, "here: in 1 of 20 looks"):
+            drum.leave_out_bare([1.0] * 19 + [math.nan], "here")
 
     def test_correlation_time(self):
         """Half a look where neighbours alternate; of a series that forgets by a half a look, 3/2 looks."""
