@@ -2,7 +2,7 @@
 """How few grains stand for a powder in bulk: beds of 250 grains in LIGGGHTS, by clumps of 20 spheres of each of its
 grains, and by the K grains that mskit grains --choose takes.
 
-    docs/experiments/library.py GRAINS [--seeds N] [--kinds K,...] [--work FOLDER] [--most MINUTES]
+    docs/experiments/library.py GRAINS [--seeds N] [--kinds K,...] [--choice SEED] [--work FOLDER] [--most MINUTES]
 
 GRAINS is a folder of meshes; the one of docs/population.md is meant. Each row goes to library.csv beside this file;
 rows that are there are not run again. Then the table of all of them goes into docs/behaviour.md, which --seeds 0 does
@@ -11,6 +11,8 @@ alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine (liggghts
 Bed, material and what is measured are those of contrasts.py. Shape alone differs: all clumps are scaled to the volume
 of its candy, as are their moments. kinds is K, or 0 for the powder itself: 250 of its grains, drawn without replacement
 by the seed of the run. Of K grains there are as many as their weights say, to the nearest of 250 (largest remainders).
+    choice    the seed with which they were chosen, 0 of the powder itself (added when two runs of the first choice had
+              been looked at)
     contacts  particles and feet of the floor that a particle touches in the settled bed, on average
 """
 import argparse
@@ -31,8 +33,8 @@ import tables  # of docs, where packing looks
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TABLE = os.path.join(HERE, "library.csv")
-COLUMNS = ["kinds", "seed", "step", "rate", "particles", "height", "fraction", "contacts", "start", "stop", "flowed",
-           "kinetic_over_m_g_d", "seconds", "cpu_seconds", "version"]
+COLUMNS = ["kinds", "choice", "seed", "step", "rate", "particles", "height", "fraction", "contacts", "start", "stop",
+           "flowed", "kinetic_over_m_g_d", "seconds", "cpu_seconds", "version"]
 KINDS, SPHERES = [0, 1, 5, 20], 20
 FLOOR = numpy.array([[7.5 * i, 7.5 * j, 0.0, 3.75] for i in range(8) for j in range(8)])  # mm, as in bed.py
 # what is measured: heading, digits
@@ -48,11 +50,11 @@ def make_clumps(grains, folder):
     return [row["file"] for row in tables.read(os.path.join(clumps, "grains.csv")) if row["status"] == "ok"]
 
 
-def choose(folder, kinds):
+def choose(folder, kinds, choice):
     """(name, weight) of so many grains."""
-    library = os.path.join(folder, f"library-{kinds}")
+    library = os.path.join(folder, f"library-{kinds}-{choice}")
     if not os.path.exists(os.path.join(library, "library.csv")):
-        run_mskit("grains", "--choose", kinds, os.path.join(folder, "clumps"), "-o", library)
+        run_mskit("grains", "--choose", kinds, os.path.join(folder, "clumps"), "--seed", choice, "-o", library)
     return [(row["file"], float(row["number"])) for row in tables.read(os.path.join(library, "library.csv"))]
 
 
@@ -66,10 +68,10 @@ def share_out(weighted):
     return [(name, count) for (name, _), count in zip(weighted, counts) if count]
 
 
-def draw(names, folder, kinds, seed):
+def draw(names, folder, kinds, choice, seed):
     """(name, count) of a bed's particles."""
     if kinds:
-        return share_out(choose(folder, kinds))
+        return share_out(choose(folder, kinds, choice))
     return [(name, 1) for name in sorted(numpy.random.default_rng(seed).choice(names, COUNT, replace=False))]
 
 
@@ -121,32 +123,38 @@ def count_contacts(spheres):
     return sum(a != b for a, b in touching) / COUNT
 
 
-def run(folder, names, kinds, seed):
+def run(folder, names, kinds, choice, seed):
     """One row."""
-    work = os.path.join(folder, f"{kinds}-{seed}")
-    clump = make_bed(folder, work, draw(names, folder, kinds, seed))
+    work = os.path.join(folder, f"{kinds}-{choice}-{seed}")
+    clump = make_bed(folder, work, draw(names, folder, kinds, choice, seed))
     measured = run_bed(work, clump, seed, contrasts_tables.STEP, contrasts_tables.RATE)
     contacts = count_contacts(read_spheres(os.path.join(work, "settled.dump")))
-    return {"kinds": kinds, **measured, "contacts": round(contacts, 3)}
+    return {"kinds": kinds, "choice": choice, **measured, "contacts": round(contacts, 3)}
+
+
+def name_grains(kinds, choice):
+    return "all" if kinds == "0" else kinds if choice == "1" else f"{kinds}, choice {choice}"
 
 
 def make_table(rows):
-    """Means, spread within rows of the same kinds, and differences from the powder with half of their 90 % interval."""
+    """Means, spread within rows of the same grains, and differences from the powder with half of their 90 %
+    interval."""
     if not rows:
         return "None was run yet."
-    groups = {k: [row for row in rows if int(row["kinds"]) == k] for k in KINDS}
-    groups = {k: these for k, these in groups.items() if these}
+    groups = {}
+    for row in sorted(rows, key=lambda row: (int(row["kinds"]), int(row["choice"]))):
+        groups.setdefault(name_grains(row["kinds"], row["choice"]), []).append(row)
     values = {f: {k: [float(row[f]) for row in these] for k, these in groups.items()} for f in MEASURED}
-    out = [[str(k) if k else "all", str(len(these))]
-           + [f"{numpy.mean(values[f][k]):.{digits}f}" for f, (_, digits) in MEASURED.items()]
+    out = [[k, str(len(these))] + [f"{numpy.mean(values[f][k]):.{digits}f}" for f, (_, digits) in MEASURED.items()]
            for k, these in groups.items()]
     pooled = {f: pool(list(values[f].values())) for f in MEASURED}
     out.append(["spread within", str(pooled["fraction"][1])]
                + [f"{pooled[f][0]:.{digits}f}" for f, (_, digits) in MEASURED.items()])
     for k in groups:
-        if k and 0 in groups:
-            out.append([f"{k} - all", ""] + [contrasts_tables.show(*interval(values[f][k], values[f][0], *pooled[f]),
-                                                                   digits) for f, (_, digits) in MEASURED.items()])
+        if k != "all" and "all" in groups:
+            out.append([f"{k} - all", ""]
+                       + [contrasts_tables.show(*interval(values[f][k], values[f]["all"], *pooled[f]), digits)
+                          for f, (_, digits) in MEASURED.items()])
     return tables.markdown(["kinds", "runs"] + [head for head, _ in MEASURED.values()], out)
 
 
@@ -155,18 +163,20 @@ def main():
     parser.add_argument("grains", help="folder of meshes")
     parser.add_argument("--seeds", type=int, default=3, help="runs of each (3)")
     parser.add_argument("--kinds", default=",".join(map(str, KINDS)), help="0: all (0,1,5,20)")
+    parser.add_argument("--choice", type=int, default=1, help="seed of the choice (1)")
     parser.add_argument("--work", default="library", help="folder of the engine's files (library)")
     parser.add_argument("--most", type=float, default=1e9, help="no run is begun after so many minutes")
     asked = parser.parse_args()
     os.makedirs(asked.work, exist_ok=True)
     names = make_clumps(asked.grains, asked.work) if asked.seeds else []
     begun, rows = time.time(), tables.read_if_there(TABLE)
-    there = {(int(row["kinds"]), int(row["seed"])) for row in rows}
+    there = {(int(row["kinds"]), int(row["choice"]), int(row["seed"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
         for kinds in map(int, asked.kinds.split(",")):
-            if (kinds, seed) in there or time.time() - begun > 60 * asked.most:
+            choice = asked.choice if kinds else 0
+            if (kinds, choice, seed) in there or time.time() - begun > 60 * asked.most:
                 continue
-            row = run(asked.work, names, kinds, seed)
+            row = run(asked.work, names, kinds, choice, seed)
             tables.add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in COLUMNS if key not in ("particles", "version")), flush=True)
     tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"library": make_table(tables.read_if_there(TABLE))})

@@ -27,11 +27,21 @@ class Shares(unittest.TestCase):
 
     def test_of_the_powder_each_grain_once(self):
         names = [f"grain-{k}" for k in range(402)]
-        one, other = (library.draw(names, "", 0, seed) for seed in (1, 2))
+        one, other = (library.draw(names, "", 0, 0, seed) for seed in (1, 2))
         self.assertEqual({count for _, count in one}, {1})
         self.assertEqual(len({name for name, _ in one}), bed.COUNT)
         self.assertNotEqual(one, other)
-        self.assertEqual(one, library.draw(names, "", 0, 1))
+        self.assertEqual(one, library.draw(names, "", 0, 0, 1))
+
+    def test_each_choice_stands_alone(self):
+        rows = [{"kinds": kinds, "choice": choice, **dict.fromkeys(library.MEASURED, value)}
+                for kinds, choice, value in (("20", "2", 3), ("0", "0", 1), ("20", "1", 5), ("20", "2", 5), ("0", "0", 3))]
+        table = [[cell.strip() for cell in line.split("|")[1:4]] for line in library.make_table(rows).splitlines()[2:]]
+        self.assertEqual([line[:2] for line in table],
+                         [["all", "2"], ["20", "1"], ["20, choice 2", "2"], ["spread within", "2"], ["20 - all", ""],
+                          ["20, choice 2 - all", ""]])
+        self.assertEqual([table[k][2].split(" ")[0] for k in (0, 1, 2, 4, 5)],
+                         ["2.0000", "5.0000", "4.0000", "+3.0000", "+2.0000"])
 
     def test_primes(self):
         primes = library.list_primes(402)
