@@ -35,7 +35,8 @@ class Shares(unittest.TestCase):
 
     def test_each_choice_stands_alone(self):
         rows = [{"kinds": kinds, "choice": choice, **dict.fromkeys(library.MEASURED, value)}
-                for kinds, choice, value in (("20", "2", 3), ("0", "0", 1), ("20", "1", 5), ("20", "2", 5), ("0", "0", 3))]
+                for kinds, choice, value in (("20", "2", 3), ("0", "0", 1), ("20", "1", 5), ("20", "2", 5),
+                                             ("0", "0", 3))]
         table = [[cell.strip() for cell in line.split("|")[1:4]] for line in library.make_table(rows).splitlines()[2:]]
         self.assertEqual([line[:2] for line in table],
                          [["all", "2"], ["20", "1"], ["20, choice 2", "2"], ["spread within", "2"], ["20 - all", ""],
