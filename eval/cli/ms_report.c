@@ -246,6 +246,17 @@ void ms_report_equal_volume(FILE *stream, const ms_equal_volume *done)
     }
 }
 
+void ms_report_equal_volume_far(const char *name, const ms_equal_volume *done)
+{
+    const double far = 0.1;
+    if (done->scale > 0 && fabs(done->scale - 1) > far) {
+        fprintf(stderr,
+                "%s: the spheres held %.3g %% of the shape's volume; scaled by %.3g they lie beside it; take more "
+                "spheres, or a method that holds the volume while it fits (variational)\n",
+                name, 100 * pow(done->scale, -3), done->scale);
+    }
+}
+
 json_t *ms_report_equal_volume_json(const ms_equal_volume *done)
 {
     return done->scale > 0 ? json_pack("{s:f,s:f,s:f,s:f}", "scale", done->scale, "volume", done->volume, "error",

@@ -15,7 +15,10 @@ void ms_report_metrics(FILE *stream, const ms_metrics *metrics, const ms_target 
 /** What --equal-volume did; nothing where it was not asked for. */
 void ms_report_equal_volume(FILE *stream, const ms_equal_volume *done);
 
-/** Likewise; NULL where it was not asked for. */
+/** On stderr, where it scaled by more than a tenth: then spheres lie off the shape. @param name of shape or clump */
+void ms_report_equal_volume_far(const char *name, const ms_equal_volume *done);
+
+/** As ms_report_equal_volume; NULL where it was not asked for. */
 json_t *ms_report_equal_volume_json(const ms_equal_volume *done);
 
 /** The same as a JSON object; the caller owns it. Measures that do not apply are null. */

@@ -448,6 +448,9 @@ static int run_scene(const ms_command *command, int argc, char **argv)
     if (a.n_formats > 0 && !a.folder) {
         return ms_flags_wrong_usage(command, "--format is that of the templates; give -o DIR beside it");
     }
+    if (a.engines.mass.density > 0 && !a.folder) {
+        return ms_flags_wrong_usage(command, "--density is for the templates; give -o DIR beside it");
+    }
     a.source = argv[first];
     if (a.particles > 0 && is_manifest(a.source)) {
         return ms_flags_wrong_usage(command, "leave --particles out: a manifest has its own counts");

@@ -89,6 +89,7 @@ class Correct(Case):
             for j in range(3):
                 self.assertLess(abs(inertia[i][j] - (moment if i == j else 0)), 1e-9 * moment)
         self.assertEqual(len(json.loads(self.read("c.json"))["carriers"]), len(carriers))
+        self.assertIn("Walls know no types", self.read("c.lammps.in").decode())
         score = [self.mskit("score", name, "--target", "long.obj", *GRID).out.split("\n", 1)[1]
                  for name in ("balls.csv", "c.csv")]
         self.assertEqual(*score)
@@ -120,6 +121,18 @@ class Correct(Case):
         self.assertGreater(done["scale"], 1)
         score = self.mskit("score", "e.csv", "--target", "box.obj", *GRID, "--json").json
         self.assertEqual(score["scores"]["dice"], run.json["scores"]["dice"])
+
+    def test_equal_volume_by_far_is_said(self):
+        """A tenth of the length, and not a ball that holds most of the volume."""
+        for radius, far in ((0.5, True), (1.1, False)):
+            self.write("ball.csv", f"2.5,2,1.5,{radius}\n")
+            run = self.mskit("correct", "ball.csv", "--target", "box.obj", "--equal-volume", "--density", 1,
+                             "-o", "d.csv")
+            said = f"ball.csv: the spheres held {100 * 4 / 3 * math.pi * radius ** 3 / 6:.3g} % of the shape's volume"
+            self.assertEqual(said in run.err, far)
+        bowl = self.shape("bowl", "fineness=12")
+        run = self.mskit("generate", bowl, "-g", "mss", "--cells", 20, "-n", 5, "--equal-volume", "-o", "e.csv")
+        self.assert_says(run, "they lie beside it; take more spheres")
 
     def test_equal_volume_is_held(self):
         """variational leaves little to scale, unless it is told not to hold it."""

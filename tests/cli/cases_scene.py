@@ -342,6 +342,7 @@ class Refused(Scene):
             (("--budget", "60", "--max-spheres", "1001"), ("--max-spheres", "1000")),
             (("--budget", "60", "--min-radius", "-1"), ("--min-radius",)),
             (("--budget", "60", "--format", "json"), ("-o DIR",)),
+            (("--budget", "60", "--density", "5"), ("--density", "-o DIR")),
             (("--budget", "60", "-o", "out", "--format", "lammps"), ("lammps", "--density RHO")),
             (("--budget", "60", "-o", "out", "--format", "csv", "--format", "csv"), ("csv", "twice")),
             (("--budget", "60", "--unit", "mm"), ("--density",)),

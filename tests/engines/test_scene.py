@@ -135,6 +135,16 @@ class Liggghts(Engine):
         self.scene.write("crowded.in", crowded)
         self.fail_script("liggghts", "-in", "crowded.in")
 
+    def test_without_vtk(self):
+        """A LIGGGHTS that was built without it ends at the pictures, when all else is there."""
+        self.scene.folder = os.path.join(self.scene.top, "box")
+        self.scene.write("bare.in", self.scene.script("scene.liggghts.in").replace("custom/vtk", "custom/none"))
+        if os.path.exists(self.scene.path("scene.liggghts.dump")):
+            os.remove(self.scene.path("scene.liggghts.dump"))
+        with self.assertRaisesRegex(AssertionError, "(?s)scene: at rest.*scene: energy .*Invalid dump style"):
+            self.scene.run("liggghts", "-in", "bare.in")
+        self.assertGreaterEqual(len(self.rows("scene.liggghts.dump")), self.scene.spheres)
+
     def test_spin(self):
         """Drag on the centres of two spheres ends no spin about their line, which counts as rest."""
         self.scene.folder = self.scene.top

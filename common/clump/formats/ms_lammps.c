@@ -270,8 +270,15 @@ static void write_lammps_places(FILE *stream, const ms_script_drop *drop, int ca
     fprintf(stream, " %s ${top}\n", ms_script_number(1.5 * drop->reach, &low));
 }
 
-/* Up to the templates. @param carriers some have them: atoms of type 2, which meet no other; a wall alone would, if it
- * came deeper than they lie */
+void ms_lammps_exclude_carriers(FILE *stream)
+{
+    fputs("# Carriers of mass, type 2, meet no other sphere, and the step is that of the others. Walls know no types:\n"
+          "# one meets a carrier if it comes as deep into the sphere around it as that lies.\n"
+          "neigh_modify exclude type 1 2\nneigh_modify exclude type 2 2\n",
+          stream);
+}
+
+/* Up to the templates. @param carriers some have them */
 static void start_lammps_drop(FILE *stream, const ms_script_drop *d, int carriers)
 {
     ms_number a, b;
@@ -283,9 +290,7 @@ static void start_lammps_drop(FILE *stream, const ms_script_drop *d, int carrier
           "neigh_modify delay 0 exclude molecule/intra all\n",
           stream);
     if (carriers) {
-        fputs("# Carriers of mass, which meet no other sphere. The step is that of the spheres alone.\n"
-              "neigh_modify exclude type 1 2\nneigh_modify exclude type 2 2\n",
-              stream);
+        ms_lammps_exclude_carriers(stream);
     }
     write_lammps_law(stream, d->young);
     write_lammps_walls(stream, 0, (const double[]){-d->side, -d->side}, (const double[]){d->side, d->side});

@@ -25,9 +25,7 @@ static void write_lammps_box(FILE *stream, const ms_script_scene *s)
     fprintf(stream, "neighbor %s bin\n", ms_script_number(0.2 * s->reach, &x));
     fputs("fix molecules all property/atom mol ghost yes\nneigh_modify delay 0 exclude molecule/intra all\n", stream);
     if (s->carriers > 0) {
-        fputs("# Carriers of mass, which meet no other sphere.\n"
-              "neigh_modify exclude type 1 2\nneigh_modify exclude type 2 2\n",
-              stream);
+        ms_lammps_exclude_carriers(stream);
     }
 }
 

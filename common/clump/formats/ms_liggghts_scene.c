@@ -145,8 +145,14 @@ static void write_liggghts_rest(FILE *stream, const ms_script_scene *s)
             "if \"${now} < %s\" then \"variable state string 'at rest'\" \"jump SELF end\"\nnext more\njump SELF more\n"
             "label end\n\n",
             ms_script_number(s->rest, &rest));
-    fputs("dump pictures all custom/vtk 1 scene.liggghts_*.vtk id type x y z radius\nrun 0\n"
-          "write_dump all custom scene.liggghts.dump id type x y z radius modify sort id\n",
+    fputs("run 0\nwrite_dump all custom scene.liggghts.dump id type x y z radius modify sort id\n", stream);
+}
+
+/* Last, since a LIGGGHTS that was built without VTK ends here. */
+static void write_liggghts_pictures(FILE *stream)
+{
+    fputs("\n# Takes a LIGGGHTS built with VTK, as packages are.\n"
+          "dump pictures all custom/vtk 1 scene.liggghts_*.vtk id type x y z radius\nrun 0\n",
           stream);
 }
 
@@ -162,5 +168,6 @@ ms_status ms_liggghts_scene(FILE *stream, const ms_packing *scene, const char *n
     write_liggghts_measures(stream, scene, &s);
     write_liggghts_rest(stream, &s);
     ms_script_scene_results(stream, &s, count_atoms(scene));
+    write_liggghts_pictures(stream);
     return MS_OK;
 }
