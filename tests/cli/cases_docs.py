@@ -31,7 +31,7 @@ def keys(value):
 class Documents(Case):
     def test_commands_of_the_guide(self):
         """In order, in one folder, which holds an open mesh, a scan with two labels, the guide's manifest and sieve
-        curve, and two grains with a coarse clump each."""
+        curve, and two grains with a coarse clump each. The tables of scenes are those that the commands print."""
         self.write("open.obj", box_obj((0, 0, 0), (3, 2, 1), skip=1))
         self.write("scan.npy", npy([1] * 50 + [2] * 950, (10, 10, 10)))
         os.mkdir(self.path("grains"))
@@ -46,12 +46,18 @@ class Documents(Case):
         self.write("curve.csv", curve.replace("\\n", "\n"))
         commands = re.findall(r"(?m)^ {4,}mskit (.+)$", guide)
         self.assertGreater(len(commands), 20)
+        said = []
         for command in commands:
             if "--charts" in command and not shutil.which("gnuplot"):
                 print(f"gnuplot is not installed (package gnuplot-nox): not run: mskit {command}")
                 continue
             with self.subTest(command=command):
-                self.mskit(*shlex.split(command, comments=True))
+                said.append(self.mskit(*shlex.split(command, comments=True)).out)
+        tables = re.findall(r"(?m)^    \S+ with \w+: .+\n(?:    .+\n)+", guide)
+        self.assertGreater(len(tables), 1)
+        for table in tables:
+            table = re.sub(r"(?m)^    ", "", table)
+            self.assertTrue(any(table in out for out in said), f"the guide shows what no command prints:\n{table}")
         self.assertEqual(self.read("one.csv"), self.read("two.csv"))
         self.assertEqual(self.read("c.csv"), self.read("d.csv"))
 
@@ -87,17 +93,20 @@ class Documents(Case):
         for made in ("demo/grain.csv", "compare.csv", "grain.lammps", "templates", "mss.csv"):
             self.assertTrue(os.path.exists(self.path(made)), made)
 
-    def test_links_of_the_readme(self):
-        """To files and headings that are there; the picture among them."""
-        text, _ = self.readme()
-        links = re.findall(r"\]\(([^)#:]+)(?:#([\w-]+))?\)", text)
-        self.assertIn(("docs/grain.png", ""), links)
-        for path, heading in links:
-            self.assertTrue(os.path.exists(os.path.join(DOCS, "..", path)), path)
+    def test_links(self):
+        """Of README and documents: to files and headings that are there; the picture among them."""
+        documents = [os.path.join(DOCS, "..", "README.md"), *glob.glob(f"{DOCS}/**/*.md", recursive=True)]
+        links = [(own, *link) for own in documents
+                 for link in re.findall(r"\]\(([^)#:]*)(?:#([\w-]+))?\)", document(own))]
+        self.assertIn((documents[0], "docs/grain.png", ""), links)
+        self.assertGreater(len(links), 100)
+        for own, path, heading in links:
+            target = os.path.join(os.path.dirname(own), path) if path else own
+            self.assertTrue(os.path.exists(target), f"{own}: {path}")
             if heading:
                 headings = [re.sub(r"[^\w -]", "", h).strip().lower().replace(" ", "-")
-                            for h in re.findall(r"(?m)^#+ (.+)$", document(os.path.join("..", path)))]
-                self.assertIn(heading, headings, path)
+                            for h in re.findall(r"(?m)^#+ (.+)$", document(target))]
+                self.assertIn(heading, headings, f"{own}: {path}")
 
     def test_scripts_of_docs_can_be_run(self):
         scripts = [path for ending in ("sh", "py") for path in glob.glob(f"{DOCS}/**/*.{ending}", recursive=True)]
