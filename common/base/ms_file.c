@@ -265,10 +265,11 @@ uint64_t ms_file_checksum(const ms_bytes *bytes)
     return ms_file_checksum_add(MS_FILE_CHECKSUM, bytes);
 }
 
-/* Names of the temporary files that are open, for a signal that ends the process. Who takes a name out frees it; what a
- * signal has taken is not freed. */
+/* Names of the temporary files that are open, for a signal that ends the process. A name that is taken out while a
+ * signal reads is not freed. */
 enum { MOST_NOTED = 2048 };
 static _Atomic(char *) noted_files[MOST_NOTED];
+static atomic_int readers;
 
 /* @return one more than its place in the list; 0: there is none left, or no memory, and a signal leaves the file */
 static size_t note_file(const char *path)
@@ -286,20 +287,23 @@ static size_t note_file(const char *path)
 
 static void forget_file(size_t noted)
 {
-    if (noted > 0) {
-        free(atomic_exchange(&noted_files[noted - 1], NULL));
+    char *name = noted > 0 ? atomic_exchange(&noted_files[noted - 1], NULL) : NULL;
+    if (atomic_load(&readers) == 0) {
+        free(name);
     }
 }
 
 void ms_output_discard_all(void)
 {
     const int before = errno;
+    atomic_fetch_add(&readers, 1);
     for (size_t n = 0; n < MOST_NOTED; n++) {
-        const char *name = atomic_exchange(&noted_files[n], NULL);
+        const char *name = atomic_load(&noted_files[n]);
         if (name) {
             unlink(name);
         }
     }
+    atomic_fetch_sub(&readers, 1);
     errno = before;
 }
 

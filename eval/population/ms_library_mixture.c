@@ -98,9 +98,8 @@ static ms_status check_kind(const ms_placed *kind, ms_error *err)
 {
     ms_error cause;
     const ms_status status = ms_particle_check(&kind->particle, &cause);
-    return status == MS_OK
-               ? MS_OK
-               : ms_fail(err, status, "%s, %g times its size: %s", kind->name, kind->scale, cause.text);
+    return status == MS_OK ? status
+                           : ms_fail(err, status, "%s, %g times its size: %s", kind->name, kind->scale, cause.text);
 }
 
 /* A kind of particles: a grain in one size, which is `scale` times its own. */
