@@ -24,7 +24,7 @@ void ms_signals_catch(int number, void (*handler)(int number))
 
 void ms_signals_end_cleanly(void)
 {
-    const int numbers[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM, SIGXCPU};
+    const int numbers[] = {SIGHUP, SIGINT, SIGQUIT, SIGABRT, SIGPIPE, SIGTERM, SIGXCPU};
     for (size_t s = 0; s < sizeof numbers / sizeof *numbers; s++) {
         ms_signals_catch(numbers[s], NULL);
     }
