@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "cli/ms_input.h"
+#include "cli/ms_signals.h"
 #include "command/ms_commands.h"
 
 static const ms_command *const COMMANDS[] = {
@@ -104,6 +105,7 @@ int main(int argc, char **argv)
     wait_passively(argv);
     gsl_set_error_handler_off(); /* its default is to abort */
     occupy_streams();
+    ms_signals_end_cleanly();
     signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is a failed write, which is reported */
     if (argc < 2) {
         print_usage(stderr);

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -264,8 +265,51 @@ uint64_t ms_file_checksum(const ms_bytes *bytes)
     return ms_file_checksum_add(MS_FILE_CHECKSUM, bytes);
 }
 
+/* Names of the temporary files that are open, for a signal that ends the process. A name that is taken out while a
+ * signal reads is not freed. */
+enum { MOST_NOTED = 2048 };
+static _Atomic(char *) noted_files[MOST_NOTED];
+static atomic_int readers;
+
+/* @return one more than its place in the list; 0: there is none left, or no memory, and a signal leaves the file */
+static size_t note_file(const char *path)
+{
+    char *name = strdup(path);
+    for (size_t n = 0; name && n < MOST_NOTED; n++) {
+        char *none = NULL;
+        if (atomic_compare_exchange_strong(&noted_files[n], &none, name)) {
+            return n + 1;
+        }
+    }
+    free(name);
+    return 0;
+}
+
+static void forget_file(size_t noted)
+{
+    char *name = noted > 0 ? atomic_exchange(&noted_files[noted - 1], NULL) : NULL;
+    if (atomic_load(&readers) == 0) {
+        free(name);
+    }
+}
+
+void ms_output_discard_all(void)
+{
+    const int before = errno;
+    atomic_fetch_add(&readers, 1);
+    for (size_t n = 0; n < MOST_NOTED; n++) {
+        const char *name = atomic_load(&noted_files[n]);
+        if (name) {
+            unlink(name);
+        }
+    }
+    atomic_fetch_sub(&readers, 1);
+    errno = before;
+}
+
 static void free_output(ms_output *output)
 {
+    forget_file(output->noted);
     free(output->path);
     free(output->temporary);
     *output = (ms_output){0};
@@ -285,6 +329,19 @@ static ms_status resolve_link(char **resolved, const char *path, ms_error *err)
     return *resolved ? MS_OK : ms_fail(err, MS_ERR_NOMEM, "%s: no memory to write it", path);
 }
 
+/* Noted before it is there, so that no signal comes between. */
+static int make_temporary(ms_output *output)
+{
+    output->noted = note_file(output->temporary);
+    const int fd = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666), why = errno;
+    if (fd < 0) {
+        forget_file(output->noted);
+        output->noted = 0;
+    }
+    errno = why;
+    return fd;
+}
+
 static ms_status open_temporary(ms_output *output, ms_error *err)
 {
     size_t room = strlen(output->path) + 48;
@@ -296,7 +353,7 @@ static ms_status open_temporary(ms_output *output, ms_error *err)
     /* The counter tells apart two writers in one process. */
     for (int attempt = 0; attempt < 100 && fd < 0; attempt++) {
         snprintf(output->temporary, room, "%s.%ld-%d.tmp", output->path, (long)getpid(), attempt);
-        fd = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        fd = make_temporary(output);
         if (fd < 0 && errno != EEXIST) {
             break;
         }

@@ -75,6 +75,7 @@ typedef struct ms_output {
     FILE *stream;
     char *path;      /* where it will stand */
     char *temporary; /* where it is written; NULL for standard output */
+    size_t noted;    /* for ms_output_discard_all */
 } ms_output;
 
 /** Opens a temporary file in the folder of `path`. @return MS_OK; MS_ERR_IO; MS_ERR_NOMEM */
@@ -87,6 +88,10 @@ MS_API ms_status ms_output_open(ms_output *output, const char *path, ms_error *e
  * @return `status` if that is not MS_OK; MS_OK; MS_ERR_IO
  */
 MS_API ms_status ms_output_close(ms_output *output, ms_status status, ms_error *err);
+
+/** Removes the temporary files of all outputs that are open, as a process does that a signal ends: may be called by the
+ * handler of one. Such an output fails when it is closed. */
+MS_API void ms_output_discard_all(void);
 
 /**
  * The path of a file that another one names: from the folder of that one, unless it begins at the root.

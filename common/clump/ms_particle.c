@@ -6,25 +6,51 @@
 
 #include "voxel/ms_raster.h"
 
+/* Of masses and moments, so that what is made of them is a number, too: sums over all particles, time steps. */
+static const double LEAST = 1e-290, MOST = 1e290;
+
 static int is_positive(double value)
 {
     return isfinite(value) && value >= DBL_MIN;
 }
 
-static ms_status check_particle(ms_particle *particle, ms_error *err)
+static int is_sound_amount(double value)
 {
-    for (int k = 0; k < 3; k++) {
-        if (!is_positive(particle->mass) || !isfinite(particle->centre[k]) || !is_positive(particle->inertia[k][k])) {
-            *particle = (ms_particle){0};
-            return ms_fail(err, MS_ERR_ARG,
-                           "mass or inertia of the particle is 0 or not finite in SI; check density, unit and scale");
-        }
-    }
-    return MS_OK;
+    return value >= LEAST && value <= MOST;
 }
 
-/* No body is as dense, and what follows from it, as the modulus that bears a drop, stays finite. */
-static const double MOST_DENSITY = 1e30;
+ms_status ms_particle_check(const ms_particle *p, ms_error *err)
+{
+    const double density = p->density > 0 ? p->density : 1; /* some formats have what is of unit density */
+    int is_sound = is_positive(p->scale) && is_sound_amount(p->mass) && is_sound_amount(p->mass / density);
+    for (int k = 0; k < 3; k++) {
+        is_sound = is_sound && isfinite(p->centre[k]);
+        for (int l = 0; l < 3; l++) {
+            const double moment = fabs(p->inertia[k][l]);
+            is_sound = is_sound && moment <= MOST && moment / density <= MOST &&
+                       (k != l || (p->inertia[k][k] >= LEAST && moment / density >= LEAST));
+        }
+    }
+    if (p->density != 0 && !(p->density >= MS_PARTICLE_LEAST_DENSITY && p->density <= MS_PARTICLE_MOST_DENSITY)) {
+        return ms_fail(err, MS_ERR_ARG, "a density of %g kg/m^3 is that of no body; it is from %g to %g", p->density,
+                       MS_PARTICLE_LEAST_DENSITY, MS_PARTICLE_MOST_DENSITY);
+    }
+    return is_sound ? MS_OK
+                    : ms_fail(err, MS_ERR_ARG,
+                              "mass, volume or inertia of the particle is not from %g to %g in SI; check density, "
+                              "unit and scale",
+                              LEAST, MOST);
+}
+
+/* Zeros are left of one that is none. */
+static ms_status check_made(ms_particle *particle, ms_error *err)
+{
+    const ms_status status = ms_particle_check(particle, err);
+    if (status != MS_OK) {
+        *particle = (ms_particle){0};
+    }
+    return status;
+}
 
 ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, double density, double scale, ms_error *err)
 {
@@ -32,9 +58,6 @@ ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, doub
     if (!is_positive(density) || !is_positive(scale) || !is_positive(body->volume)) {
         return ms_fail(err, MS_ERR_ARG, "density %g, scale %g and volume %g must be above 0 and finite", density, scale,
                        body->volume);
-    }
-    if (density > MOST_DENSITY) {
-        return ms_fail(err, MS_ERR_ARG, "a density of %g kg/m^3 is that of no body; at most %g", density, MOST_DENSITY);
     }
     particle->scale = scale;
     particle->density = density;
@@ -45,7 +68,7 @@ ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, doub
             particle->inertia[i][j] = density * body->inertia[i][j] * scale * scale * scale * scale * scale;
         }
     }
-    return check_particle(particle, err);
+    return check_made(particle, err);
 }
 
 /* Adds the tensor of a solid sphere about the centre, in the clump's unit; nothing is taken away from the diagonal, so
@@ -85,7 +108,7 @@ ms_status ms_particle_from_spheres(ms_particle *particle, const ms_clump *clump,
         particle->inertia[i / 3][i % 3] *= scale * scale;
     }
     particle->scale = scale;
-    return check_particle(particle, err);
+    return check_made(particle, err);
 }
 
 double ms_particle_gyration(const ms_particle *p)

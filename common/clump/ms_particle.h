@@ -7,6 +7,11 @@
 
 MS_C_BEGIN
 
+/* Of densities, kg/m^3: no body is as thin or as dense, and what follows from it, as the modulus that bears a drop,
+ * stays finite. */
+#define MS_PARTICLE_LEAST_DENSITY 1e-30
+#define MS_PARTICLE_MOST_DENSITY 1e30
+
 typedef struct ms_particle {
     double scale;         /* metres in a unit of length of the clump */
     double density;       /* of its matter, kg/m^3; 0 where it is not known */
@@ -16,14 +21,22 @@ typedef struct ms_particle {
 } ms_particle;
 
 /**
+ * Is it one of which a template can be made? A density that is known is from 1e-30 to 1e30 kg/m^3; scale and centre are
+ * finite; mass and moments, and both over the density, are from 1e-290 to 1e290, so that sums over all particles and
+ * quotients are numbers.
+ *
+ * @return MS_OK; MS_ERR_ARG
+ */
+MS_API ms_status ms_particle_check(const ms_particle *particle, ms_error *err);
+
+/**
  * A homogeneous particle.
  *
  * @param[out] particle zeros on failure
  * @param      body     its shape, of unit density, in the clump's unit
- * @param      density  kg/m^3, at most 1e30
+ * @param      density  kg/m^3, from 1e-30 to 1e30
  * @param      scale    metres in a unit of length of the clump
- * @return MS_OK; MS_ERR_ARG where a value is not above 0 and within bounds, or mass or inertia leave the range of
- *         doubles
+ * @return MS_OK; MS_ERR_ARG where a value is not above 0 and within bounds; as ms_particle_check
  */
 MS_API ms_status ms_particle_from_body(ms_particle *particle, const ms_body *body, double density, double scale,
                                        ms_error *err);

@@ -28,7 +28,7 @@ ms_status ms_mass_flag(int *taken, ms_mass_flags *flags, const char *name, const
         const char *name;
         double *value, lo, hi;
     } numbers[] = {
-        {"density", &flags->density, DBL_MIN, DBL_MAX},
+        {"density", &flags->density, MS_PARTICLE_LEAST_DENSITY, MS_PARTICLE_MOST_DENSITY},
         {"scale", &flags->scale, DBL_MIN, DBL_MAX},
         {"least-mass", &flags->options.masses.least, DBL_MIN, 1},
         {"most-mass", &flags->options.masses.most, DBL_MIN, 1},

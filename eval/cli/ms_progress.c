@@ -9,6 +9,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "ms_signals.h"
+
 enum { WIDTH = 79 }; /* a line that is broken could not be wiped */
 
 /* Below these a time left would be a guess, and a line a flicker. */
@@ -29,11 +31,12 @@ static struct terminal {
     int is_open, is_drawn, is_left; /* to another who draws */
 } terminal = {.lock = PTHREAD_MUTEX_INITIALIZER, .closed = PTHREAD_COND_INITIALIZER};
 
-/* Without spheres there is nothing to keep, and it may be long until the first: the signal does what it would without
- * this, as SA_RESETHAND has put that back. */
+/* Without spheres there is nothing to keep, and it may be long until the first: the signal ends the program, as does a
+ * second one. */
 static void note_signal(int number)
 {
     is_interrupted = 1;
+    ms_signals_catch(number, NULL);
     if (!has_spheres) {
         raise(number);
     }
@@ -239,14 +242,7 @@ void ms_progress_say_remarks(ms_run *run, ms_progress_line *line)
 
 void ms_progress_catch(int is_caught)
 {
-    const int numbers[] = {SIGINT, SIGTERM};
     has_spheres = 0;
-    for (size_t s = 0; s < sizeof numbers / sizeof *numbers; s++) {
-        struct sigaction before, action = {.sa_flags = (int)SA_RESETHAND};
-        action.sa_handler = is_caught ? note_signal : SIG_DFL;
-        sigemptyset(&action.sa_mask);
-        if (sigaction(numbers[s], NULL, &before) == 0 && before.sa_handler != SIG_IGN) { /* as nohup wants it */
-            sigaction(numbers[s], &action, NULL);
-        }
-    }
+    ms_signals_catch(SIGINT, is_caught ? note_signal : NULL);
+    ms_signals_catch(SIGTERM, is_caught ? note_signal : NULL);
 }

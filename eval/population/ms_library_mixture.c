@@ -93,6 +93,15 @@ static ms_status take_template(template_of *t, const ms_library_grain *grain, co
     return status == MS_OK ? find_density(t, grain, err) : status;
 }
 
+/* The table may say what no particle is. */
+static ms_status check_kind(const ms_placed *kind, ms_error *err)
+{
+    ms_error cause;
+    const ms_status status = ms_particle_check(&kind->particle, &cause);
+    return status == MS_OK ? status
+                           : ms_fail(err, status, "%s, %g times its size: %s", kind->name, kind->scale, cause.text);
+}
+
 /* A kind of particles: a grain in one size, which is `scale` times its own. */
 static ms_status add_kind(ms_packing *mixture, const template_of *t, const ms_grain_place *place, double scale,
                           double share, ms_error *err)
@@ -111,7 +120,7 @@ static ms_status add_kind(ms_packing *mixture, const template_of *t, const ms_gr
     for (int m = 0; m < 3; m++) {
         kind->particle.inertia[m][m] = place->moment[m] * pow(scale, 5);
     }
-    return status;
+    return status == MS_OK ? check_kind(kind, err) : status;
 }
 
 /* Grains without weight are left out. */

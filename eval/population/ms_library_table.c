@@ -56,6 +56,7 @@ ms_status ms_library_table_read(ms_library_table *table, const char *folder, ms_
     ms_status status = ms_csv_read(&csv, path, header, err);
     free(header);
     if (status != MS_OK) {
+        ms_csv_close(&csv);
         return status;
     }
     table->grain = calloc(csv.n_rows + 1, sizeof *table->grain);

@@ -121,7 +121,7 @@ static void report(size_t chosen, void *context)
 }
 
 /* The spheres of a step: of those that are worth it the ones that do not overlap, so that what they gain adds up. */
-static size_t choose_best_spheres(ms_ball *chosen, size_t limit, best *b)
+static size_t choose_best_spheres(ms_ball *chosen, best *b)
 {
     const ms_mss_run *m = b->seek->m;
     const double most = count_gains(b->seek);
@@ -133,21 +133,21 @@ static size_t choose_best_spheres(ms_ball *chosen, size_t limit, best *b)
                                .report = report,
                                .context = b};
     ms_grid_at(rule.centroid, &m->run->target->grid, m->run->target->body.centroid);
-    return ms_mss_select(chosen, limit, m->candidates, m->n_candidates, m->field.raster.ball, m->field.raster.n_balls,
-                         &rule);
+    return ms_mss_select(chosen, m->n_candidates, m->candidates, m->n_candidates, m->field.raster.ball,
+                         m->field.raster.n_balls, &rule);
 }
 
 /* Fits the spheres of a step on the target's own lattice, unless their distances were asked for. @return how many gain
- * something there */
-static size_t fit_best_spheres(ms_ball *chosen, size_t count, const best *b)
+ * something there, up to so many */
+static size_t fit_best_spheres(ms_ball *chosen, size_t count, size_t most, const best *b)
 {
     ms_mss_run *own = b->own.m;
     const ms_mss_coarse *coarse = b->seek->m->coarse;
     size_t fitted = 0;
     if (ms_mss_run_option(own, MS_MSS_SPACING) > 0) {
-        return count;
+        return count < most ? count : most;
     }
-    for (size_t c = 0; c < count; c++) {
+    for (size_t c = 0; c < count && fitted < most; c++) {
         ms_ball ball = coarse ? ms_mss_coarse_target_ball(coarse, &chosen[c]) : chosen[c];
         if (ms_mss_fit_place(&ball, &b->own.open, own) > 0) {
             chosen[fitted++] = ball;
@@ -217,7 +217,9 @@ static double largest_radius(const ms_ball *ball, size_t count)
     return largest;
 }
 
-/* One step: place what is worth placing, or look closer. @param[out] done the coarse lattice has no more to offer */
+/* One step: place what is worth placing, or look closer. What a step has to offer does not depend on how many spheres
+ * are left to be placed, so that a clump is the beginning of any larger one.
+ * @param[out] done the coarse lattice has no more to offer */
 static ms_status take_best_step(int *done, ms_clump *clump, ms_stop_reason *reason, best *b, ms_error *err)
 {
     ms_mss_run *m = b->seek->m;
@@ -226,16 +228,15 @@ static ms_status take_best_step(int *done, ms_clump *clump, ms_stop_reason *reas
         *reason = MS_STOP_SPHERES;
         return MS_OK;
     }
-    const size_t limit = m->n_candidates < left ? m->n_candidates : left;
-    ms_ball *chosen = malloc((limit + 1) * sizeof *chosen);
+    ms_ball *chosen = malloc((m->n_candidates + 1) * sizeof *chosen);
     if (!chosen) {
-        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", limit);
+        return ms_fail(err, MS_ERR_NOMEM, "no memory for %zu spheres", m->n_candidates);
     }
-    size_t taken = choose_best_spheres(chosen, limit, b);
+    size_t taken = choose_best_spheres(chosen, b);
     if (m->coarse && largest_radius(chosen, taken) < LEAST_COARSE) {
         taken = 0;
     }
-    taken = fit_best_spheres(chosen, taken, b);
+    taken = fit_best_spheres(chosen, taken, left, b);
     ms_status status = MS_OK;
     if (taken > 0) {
         status = add_best_spheres(clump, reason, b, chosen, taken, err);

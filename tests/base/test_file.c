@@ -104,6 +104,31 @@ static void two_writers_of_one_path_do_not_meet(void **state)
     assert_int_equal(count_files(), 1);
 }
 
+/* As by a signal that ends the process; one of them has the place in the list of another that was closed. */
+static void open_outputs_can_be_discarded(void **state)
+{
+    char path[128], other[128];
+    ms_output output, done, more;
+    ms_error err;
+    (void)state;
+    write_file(path, folder, "a.csv", "old", 3);
+    snprintf(other, sizeof other, "%s/b.csv", folder);
+    assert_int_equal(ms_output_open(&done, other, NULL), MS_OK);
+    assert_int_equal(ms_output_open(&output, path, NULL), MS_OK);
+    assert_int_equal(ms_output_close(&done, MS_OK, NULL), MS_OK);
+    assert_int_equal(ms_output_open(&more, other, NULL), MS_OK);
+    assert_int_equal(count_files(), 4);
+    ms_output_discard_all();
+    assert_int_equal(count_files(), 2);
+    assert_int_equal(ms_output_close(&output, MS_OK, &err), MS_ERR_IO);
+    assert_non_null(strstr(err.text, "could not be written"));
+    assert_int_equal(ms_output_close(&more, MS_ERR_SHAPE, NULL), MS_ERR_SHAPE);
+    read_back(path, "old");
+    assert_int_equal(write_text(path, "new", MS_OK, NULL), MS_OK);
+    assert_int_equal(unlink(other), 0);
+    assert_int_equal(count_files(), 1);
+}
+
 static void a_link_stays_a_link(void **state)
 {
     char path[128];
@@ -277,6 +302,7 @@ int main(void)
         WITH_FOLDER(a_file_is_written_and_read_back),
         WITH_FOLDER(a_failed_write_leaves_the_old_file),
         WITH_FOLDER(two_writers_of_one_path_do_not_meet),
+        WITH_FOLDER(open_outputs_can_be_discarded),
         WITH_FOLDER(a_link_stays_a_link),
         cmocka_unit_test(a_device_is_written_to_and_stays_one),
         WITH_FOLDER(what_cannot_be_written_is_refused),

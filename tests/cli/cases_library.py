@@ -136,6 +136,18 @@ class Library(Case):
         self.write("mended/grains.csv", lines[0])
         self.assert_refused("grains", "--choose", "1", "mended", "-o", "none", code=1, says=("no grain has a clump",))
 
+    def test_moments_beyond_numbers_are_refused(self):
+        """In another size a moment that is a number may be none."""
+        self.mskit("grains", "stones", "-g", "mss", "-n", "3", "--cells", "12", "--density", "2650", "--format",
+                   "liggghts", "-o", "heavy")
+        lines = [line.split(",") for line in self.read("heavy/grains.csv").decode().splitlines(True)]
+        for fields in lines[1:]:
+            fields[lines[0].index("moment_2")] = "1.5e308"
+        self.write("heavy/grains.csv", "".join(map(",".join, lines)))
+        said = self.mskit("grains", "--choose", "3", "--classes", "2", "heavy", "-o", "few", code=1).err
+        self.assertIn("times its size: mass, volume or inertia of the particle is not from 1e-290", said)
+        self.assertNotIn("library.liggghts.in", os.listdir(self.path("few")))
+
     def test_what_cannot_be_is_refused(self):
         for args, word in ((["--choose", "30", "all"], "30"), (["--choose", "3", "stones"], "grains.csv"),
                            (["--choose", "3", "--classes", "50", "all"], "50")):

@@ -243,35 +243,28 @@ class Unfinished(Lost):
                          "where no output takes it, behind the first")
         self.assertEqual(self.mskit(*run, *hopeless, "--json", "-o", "c.csv", code=1).json["scores"]["spheres"], 2)
 
-    def interrupt(self, generator, number, *more, seconds=0):
-        """Starts a long run, sends the signal so long after it has begun, and returns it with its messages."""
+    LONG = ("generate", "grain.stl", "--cells", "150", "-j", "1")
+
+    def interrupt(self, generator, number, seconds):
+        """Starts a long run, sends the signal so long after its grid is told, and returns it with its messages."""
         self.shape("grain")
-        run = [MSKIT, "generate", "grain.stl", "-g", generator, "-n", "60000", "--cells", "150", "-j", "1",
-               "-o", "a.csv", *more]
-        with subprocess.Popen(run, cwd=self.dir, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
+        with subprocess.Popen([MSKIT, *self.LONG, "-g", generator, "-n", "60000", "-o", "a.csv"], cwd=self.dir,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
             process.stderr.readline()  # the size of the grid
-            self.wait_until_caught(process, number, generator != "variational")
             time.sleep(seconds)
             process.send_signal(number)
             err = process.communicate(timeout=TIMEOUT)[1].decode()
         return process.returncode, err
 
-    @staticmethod
-    def wait_until_caught(process, number, is_caught):
-        """By Linux's list of signals caught; elsewhere, or where it is not to be, the method has begun after a
-        while."""
-        status = f"/proc/{process.pid}/status"
-        for _ in range(20 * TIMEOUT if is_caught and os.path.exists(status) else 20):
-            time.sleep(0.05)
-            with open(status, encoding="ascii") if os.path.exists(status) else io.StringIO("SigCgt: 0") as f:
-                mask = next(int(line.split()[1], 16) for line in f if line.startswith("SigCgt"))
-            if mask >> (number - 1) & 1:
-                break
+    def time_first_sphere(self, generator):
+        """When, after its grid is told, a run begins with its method, and how long that takes to the first sphere."""
+        seconds = self.mskit(*self.LONG, "-g", generator, "-n", "1", "--json").json["seconds"]
+        return seconds["voxelize"] + seconds["distance"], seconds["generate"]
 
     def test_interrupted(self):
         for number in (signal.SIGINT, signal.SIGTERM):
-            for seconds in (0.5, 2, 8, 30, 120):  # until there are spheres, however busy the machine is
-                code, err = self.interrupt("mss", number, seconds=seconds)
+            for seconds in (1, 3, 9, 30, 120):  # until there are spheres, however busy the machine is
+                code, err = self.interrupt("mss", number, seconds)
                 if code != -number:
                     break
             self.assertEqual(code, 1, err)
@@ -280,9 +273,29 @@ class Unfinished(Lost):
             self.mskit("generate", "grain.stl", "-g", "mss", "-n", str(len(spheres)), "--cells", "150", "-o", "b.csv")
             self.assertEqual(self.read("a.csv"), self.read("b.csv"), "what the method gives when asked for as many")
 
+    def test_interrupted_while_it_writes(self):
+        """No file is left half written, under whatever name."""
+        for number in (signal.SIGHUP, signal.SIGINT, signal.SIGABRT, signal.SIGPIPE, signal.SIGTERM):
+            for _ in range(10):  # until the signal comes before the end
+                with subprocess.Popen([MSKIT, "shape", "ball", "fineness=500", "-o", "ball.stl"], cwd=self.dir,
+                                      stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+                    while process.poll() is None and not any(f.endswith(".tmp") for f in self.files()):
+                        pass
+                    process.send_signal(number)
+                    code = process.wait(TIMEOUT)
+                if code:
+                    break
+            self.assertEqual(code, -number)
+            self.assertEqual([f for f in self.files() if f.endswith(".tmp")], [])
+
     def test_interrupted_before_there_is_a_clump(self):
         """Of setcover the search for candidates takes long: the signal must not wait for the first sphere."""
+        self.shape("grain")
         for generator in ("variational", "setcover"):
-            code, _ = self.interrupt(generator, signal.SIGINT)
+            for _ in range(5):  # until it comes between begin and first sphere, however busy the machine is
+                begin, takes = self.time_first_sphere(generator) if generator == "setcover" else (1, 0)
+                code, _ = self.interrupt(generator, signal.SIGINT, begin + 0.3 * takes)
+                if code == -signal.SIGINT:
+                    break
             self.assertEqual(code, -signal.SIGINT)
             self.assertEqual([f for f in self.files() if "a.csv" in f], [])

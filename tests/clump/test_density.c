@@ -67,6 +67,13 @@ static void a_ball_in_millimetres(void **state)
     expect_close(ms_particle_gyration(&p), 2 * sqrt(0.6), 1e-14);
     assert_int_equal(ms_particle_from_body(&p, &ball, 0, 1, NULL), MS_ERR_ARG);
     assert_int_equal(ms_particle_from_body(&p, &ball, 1e31, 1, NULL), MS_ERR_ARG);
+    assert_int_equal(ms_particle_from_body(&p, &ball, 0.9e-30, 1, NULL), MS_ERR_ARG);
+    /* whose mass and inertia are numbers, but not its volume, or its inertia over the density */
+    assert_int_equal(ms_particle_from_body(&p, &ball, 1e-30, 1e60, NULL), MS_ERR_ARG);
+    assert_int_equal(ms_particle_from_body(&p, &ball, 1e-30, 0.9e58, NULL), MS_ERR_ARG);
+    assert_int_equal(ms_particle_from_body(&p, &ball, 1e30, 1e-60, NULL), MS_ERR_ARG);
+    assert_int_equal(ms_particle_from_body(&p, &ball, 1e-30, 1e57, NULL), MS_OK);
+    assert_int_equal(ms_particle_from_body(&p, &ball, 1e30, 1e-57, NULL), MS_OK);
     assert_int_equal(ms_particle_from_body(&p, &ball, 1, (double)NAN, NULL), MS_ERR_ARG);
     assert_int_equal(ms_particle_from_body(&p, &ball, 1, 1e-200, NULL), MS_ERR_ARG);
     ball.volume = 0;

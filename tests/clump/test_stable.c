@@ -113,12 +113,30 @@ static void a_slim_body_is_twisted(void **state)
     expect_close(one * sqrt(2 * truth * stiffness_of(0.5)) / 2, sqrt(1 + z * z) - z, 0.01);
 }
 
+/* With the mass the step goes as its root, however small it is. */
+static void a_mote_has_its_step(void **state)
+{
+    static ms_sphere SPHERE = {.centre = {1, 2, -1}, .radius = 0.5};
+    const ms_clump clump = {.sphere = &SPHERE, .n_spheres = 1};
+    double one, all, mote, ignored;
+    ms_particle particle = {.mass = 1, .inertia = {{0.3, 0, 0}, {0, 0.4, 0}, {0, 0, 0.5}}};
+    (void)state;
+    ms_stable_step(&one, &all, &clump, 1, &particle, &LAW);
+    particle.mass = 1e-200;
+    for (int k = 0; k < 3; k++) {
+        particle.inertia[k][k] *= 1e-200;
+    }
+    ms_stable_step(&mote, &ignored, &clump, 1, &particle, &LAW);
+    expect_close(mote / one / 1e-100, 1, 1e-14);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_step_is_the_last_that_does_not_grow),
         cmocka_unit_test(levers_are_those_of_the_farthest_points),
         cmocka_unit_test(a_slim_body_is_twisted),
+        cmocka_unit_test(a_mote_has_its_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

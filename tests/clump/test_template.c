@@ -453,9 +453,17 @@ static void bad_files_are_refused(void **state)
     expect_refused(folder, "a.lammps", "t\n1 atoms\n\nCoords\n\n1 0 0 0\n\nDiameters\n\n1 0\n", "radii above 0");
     expect_refused(folder, "a.lammps",
                    "t\n1 atoms\ninf mass\n1 1 1 0 0 0 inertia\n\nCoords\n\n1 0 0 0\n\nDiameters\n\n1 1\n",
-                   "above 0 and finite");
+                   "not from 1e-290 to 1e+290");
     expect_refused(folder, "a.lammps", "t\n1 atoms\n1 mass\n\nCoords\n\n1 0 0 0\n\nDiameters\n\n1 1\n",
-                   "above 0 and finite");
+                   "not from 1e-290 to 1e+290");
+    expect_refused(folder, "a.json",
+                   "{\"spheres\": [[0,0,0,1]], \"particle\": {\"scale\": 1, \"density\": 1e-30, \"mass\": 1, "
+                   "\"centre\": [0,0,0], \"inertia\": [[1e280,0,0],[0,1e280,0],[0,0,1e280]]}}",
+                   "not from 1e-290 to 1e+290");
+    expect_refused(folder, "a.json",
+                   "{\"spheres\": [[0,0,0,1]], \"particle\": {\"scale\": 1, \"density\": 1e-31, \"mass\": 1, "
+                   "\"centre\": [0,0,0], \"inertia\": [[1,0,0],[0,1,0],[0,0,1]]}}",
+                   "that of no body");
     expect_refused(folder, "a.pfc", "clump", "written and not read");
     assert_int_equal(rmdir(folder), 0);
 }

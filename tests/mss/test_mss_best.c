@@ -27,6 +27,28 @@ static void smooth_bodies_get_their_spheres(void **state)
     }
 }
 
+/* Whatever step the last sphere falls into: some of a step are seen to gain nothing when they are fitted. */
+static void a_clump_of_any_number_begins_a_larger_one(void **state)
+{
+    enum { MOST = 66 };
+    ms_mesh mesh;
+    ms_target target;
+    (void)state;
+    make_shape(&mesh, "grain", "");
+    make_target(&target, &mesh, 40, MS_VOXEL_HALF);
+    mss_outcome whole = run_mss(&target, at_most(MOST), "");
+    assert_int_equal(whole.clump.n_spheres, MOST);
+    for (size_t n = 46; n < MOST; n += 4) {
+        mss_outcome part = run_mss(&target, at_most(n), "");
+        assert_int_equal(part.clump.n_spheres, n);
+        assert_memory_equal(part.clump.sphere, whole.clump.sphere, n * sizeof *part.clump.sphere);
+        ms_clump_free(&part.clump);
+    }
+    ms_clump_free(&whole.clump);
+    ms_target_free(&target);
+    ms_mesh_free(&mesh);
+}
+
 /* An ellipsoid by few cells runs out of spheres that lower the mismatch: the limit of the method (docs/methods/mss.md).
  * The run then says that it is exhausted, and its spheres are those of a run that asked for just as many. */
 static void smooth_ellipsoid_is_exhausted(void **state)
@@ -245,6 +267,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(smooth_bodies_get_their_spheres),
+        cmocka_unit_test(a_clump_of_any_number_begins_a_larger_one),
         cmocka_unit_test(smooth_ellipsoid_is_exhausted),
         cmocka_unit_test(polish_fits_radii),
         cmocka_unit_test(gains_are_counted),

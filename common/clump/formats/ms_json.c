@@ -33,6 +33,7 @@ static int take_number(double *out, const json_t *object, const char *key)
 static ms_status take_particle(ms_particle *particle, const json_t *json, const char *name, ms_error *err)
 {
     ms_particle p = {0};
+    ms_error cause;
     const json_t *rows = json_object_get(json, "inertia");
     int whole = take_number(&p.scale, json, "scale") && take_number(&p.density, json, "density") &&
                 take_number(&p.mass, json, "mass") && take_number_list(p.centre, 3, json_object_get(json, "centre"));
@@ -45,6 +46,10 @@ static ms_status take_particle(ms_particle *particle, const json_t *json, const 
                        "%s: its particle has not all of scale, density, mass, centre and inertia as numbers of their "
                        "ranges; write it again with mskit correct",
                        name);
+    }
+    if (ms_particle_check(&p, &cause) != MS_OK) {
+        memset(particle, 0, sizeof *particle);
+        return ms_fail(err, MS_ERR_FORMAT, "%s: %s", name, cause.text);
     }
     *particle = p;
     return MS_OK;

@@ -114,20 +114,15 @@ static ms_status read_line(molecule *t, ms_particle *particle, ms_text *text, ms
 /* A file may leave out mass and inertia; what it says must make sense. */
 static ms_status finish_particle(ms_particle *particle, const char *name, ms_error *err)
 {
-    const double *i[3] = {particle->inertia[0], particle->inertia[1], particle->inertia[2]};
-    if (particle->mass == 0 && i[0][0] == 0) {
+    if (particle->mass == 0 && particle->inertia[0][0] == 0) {
         memset(particle, 0, sizeof *particle);
         return MS_OK;
     }
-    for (int k = 0; k < 3; k++) {
-        if (!(particle->mass > 0) || !isfinite(particle->mass) || !(i[k][k] > 0) || !isfinite(i[k][k]) ||
-            !isfinite(particle->centre[k])) {
-            return ms_fail(err, MS_ERR_FORMAT, "%s: mass and inertia of its header must both be above 0 and finite",
-                           name);
-        }
-    }
+    ms_error cause;
     particle->scale = 1;
-    return MS_OK;
+    return ms_particle_check(particle, &cause) == MS_OK
+               ? MS_OK
+               : ms_fail(err, MS_ERR_FORMAT, "%s: mass and inertia of its header: %s", name, cause.text);
 }
 
 static const char LAST[] = "; the last ", CARRIERS[] = " are carriers of mass";

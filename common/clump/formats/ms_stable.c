@@ -6,19 +6,20 @@
 static const double DAMPING = 0.2553;
 
 /* What a push at a point moves that point by, at most: the largest eigenvalue of 1/m + C^T J C; J is 1/I, C is p x.
- * The second term has the eigenvalue 0 along p; the others have the sum t and the product d. */
+ * The second term has the eigenvalue 0 along p; the others have the sum t and the product d. All over 1/m, whose square
+ * need not be a number. */
 static double yield_at(const double p[3], const ms_particle *particle)
 {
     double j[3], t = 0, d = 0, square = 0;
     for (int k = 0; k < 3; k++) {
-        j[k] = 1 / particle->inertia[k][k];
+        j[k] = particle->mass / particle->inertia[k][k];
         square += p[k] * p[k];
     }
     for (int k = 0; k < 3; k++) {
         t += j[k] * (square - p[k] * p[k]);
         d += square * p[k] * p[k] * j[(k + 1) % 3] * j[(k + 2) % 3];
     }
-    return 1 / particle->mass + (t + sqrt(fmax(t * t - 4 * d, 0))) / 2;
+    return (1 + (t + sqrt(fmax(t * t - 4 * d, 0))) / 2) / particle->mass;
 }
 
 /* The same at the point of a sphere that is farthest from the centre of mass. */

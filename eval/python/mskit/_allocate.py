@@ -27,20 +27,28 @@ class Allocation(NamedTuple):
     slack: float
 
 
+def _listed(values: Any) -> Optional[List[Any]]:
+    """None for what is no list; so is an array without dimensions, which has a length that cannot be asked for."""
+    if isinstance(values, (str, bytes)) or not hasattr(values, "__len__") or getattr(values, "ndim", 1) == 0:
+        return None
+    return list(values)
+
+
 def _read_curves(curves: Any, particles: Any) -> Tuple[Any, List[numpy.ndarray]]:
     """As the library takes them; the second value keeps what it looks at."""
-    if isinstance(curves, (str, bytes)) or not hasattr(curves, "__len__") or len(curves) == 0:
+    listed = _listed(curves)
+    if not listed:
         raise ArgumentError(f"curves={show(curves)} is no list of curves of D")
-    counts = [1] * len(curves) if particles is None else particles
-    if isinstance(counts, (str, bytes)) or not hasattr(counts, "__len__") or len(counts) != len(curves):
-        raise ArgumentError(f"particles={show(particles)} is not a number for each of {len(curves)} shapes")
-    kept = [as_floats(curve) for curve in curves]
+    counts = [1] * len(listed) if particles is None else _listed(particles)
+    if counts is None or len(counts) != len(listed):
+        raise ArgumentError(f"particles={show(particles)} is not a number for each of {len(listed)} shapes")
+    kept = [as_floats(curve) for curve in listed]
     for at, curve in enumerate(kept):
         if curve.ndim != 1 or curve.size == 0 or not (numpy.isfinite(curve) & (curve >= 0)).all():
             raise ArgumentError(f"curve {at} is no array of D of the clumps of 1, 2, ... spheres")
     shares = ffi.new("ms_share[]", [
         {"particles": whole("particles", count, 1, _MOST_PARTICLES), "most": curve.size,
-         "error": ffi.from_buffer("double[]", curve)} for count, curve in zip(list(counts), kept)])
+         "error": ffi.from_buffer("double[]", curve)} for count, curve in zip(counts, kept)])
     return shares, kept
 
 
