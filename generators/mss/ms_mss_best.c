@@ -114,10 +114,12 @@ static int fit_best_mean(ms_ball *ball, void *context)
     return e > 0 && ms_mss_fit_radius(ball, e, &b->seek->open, m) > 0;
 }
 
+/* A step may choose more than are left to be placed. */
 static void report(size_t chosen, void *context)
 {
     const best *b = context;
-    ms_mss_run_report(chosen, b->own.m);
+    const size_t left = ms_mss_run_left(b->own.m);
+    ms_mss_run_report(chosen < left ? chosen : left, b->own.m);
 }
 
 /* The spheres of a step: of those that are worth it the ones that do not overlap, so that what they gain adds up. */
