@@ -11,8 +11,8 @@ alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine (liggghts
 Bed, material and what is measured are those of contrasts.py. Shape alone differs: all clumps are scaled to the volume
 of its candy, as are their moments. kinds is K, or 0 for the powder itself: 250 of its grains, drawn without replacement
 by the seed of the run. Of K grains there are as many as their weights say, to the nearest of 250 (largest remainders).
-    choice    the seed with which they were chosen, 0 of the powder itself (added when two runs of the first choice had
-              been looked at)
+    choice    the seed with which they were chosen, 0 of the powder itself; below 0, drawn at random by the seed of the
+              run and as many of each (added when two runs of the first choice had been looked at)
     contacts  particles and feet of the floor that a particle touches in the settled bed, on average
 """
 import argparse
@@ -70,9 +70,10 @@ def share_out(weighted):
 
 def draw(names, folder, kinds, choice, seed):
     """(name, count) of a bed's particles."""
-    if kinds:
+    if kinds and choice >= 0:
         return share_out(choose(folder, kinds, choice))
-    return [(name, 1) for name in sorted(numpy.random.default_rng(seed).choice(names, COUNT, replace=False))]
+    drawn = numpy.random.default_rng(seed).choice(names, kinds or COUNT, replace=False)
+    return share_out([(name, 1) for name in sorted(drawn)])
 
 
 def list_primes(count):
@@ -133,7 +134,9 @@ def run(folder, names, kinds, choice, seed):
 
 
 def name_grains(kinds, choice):
-    return "all" if kinds == "0" else kinds if choice == "1" else f"{kinds}, choice {choice}"
+    if kinds == "0":
+        return "all"
+    return f"{kinds}, at random" if int(choice) < 0 else kinds if choice == "1" else f"{kinds}, choice {choice}"
 
 
 def make_table(rows):

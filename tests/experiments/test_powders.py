@@ -33,6 +33,15 @@ class Shares(unittest.TestCase):
         self.assertNotEqual(one, other)
         self.assertEqual(one, library.draw(names, "", 0, 0, 1))
 
+    def test_kinds_drawn_at_random(self):
+        names = [f"{k:04}" for k in range(402)]
+        drawn = library.draw(names, "", 20, -1, 1)
+        self.assertEqual((len({name for name, _ in drawn}), sum(count for _, count in drawn)), (20, bed.COUNT))
+        self.assertEqual({count for _, count in drawn}, {12, 13})
+        self.assertNotEqual(drawn, library.draw(names, "", 20, -1, 2))
+        self.assertEqual([library.name_grains(*of) for of in (("0", "0"), ("5", "1"), ("5", "2"), ("5", "-1"))],
+                         ["all", "5", "5, choice 2", "5, at random"])
+
     def test_each_choice_stands_alone(self):
         rows = [{"kinds": kinds, "choice": choice, **dict.fromkeys(library.MEASURED, value)}
                 for kinds, choice, value in (("20", "2", 3), ("0", "0", 1), ("20", "1", 5), ("20", "2", 5),
