@@ -3,6 +3,7 @@ were changed."""
 import json
 import math
 import os
+import sys
 from collections import namedtuple
 
 from bed import FRICTION
@@ -79,7 +80,9 @@ def find_body(folder, cell):
     """Its mesh, and what else generate takes: the unit in which it has the candy's volume."""
     if cell.body == "candy":
         return find_candy(folder), ["--unit", "mm"]
-    volume = json.loads(run_mskit("info", GRAIN, "--json"))["volume"]
+    volume = json.loads(run_mskit("info", GRAIN, "--json")).get("volume")
+    if not volume:
+        sys.exit(f"{GRAIN}: a mesh that is not closed has no volume to scale it by; mskit info says what is open")
     return GRAIN, ["--scale", repr(1e-3 * (4 / 3 * math.pi * A * A * C / volume) ** (1 / 3))]
 
 
@@ -96,7 +99,7 @@ def write_clump(folder, path, cell):
 
 
 def find_spheres(template):
-    return template.replace(".liggghts", ".csv")
+    return os.path.splitext(template)[0] + ".csv"
 
 
 def write_spheres(folder, name):

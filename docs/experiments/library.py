@@ -136,7 +136,9 @@ def run(folder, names, kinds, choice, seed):
 def name_grains(kinds, choice):
     if kinds == "0":
         return "all"
-    return f"{kinds}, at random" if int(choice) < 0 else kinds if choice == "1" else f"{kinds}, choice {choice}"
+    if int(choice) < 0:
+        return f"{kinds}, at random"
+    return kinds if choice == "1" else f"{kinds}, choice {choice}"
 
 
 def make_table(rows):
