@@ -25,7 +25,7 @@ CELLS = {
     "euclid-20": Cell("euclid", 20),
     "setcover-10": Cell("setcover", 10),
     "sphere-0.1": Cell("sphere", 1, 1.0, 0.1),
-    "variational-60": Cell("variational", 60),
+    **{f"variational-{n}": Cell("variational", n) for n in (60, 120, 265)},
     "smooth": Cell("smooth", 0),  # the candy itself, a superquadric
     "smooth-ball": Cell("smooth", 1),  # the ball of sphere-0 as a superquadric
 }
@@ -38,11 +38,12 @@ FRICTIONS = {f"{name}-f{friction}": CELLS[name]._replace(friction=friction) for 
              (("smooth", 0.5), ("smooth", 0.7), ("variational-10", 0.2))}
 # A second body, of which nothing is fitted.
 GRAINS = {f"grain-{n}": Cell("variational", n, body="grain") for n in (2, 3, 5, 10, 20, 60)}
-SERIES = ["sphere-0"] + [f"variational-{n}" for n in (2, 3, 5, 10, 20, 60)]
+SERIES = ["sphere-0"] + [f"variational-{n}" for n in (2, 3, 5, 10, 20, 60, 120, 265)]
+ENVELOPE = 0.5  # radius over r_eq of the ball whose envelope is taken
 HIDDEN = 1e-2  # radius of a sphere within a single one, which LIGGGHTS wants beside it, over that of the latter
 
 COLUMNS = ["cell", "method", "n", "radii", "rolling", "dice", "volume", "mean_width", "normal_median", "convexity",
-           "contacts"]
+           "envelope", "contacts"]
 
 
 def find_cell(name):
@@ -161,12 +162,15 @@ def describe(folder, name):
     make(folder, name)
     scores = json.loads(run_mskit("score", write_spheres(folder, name), "--target", find_body(folder, cell)[0], "--deq",
                                   100, "--json"))["scores"]
-    contact = ask_contact(folder, name)
+    contact = ask_contact(folder, name, "--envelope", ENVELOPE)
+    (found,) = contact["envelopes"]
+    beyond = {what: found[what + "_envelope"] / found[what + "_volume"] for what in ("clump", "shape")}
     return {"cell": name, "method": cell.method, "n": cell.n, "radii": cell.radii, "rolling": cell.rolling,
             "dice": scores["dice"], "volume": scores["off_volume"],
             "mean_width": contact["clump"]["mean_width"] / contact["shape"]["mean_width"],
             "normal_median": scores["normal_median"],
             "convexity": scores["clump_convexity"] / scores["shape_convexity"],
+            "envelope": beyond["clump"] / beyond["shape"],
             "contacts": at_random(contact["contacts"])["contacts"]}
 
 

@@ -53,9 +53,11 @@ def show(difference, half, digits):
 
 def table_clumps(rows):
     return tables.markdown(
-        ["cell", "spheres", "D", "volume", "mean width", "normals, degrees", "convexity", "contacts of a pair"],
+        ["cell", "spheres", "D", "volume", "mean width", "normals, degrees", "convexity", "envelope",
+         "contacts of a pair"],
         [[r["cell"], r["n"], f"{float(r['dice']):.4f}", f"{float(r['volume']):.4f}", f"{float(r['mean_width']):.4f}",
-          f"{float(r['normal_median']):.1f}", f"{float(r['convexity']):.4f}", f"{float(r['contacts']):.2f}"]
+          f"{float(r['normal_median']):.1f}", f"{float(r['convexity']):.4f}", f"{float(r['envelope']):.4f}",
+          f"{float(r['contacts']):.2f}"]
          for r in tables.read(CLUMPS) if take(rows, "fraction", r["cell"])])
 
 
@@ -185,9 +187,10 @@ def table_predictors(rows):
 
 
 # columns of contrasts-clumps.csv, and the candy's own
-BODY = {"dice": 0.0, "mean_width": 1.0, "normal_median": 0.0, "convexity": 1.0, "contacts": 1.0}
+BODY = {"dice": 0.0, "mean_width": 1.0, "normal_median": 0.0, "convexity": 1.0, "envelope": 1.0,
+        "contacts": 1.0}
 PREDICTORS = {"": "none", "dice": "D", "mean_width": "mean width", "normal_median": "normals", "convexity": "convexity",
-              "contacts": "contacts of a pair"}
+              "envelope": "envelope", "contacts": "contacts of a pair"}
 # what is asked, cell, what it is held against
 CONTRASTS = [
     ("radii -3 %", "variational-10-small", "variational-10"), ("radii +3 %", "variational-10-large", "variational-10"),
