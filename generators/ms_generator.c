@@ -30,9 +30,7 @@ void ms_generator_remark(const ms_run *run, const char *format, ...)
 
 static void keep_remark(void *context, const char *sentence)
 {
-    ms_error *kept = context;
-    const size_t length = strlen(kept->text);
-    snprintf(kept->text + length, sizeof kept->text - length, "%s%s", length > 0 ? "; " : "", sentence);
+    ms_error_add(context, sentence);
 }
 
 void ms_generator_keep_remarks(ms_run *run, ms_error *kept)

@@ -68,9 +68,10 @@ static ms_status run_once(ms_clump *clump, ms_error *remarks, const ms_templates
 /* Scaled, where that is asked for, and judged. */
 static ms_status judge_template(ms_templates *t, size_t n, const ms_templates_how *how, ms_error *err)
 {
-    ms_equal_volume ignored;
+    ms_equal_volume scaled = {0};
     ms_metrics metrics;
-    ms_status status = how->equal ? ms_equal_volume_scale(&t->clump[n - 1], &ignored, how->equal, err) : MS_OK;
+    ms_status status = how->equal ? ms_equal_volume_scale(&t->clump[n - 1], &scaled, how->equal, err) : MS_OK;
+    ms_equal_volume_remark(&t->remarks[n - 1], &scaled);
     if (status == MS_OK) {
         status = ms_metrics_compute_kinds(&metrics, NULL, 0, how->run->target, &t->clump[n - 1], how->max_voxels, err);
     }

@@ -13,7 +13,7 @@ typedef struct ms_templates {
     ms_clump *clump;   /* of 1 .. most spheres; empty where a search has not run them */
     ms_score *score;   /* of each */
     double *dice;      /* D alone; NAN where a search has not run them */
-    ms_error *remarks; /* what the method remarks on each; "" without */
+    ms_error *remarks; /* on each, of the method and of a scale far from 1; "" without */
 } ms_templates;
 
 /** How they are made. All borrowed. */

@@ -2,6 +2,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 const char *ms_status_text(ms_status status)
 {
@@ -24,4 +25,10 @@ ms_status ms_fail(ms_error *err, ms_status status, const char *format, ...)
         va_end(args);
     }
     return status;
+}
+
+void ms_error_add(ms_error *text, const char *sentence)
+{
+    const size_t length = strlen(text->text);
+    snprintf(text->text + length, sizeof text->text - length, "%s%s", length > 0 ? "; " : "", sentence);
 }

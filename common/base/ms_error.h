@@ -60,6 +60,9 @@ MS_API const char *ms_status_text(ms_status status);
  */
 MS_API ms_status ms_fail(ms_error *err, ms_status status, const char *format, ...) MS_PRINTF(3, 4);
 
+/** Adds a sentence to what a text says already, "; " between; cut at the size of the message. */
+MS_API void ms_error_add(ms_error *text, const char *sentence);
+
 MS_C_END
 
 #endif

@@ -1,6 +1,7 @@
 #include "ms_equal_volume.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/ms_fibonacci.h"
@@ -56,4 +57,17 @@ ms_status ms_equal_volume_scale(ms_clump *clump, ms_equal_volume *done, const ms
         *done = (ms_equal_volume){scale, volume, volume / body->volume - 1, ms_equal_volume_width(clump)};
     }
     return status;
+}
+
+void ms_equal_volume_remark(ms_error *remarks, const ms_equal_volume *done)
+{
+    const double far = 0.1;
+    char sentence[256];
+    if (done->scale > 0 && fabs(done->scale - 1) > far) {
+        snprintf(sentence, sizeof sentence,
+                 "the spheres held %.3g %% of the shape's volume; scaled by %.3g they lie beside it; take more spheres, "
+                 "or a method that holds the volume while it fits (variational)",
+                 100 * pow(done->scale, -3), done->scale);
+        ms_error_add(remarks, sentence);
+    }
 }

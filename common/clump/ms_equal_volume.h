@@ -28,6 +28,14 @@ typedef struct ms_equal_volume {
  */
 MS_API ms_status ms_equal_volume_scale(ms_clump *clump, ms_equal_volume *done, const ms_body *body, ms_error *err);
 
+/**
+ * What is to be said of a clump that was scaled by more than a tenth: its spheres lie off the shape then.
+ *
+ * @param[in,out] remarks a sentence is added, with "; " behind what stands there (ms_error_add); left as it is of less
+ * @param         done    of ms_equal_volume_scale
+ */
+MS_API void ms_equal_volume_remark(ms_error *remarks, const ms_equal_volume *done);
+
 /** Mean over 2048 directions of the width of a clump that is not empty; good to 1e-3. */
 MS_API double ms_equal_volume_width(const ms_clump *clump);
 

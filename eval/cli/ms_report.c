@@ -246,14 +246,12 @@ void ms_report_equal_volume(FILE *stream, const ms_equal_volume *done)
     }
 }
 
-void ms_report_equal_volume_far(const char *name, const ms_equal_volume *done)
+void ms_report_equal_volume_remark(const char *name, const ms_equal_volume *done)
 {
-    const double far = 0.1;
-    if (done->scale > 0 && fabs(done->scale - 1) > far) {
-        fprintf(stderr,
-                "%s: the spheres held %.3g %% of the shape's volume; scaled by %.3g they lie beside it; take more "
-                "spheres, or a method that holds the volume while it fits (variational)\n",
-                name, 100 * pow(done->scale, -3), done->scale);
+    ms_error remark = {""};
+    ms_equal_volume_remark(&remark, done);
+    if (remark.text[0]) {
+        fprintf(stderr, "%s: %s\n", name, remark.text);
     }
 }
 

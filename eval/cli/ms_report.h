@@ -16,7 +16,7 @@ void ms_report_metrics(FILE *stream, const ms_metrics *metrics, const ms_target 
 void ms_report_equal_volume(FILE *stream, const ms_equal_volume *done);
 
 /** On stderr, where it scaled by more than a tenth: then spheres lie off the shape. @param name of shape or clump */
-void ms_report_equal_volume_far(const char *name, const ms_equal_volume *done);
+void ms_report_equal_volume_remark(const char *name, const ms_equal_volume *done);
 
 /** As ms_report_equal_volume; NULL where it was not asked for. */
 json_t *ms_report_equal_volume_json(const ms_equal_volume *done);

@@ -121,7 +121,7 @@ static ms_status execute_correct(const correct_arguments *a, ms_error *err)
     }
     if (status == MS_OK && a->equal_volume) {
         status = ms_equal_volume_scale(&clump, &volume, &body, err);
-        ms_report_equal_volume_far(a->clump, &volume);
+        ms_report_equal_volume_remark(a->clump, &volume);
     }
     if (status == MS_OK) {
         status = ms_mass_correct(&mass, &clump, &a->mass, &body, ms_input_max_voxels(&a->input), err);

@@ -406,7 +406,7 @@ static int execute_generate(const ms_command *command, generate_arguments *a)
     }
     if (status == MS_OK && a->recipe.equal_volume) {
         status = ms_equal_volume_scale(&r.clump, &r.volume, &input.target.body, &err);
-        ms_report_equal_volume_far(input.path, &r.volume);
+        ms_report_equal_volume_remark(input.path, &r.volume);
     }
     if (status == MS_OK) {
         status = score_clump(&r, a, &input, &err);

@@ -37,7 +37,7 @@ typedef struct ms_grain_row {
     ms_grain_place place;
     double seconds; /* of all that was done for it */
     int beside;     /* other grains at the same time */
-    ms_error cause; /* of a grain with a clump: what the method remarks on it; "" without */
+    ms_error cause; /* of a grain with a clump: what is remarked on it; "" without */
 } ms_grain_row;
 
 /** A row as a line of CSV without its end; NULL: the names of the columns. The caller frees it; NULL without memory. */

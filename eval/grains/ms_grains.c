@@ -211,6 +211,7 @@ static ms_status make_clump(ms_result *r, const ms_input *input, const ms_grain_
     const size_t max_voxels = ms_input_max_voxels(&how->input);
     if (status == MS_OK && how->recipe.equal_volume) {
         status = ms_equal_volume_scale(&r->clump, &r->volume, &input->target.body, err);
+        ms_equal_volume_remark(&r->remarks, &r->volume);
     }
     if (status == MS_OK) {
         status = ms_metrics_compute(&r->metrics, NULL, &input->target, &r->clump, max_voxels, err);

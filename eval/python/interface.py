@@ -196,6 +196,7 @@ ms_status ms_density_solve(ms_clump *clump, ms_density_report *report, const ms_
 ms_status ms_carriers_solve(ms_clump *clump, ms_density_report *report, const ms_particle *particle,
                             const ms_carriers_options *options, ms_error *err);
 ms_status ms_equal_volume_scale(ms_clump *clump, ms_equal_volume *done, const ms_body *body, ms_error *err);
+void ms_equal_volume_remark(ms_error *remarks, const ms_equal_volume *done);
 
 /* what is expected */
 typedef struct { ...; } ms_expect;

@@ -95,7 +95,7 @@ ms_share ms_scene_share(const ms_scene_shape *shape);
 /** The shape with the smallest sphere. */
 const ms_scene_shape *ms_scene_smallest(const ms_scene *scene);
 
-/** What the method remarks on the templates chosen, on standard error. */
+/** What is remarked on the templates chosen (ms_templates), on standard error. */
 void ms_scene_say_remarks(const ms_scene *scene);
 
 /** The goal, a line for each shape, and what they come to. */

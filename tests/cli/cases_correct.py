@@ -133,6 +133,12 @@ class Correct(Case):
         bowl = self.shape("bowl", "fineness=12")
         run = self.mskit("generate", bowl, "-g", "mss", "--cells", 20, "-n", 5, "--equal-volume", "-o", "e.csv")
         self.assert_says(run, "they lie beside it; take more spheres")
+        coarse = ("-g", "mss", "--cells", 20, "--equal-volume")
+        said = run.err[run.err.index("the spheres held"):run.err.index("(variational)")]
+        run = self.mskit("grains", bowl, *coarse, "-n", 5, "-o", "g")
+        self.assertIn(said, self.read("g/grains.csv").decode())
+        scene = self.mskit("scene", bowl, *coarse, "--max-spheres", 5, "--budget", 5, "--particles", 1)
+        self.assertRegex(scene.err, r"bowl\.stl: the spheres held [0-9.]+ % of the shape's volume; scaled by")
 
     def test_equal_volume_is_held(self):
         """variational leaves little to scale, unless it is told not to hold it."""

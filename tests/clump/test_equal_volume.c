@@ -44,6 +44,27 @@ static void two_balls_that_overlap(void **state)
     ms_clump_free(&clump);
 }
 
+/* By a tenth nothing is to be said; a sentence stands behind those that are there, within the room for them. */
+static void a_far_scale_is_said(void **state)
+{
+    static const char SAYS[] = "the spheres held 50 % of the shape's volume; scaled by 1.26 they lie beside it";
+    ms_error said = {""};
+    (void)state;
+    ms_equal_volume_remark(&said, &(ms_equal_volume){.scale = 1.0999});
+    ms_equal_volume_remark(&said, &(ms_equal_volume){.scale = 0.9001});
+    ms_equal_volume_remark(&said, &(ms_equal_volume){0});
+    assert_string_equal(said.text, "");
+    ms_equal_volume_remark(&said, &(ms_equal_volume){.scale = cbrt(2)});
+    assert_memory_equal(said.text, SAYS, strlen(SAYS));
+    const size_t length = strlen(said.text);
+    ms_equal_volume_remark(&said, &(ms_equal_volume){.scale = 0.8});
+    assert_memory_equal(said.text + length, "; the spheres held 195 %", 24);
+    for (int k = 0; k < 10; k++) {
+        ms_equal_volume_remark(&said, &(ms_equal_volume){.scale = 2});
+    }
+    assert_int_equal(strlen(said.text), sizeof said.text - 1);
+}
+
 static void what_has_no_volume(void **state)
 {
     ms_clump clump = {0};
@@ -62,6 +83,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ball),
         cmocka_unit_test(two_balls_that_overlap),
+        cmocka_unit_test(a_far_scale_is_said),
         cmocka_unit_test(what_has_no_volume),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

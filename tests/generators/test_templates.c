@@ -175,7 +175,8 @@ static void the_better_clump_has_the_number(void **state)
     ms_mesh_free(&mesh);
 }
 
-/* Each has the volume asked for before it is judged: here they are all the ball itself. */
+/* Each has the volume asked for before it is judged, and says how far it was from it: here they are all the ball itself.
+ */
 static void templates_of_equal_volume(void **state)
 {
     ms_target target;
@@ -187,9 +188,11 @@ static void templates_of_equal_volume(void **state)
     const ms_templates_how how = {.generator = &GROWING, .run = &run, .equal = &target.body, .max_voxels = 1u << 24};
     assert_int_equal(ms_templates_make(&all, &how, NULL), MS_OK);
     for (size_t n = 0; n < 3; n++) {
-        double volume, area;
+        double volume, area, held;
         assert_int_equal(ms_union_measure(&volume, &area, &all.clump[n], NULL), MS_OK);
         expect_close(volume, target.body.volume, 1e-4 * volume);
+        assert_int_equal(sscanf(all.remarks[n].text, "the spheres held %lf %% of the shape's volume", &held), 1);
+        expect_close(held, 100 * pow((double)(n + 1) / MOST, 0.75), 0.1);
         assert_true(all.dice[n] < 0.02);
     }
     ms_templates_free(&all);

@@ -159,6 +159,12 @@ class Same(PythonCase):
             self.expect_same(mskit.equal_volume(clump), "generate", self.grain, "-g", method, "-n", 6, "--cells", 20,
                              "--equal-volume")
 
+    def test_equal_volume_by_far_is_said(self):
+        far = mskit.Clump([(0, 0, 0)], [0.5])
+        with self.assertWarnsRegex(mskit.Remark, "^the spheres held 12[.]5 % of the shape's volume; scaled by 2 they lie"):
+            scaled = mskit.equal_volume(far, mskit.body("ball", r=1, fineness=200))
+        self.assertAlmostEqual(scaled.radii[0], 1, delta=1e-3)
+
     def test_expected(self):
         numpy.save(self.path("v.npy"), labelled())
         for shape, flags in ((mskit.read(self.path(self.grain)), (self.grain,)),

@@ -362,11 +362,16 @@ def equal_volume(clump: Any, shape: Any = None) -> Clump:
     """The clump scaled about the centroid of the shape until the union of its spheres has the shape's volume.
 
     Of variational `mskit generate --equal-volume` has held the volume before: `generate(..., hold_volume=True)`.
+    Warns with a Remark of a scale beyond a tenth, where spheres lie off the shape.
     """
     clump = as_clump(clump)
     chosen, solid = _body_for(clump, shape)
     made = own(clump)
-    call(lib.ms_equal_volume_scale, made, ffi.new("ms_equal_volume *"), ffi.addressof(solid))
+    scaled, said = ffi.new("ms_equal_volume *"), ffi.new("ms_error *")
+    call(lib.ms_equal_volume_scale, made, scaled, ffi.addressof(solid))
+    lib.ms_equal_volume_remark(said, scaled)
+    if text(said.text):
+        remark(text(said.text))
     done = from_c(made, clump)
     done.shape = chosen
     return done

@@ -28,7 +28,7 @@ class Kind(NamedTuple):
     dice: (m,): D of the templates of 1, 2, ... spheres; NaN where a search has not made them.
     factor: its size / that of the shape.
     grid: on which the templates were made.
-    remarks: of the method on the template; "" without.
+    remarks: on the template, of the method and of a scale far from 1; "" without.
     """
     shape: Shape
     particles: int
