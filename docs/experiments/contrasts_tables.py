@@ -8,10 +8,11 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import tables  # noqa: E402
 from contrasts_cells import CELLS, CONTROLLED, CONTROLS, FRICTIONS, GRAINS, SERIES  # noqa: E402
-from intervals import interval, pool  # noqa: E402
+from intervals import interval, interval_by_own, pool  # noqa: E402
 
 RUNS, CLUMPS = (os.path.join(HERE, name) for name in ("contrasts.csv", "contrasts-clumps.csv"))
 STEP, RATE = 4e-5, 8.0  # of the experiment; other rows are checks of these
+LOOKED_AT = 2  # runs of a cell, the first of its rows: when the others were added
 # what was measured: its heading, digits, and the margin of equivalence, of the reference's mean or in degrees
 MEASURED = {"fraction": ("fraction", 4, ("relative", 0.01)), "start": ("start, degrees", 2, ("absolute", 1.0)),
             "stop": ("stop, degrees", 2, ("absolute", 1.0)),
@@ -123,6 +124,31 @@ def table_enough(rows, reference):
     return tables.markdown([f"cell - {reference}"] + [head for head, _, _ in MEASURED.values()], out)
 
 
+def judge_otherwise(rows, field, cell, reference, at_once):
+    """By which intervals of the difference it is not 0: that of the rule; with each cell's own variance; of the runs
+    alone that came when the first of the cell had been looked at; of so many differences at once."""
+    these, those = (take(rows, field, name) for name in (cell, reference))
+    pooled = pool_cells(rows, field)
+    found = {"rule": interval(these, those, *pooled), "at once": interval(these, those, *pooled, at_once)}
+    if min(len(these), len(those)) > LOOKED_AT:  # three runs or more, below which Welch's interval is none
+        late = [values for values in (take(rows, field, name)[LOOKED_AT:] for name in [*SERIES, reference]) if values]
+        found |= {"own": interval_by_own(these, those),
+                  "later": interval(these[LOOKED_AT:], those[LOOKED_AT:], *pool(late))}
+    ways = [way for way in ("rule", "own", "later", "at once") if way in found and is_different(*found[way], 0)]
+    return "all four" if len(ways) == 4 else ", ".join(ways) or "none"
+
+
+def table_otherwise(rows, reference):
+    cells = [cell for cell in SERIES if take(rows, "fraction", cell)]
+    if not cells or not take(rows, "fraction", reference):
+        return "None was run yet."
+    count = len(cells) * len(MEASURED)
+    return tables.markdown(
+        [f"cell - {reference}"] + [head for head, _, _ in MEASURED.values()],
+        [[cell] + [judge_otherwise(rows, field, cell, reference, count) for field in MEASURED]
+         for cell in cells])
+
+
 def table_checks(rows):
     """Other steps and rates, against the experiment's of the same cell."""
     out = []
@@ -135,6 +161,23 @@ def table_checks(rows):
         return "None was run yet."
     return tables.markdown(["cell", "step, s", "degrees a second", "runs"] + [head for head, _, _ in MEASURED.values()],
                            out)
+
+
+def table_steps(rows, reference):
+    """Cells against the reference by another step or rate, where both were run, beneath the experiment's."""
+    known = dict.fromkeys((r["cell"], float(r["step"]), float(r["rate"])) for r in rows)
+    out = []
+    for cell, *other in known:
+        if other != [STEP, RATE] and cell != reference and (reference, *other) in known:
+            for how in ([STEP, RATE], other):
+                pairs = {f: [take(rows, f, name, *how) for name in (cell, reference)] for f in MEASURED}
+                out.append([f"{cell} - {reference}", *(f"{x:g}" for x in how),
+                            ", ".join(str(len(values)) for values in pairs["fraction"])]
+                           + [show(*interval(*pairs[f], *pool_cells(rows, f)), MEASURED[f][1]) for f in MEASURED])
+    if not out:
+        return "None was run yet."
+    return tables.markdown(["difference", "step, s", "degrees a second", "runs"]
+                           + [head for head, _, _ in MEASURED.values()], out)
 
 
 def list_grains():
@@ -218,4 +261,5 @@ def fill():
         "bed-grain-contrasts": table_contrasts(rows, list_grains(), GRAINS),
         "bed-enough": table_enough(rows, [cell for cell in SERIES if take(rows, "fraction", cell)][-1]),
         "bed-smooth": table_enough(rows, "smooth"), "bed-predictors": table_predictors(rows),
-        "bed-checks": table_checks(rows)})
+        "bed-otherwise": table_otherwise(rows, "smooth"), "bed-checks": table_checks(rows),
+        "bed-steps": table_steps(rows, "smooth")})

@@ -26,7 +26,7 @@ import numpy
 import contrasts_tables
 from bed import COUNT, FRICTION, SIDE, run_bed
 from contrasts_cells import read_rows, tell_template, write_rows
-from intervals import interval, pool
+from intervals import interval, interval_by_own, pool
 from packing import DENSITY, MASS, RESTITUTION, SEEDS, YOUNG, read_spheres
 from program import run_mskit
 import tables  # of docs, where packing looks
@@ -141,6 +141,26 @@ def name_grains(kinds, choice):
     return kinds if choice == "1" else f"{kinds}, choice {choice}"
 
 
+def list_sets(rows, kinds, field, drawn):
+    """The mean of each set of so many grains: a choice is one, and each run of those that are drawn."""
+    sets = {}
+    for row in rows:
+        if int(row["kinds"]) == kinds and (int(row["choice"]) < 0) == drawn:
+            sets.setdefault(row["seed"] if drawn else row["choice"], []).append(float(row[field]))
+    return [numpy.mean(values) for values in sets.values()]
+
+
+def compare_sets(rows):
+    """Lines: drawn sets against chosen ones of as many grains, where there are two of each, a set as one value."""
+    out = []
+    for kinds in sorted({int(row["kinds"]) for row in rows if int(row["choice"]) < 0}):
+        pairs = {f: [list_sets(rows, kinds, f, drawn) for drawn in (True, False)] for f in MEASURED}
+        if min(map(len, pairs["fraction"])) > 1:
+            out.append([f"{kinds}, at random - chosen, by sets", ", ".join(str(len(x)) for x in pairs["fraction"])]
+                       + [contrasts_tables.show(*interval_by_own(*pairs[f]), MEASURED[f][1]) for f in MEASURED])
+    return out
+
+
 def make_table(rows):
     """Means, spread within rows of the same grains, and differences from the powder with half of their 90 %
     interval."""
@@ -160,7 +180,7 @@ def make_table(rows):
             out.append([f"{k} - all", ""]
                        + [contrasts_tables.show(*interval(values[f][k], values[f]["all"], *pooled[f]), digits)
                           for f, (_, digits) in MEASURED.items()])
-    return tables.markdown(["kinds", "runs"] + [head for head, _ in MEASURED.values()], out)
+    return tables.markdown(["kinds", "runs"] + [head for head, _ in MEASURED.values()], out + compare_sets(rows))
 
 
 def main():

@@ -104,6 +104,23 @@ class Intervals(unittest.TestCase):
             self.assertAlmostEqual(intervals.quantile(freedom), expected, delta=1e-3)
         self.assertAlmostEqual(intervals.quantile(3), 2.3534, delta=0.004 * 2.3534)
 
+        self.assertAlmostEqual(intervals.quantile(20, 0.995), 2.8453, delta=1e-3)
+        self.assertAlmostEqual(intervals.quantile(30, 0.999), 3.3852, delta=1e-3)
+
+    def test_each_with_its_own_variance(self):
+        """Welch, of four values with a variance of 2/3 and four with one of 16."""
+        difference, half = intervals.interval_by_own([-1.0, 0.0, 0.0, 1.0], [math.sqrt(24) * x for x in (-1, 0, 0, 1)])
+        self.assertAlmostEqual(difference, 0)
+        one, other = 2 / 3 / 4, 16 / 4
+        freedom = (one + other) ** 2 / (one ** 2 / 3 + other ** 2 / 3)
+        self.assertAlmostEqual(half, intervals.quantile(freedom) * math.sqrt(one + other))
+
+    def test_all_at_once(self):
+        """Of one interval nothing changes; of 28 each has 99.82 % below its upper end."""
+        one, all_of = (intervals.interval([1.0, 3.0], [2.0], 1.0, 52, count)[1] for count in (1, 28))
+        self.assertAlmostEqual(one, intervals.interval([1.0, 3.0], [2.0], 1.0, 52)[1])
+        self.assertAlmostEqual(all_of / one, 3.0506 / 1.6747, delta=2e-3)
+
     def test_pooled(self):
         deviation, freedom = intervals.pool([[1.0, 3.0], [10.0, 12.0, 14.0], [7.0]])
         self.assertEqual(freedom, 3)
@@ -129,20 +146,21 @@ class Intervals(unittest.TestCase):
 
     def test_enough_only_if_so_at_every_larger_number(self):
         """Five spheres agree with the reference and twenty do not: ten, between them, agrees and is not enough."""
-        means = dict(zip(tables.SERIES, (30.0, 25.0, 25.0, 20.0, 20.0, 25.0, 20.0)))
+        series = tables.SERIES[:7]  # to sixty spheres
+        means = dict(zip(series, (30.0, 25.0, 25.0, 20.0, 20.0, 25.0, 20.0)))
         rows = [{"cell": cell, "step": tables.STEP, "rate": tables.RATE, "start": mean + noise}
                 for cell, mean in means.items() for noise in (-0.01, 0.01)]
-        judged = tables.judge_series(rows, "start", tables.SERIES[-1])
-        self.assertEqual([line[0] for line in judged], tables.SERIES[:-1])
+        judged = tables.judge_series(rows, "start", series[-1])
+        self.assertEqual([line[0] for line in judged], series[:-1])
         self.assertEqual([line[3] for line in judged], ["outside"] * 3 + ["within"] * 2 + ["outside"])
         for row in rows:
             row["start"] -= 5 * (row["cell"] == "variational-20")
-        judged = tables.judge_series(rows, "start", tables.SERIES[-1])
+        judged = tables.judge_series(rows, "start", series[-1])
         self.assertEqual([line[3] for line in judged], ["outside"] * 3 + ["enough"] * 3)
         smooth = [{**row, "cell": "smooth"} for row in rows if row["cell"] == "variational-60"]
         judged = tables.judge_series(rows + smooth, "start", "smooth")
         self.assertEqual([(line[0], line[3]) for line in judged[-4:]],
-                         [(cell, "enough") for cell in tables.SERIES[-4:]])
+                         [(cell, "enough") for cell in series[-4:]])
 
     def test_a_predictor_that_holds_elsewhere_and_one_that_does_not(self):
         """The angle is 20 + 100 D, whatever the method; mean width goes with it in the series alone."""
@@ -183,6 +201,34 @@ class Intervals(unittest.TestCase):
                 for step, rate, value in ((tables.STEP, tables.RATE, 1), (tables.STEP / 2, tables.RATE, 2),
                                           (tables.STEP, tables.RATE / 2, 3), (tables.STEP, tables.RATE, 4))]
         self.assertEqual(tables.take(rows, "start", "setcover-10"), [1, 4])
+
+    def test_intervals_made_otherwise(self):
+        """The early runs of two cells differ by 10 and the later by 1, or not at all; a third cell has early ones
+        alone, and a fourth is so wide that all is within its interval."""
+        noise = (0.0, 0.2, 0.1, 0.0, 0.2)
+        rows = self.list_rows({"smooth": noise, "variational-2": (10.0, 10.2, 1.1, 1.0, 1.2),
+                               "variational-3": (10.0, 10.2, *noise[2:]), "variational-10": (30.0, -30.0, *noise[2:])})
+        for cell, expected in (("variational-2", "later"), ("variational-3", "none"), ("variational-10", "none")):
+            self.assertEqual(tables.judge_otherwise(rows, "start", cell, "smooth", 4), expected)
+        rows = self.list_rows({"smooth": noise, "variational-2": [9 + x for x in noise], "variational-5": (10.0, 10.2)})
+        for cell, expected in (("variational-2", "all four"), ("variational-5", "rule, at once")):
+            self.assertEqual(tables.judge_otherwise(rows, "start", cell, "smooth", 4), expected)
+
+    @staticmethod
+    def list_rows(values):
+        return [{"cell": cell, "step": tables.STEP, "rate": tables.RATE, "start": value}
+                for cell, of in values.items() for value in of]
+
+    def test_against_the_candy_by_another_step(self):
+        """Beside the experiment's, where the candy was run so, too: of a cell by another rate it was not."""
+        ways = ((tables.STEP, tables.RATE), (tables.STEP / 2, tables.RATE), (tables.STEP, tables.RATE / 2))
+        rows = [{"cell": cell, "step": step, "rate": rate, **dict.fromkeys(tables.MEASURED, value + noise)}
+                for cell, value, runs in (("variational-5", 3.0, ways), ("smooth", 1.0, ways[:2]))
+                for step, rate in runs for noise in (-0.01 * step / tables.STEP, 0.01)]
+        lines = [line.strip("| ").split(" | ") for line in tables.table_steps(rows, "smooth").splitlines()[2:]]
+        self.assertEqual([line[:4] for line in lines], [["variational-5 - smooth", f"{step:g}", "8", "2, 2"]
+                                                        for step in (tables.STEP, tables.STEP / 2)])
+        self.assertTrue(all(line[5].startswith("+2.00 +- ") for line in lines))
 
 
 class Clumps(unittest.TestCase):

@@ -53,6 +53,16 @@ class Shares(unittest.TestCase):
         self.assertEqual([table[k][2].split(" ")[0] for k in (0, 1, 2, 4, 5)],
                          ["2.0000", "5.0000", "4.0000", "+3.0000", "+2.0000"])
 
+    def test_a_set_is_one_value(self):
+        """Runs of one choice are one set, and each run of those drawn: 4 and 6 against 1 and 3 are 3 apart."""
+        rows = [{"kinds": "20", "choice": choice, "seed": seed, **dict.fromkeys(library.MEASURED, value)}
+                for choice, seed, value in (("-1", "7", 4), ("-1", "8", 6), ("1", "7", 0), ("1", "8", 2),
+                                             ("2", "7", 3))]
+        (line,) = library.compare_sets(rows)
+        self.assertEqual(line[:2], ["20, at random - chosen, by sets", "2, 2"])
+        self.assertEqual(line[3], "+3.00 +- 4.13")  # two degrees of freedom, and a variance of 2 each
+        self.assertEqual(library.compare_sets(rows[:4]), [])
+
     def test_primes(self):
         primes = library.list_primes(402)
         self.assertEqual((len(set(primes)), primes[:3]), (402, [1000003, 1000033, 1000037]))
