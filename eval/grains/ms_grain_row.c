@@ -119,6 +119,8 @@ static void print_results(FILE *stream, const ms_grain_row *row)
     for (const ms_measure *m = ms_measures; m->name; m++) {
         ms_csv_put_number(stream, r ? m->of_metrics(&r->metrics) : (double)NAN);
     }
+    ms_csv_put_number(stream, r && r->volume.scale > 0 ? r->volume.scale : (double)NAN);
+    ms_csv_put_number(stream, r && r->mass.corrected ? (double)r->clump.n_carriers : (double)NAN);
     print_masses(stream, r ? &r->mass : NULL);
     print_place(stream, &row->place);
     ms_csv_put_number(stream, row->seconds);
@@ -140,7 +142,7 @@ static void print_header(FILE *stream)
     for (const ms_measure *m = ms_measures; m->name; m++) {
         fprintf(stream, ",%s", ms_measure_column(m, m->in_compare));
     }
-    fputs(",epsilon,products_epsilon,centre_epsilon", stream);
+    fputs(",scale,carriers,epsilon,products_epsilon,centre_epsilon", stream);
     for (int c = 0; c < PLACE_COLUMNS; c++) {
         fprintf(stream, ",%s", PLACE[c]);
     }

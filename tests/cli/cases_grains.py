@@ -2,6 +2,7 @@
 import csv
 import fcntl
 import io
+import json
 import os
 import resource
 import signal
@@ -105,7 +106,19 @@ class Rows(Grains):
             masses = [float(line["mass"]) for line in parse(self.read("out/" + row["file"]).decode())]
             self.assert_close(sum(masses), 2000 * volume_mm3 * 1e-9, 1e-9, "mass")
             self.assertTrue(row["epsilon"] and row["centre_epsilon"])
+            self.assertEqual((row["scale"], row["carriers"]), ("", "0"))
         self.assertIn("a.lammps", os.listdir(self.path("out/0000")))
+
+    def test_scale_and_carriers(self):
+        """As generate says them of each."""
+        flags = ("-n", "12", "--cells", "16", "--density", "2000", "--unit", "mm", "--equal-volume", "--carriers")
+        for row in self.grains("stones", "-g", "setcover", *flags):
+            alone = self.mskit("generate", row["source"], "-g", "setcover", *flags, "--correct", "-o", "a.json",
+                               "--json").json
+            self.assertEqual(float(row["scale"]), alone["equal_volume"]["scale"])
+            clump = json.loads(self.read("a.json"))
+            self.assertEqual(int(row["carriers"]), len(clump["carriers"]))
+            self.assertGreater(int(row["carriers"]), 0)
 
     def test_a_folder_for_each_thousand(self):
         """By the number of the grain; those left out count, too."""
