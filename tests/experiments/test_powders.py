@@ -51,9 +51,11 @@ class Shares(unittest.TestCase):
         table = [[cell.strip() for cell in line.split("|")[1:4]] for line in library.make_table(rows).splitlines()[2:]]
         self.assertEqual([line[:2] for line in table],
                          [["all", "2"], ["20", "1"], ["20, choice 2", "2"], ["spread within", "2"], ["20 - all", ""],
-                          ["20, choice 2 - all", ""]])
-        self.assertEqual([table[k][2].split(" ")[0] for k in (0, 1, 2, 4, 5)],
-                         ["2.0000", "5.0000", "4.0000", "+3.0000", "+2.0000"])
+                          ["20, choice 2 - all", ""], ["all others - all", ""]])
+        self.assertEqual([table[k][2].split(" ")[0] for k in (0, 1, 2, 4, 5, 6)],
+                         ["2.0000", "5.0000", "4.0000", "+3.0000", "+2.0000", "+2.3333"])
+        table = library.make_table(rows[:2]).splitlines()
+        self.assertEqual([line.split(" | ")[0] for line in table[-2:]], ["| spread within", "| 20, choice 2 - all"])
 
     def test_a_set_is_one_value(self):
         """Runs of one choice are one set, and each run of those drawn: 4 and 6 against 1 and 3 are 3 apart."""

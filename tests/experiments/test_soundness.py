@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What docs/experiments/soundness.py makes of runs whose effects were planted, beside closed forms and all cases
-counted.
+"""What docs/experiments/soundness.py and library_forms.py make of runs whose effects were planted, beside closed forms
+and all cases counted.
 
     /usr/bin/python3 tests/experiments/test_soundness.py [-v]
 """
@@ -16,6 +16,7 @@ import numpy
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "experiments"))
 import contrasts_tables as tables  # noqa: E402
 import intervals  # noqa: E402
+import library_forms as forms  # noqa: E402
 import soundness  # noqa: E402
 
 
@@ -124,6 +125,74 @@ class Tables(unittest.TestCase):
                           "other verdicts against variational-2 by own variances",
                           "other verdicts against smooth by own variances"])
         self.assertEqual([lines[k][1] for k in (0, 2)], ["0.0001", "0.0001"])
+
+
+class Forms(unittest.TestCase):
+    def test_mean_and_spread_by_weights(self):
+        """Of 2 and 6, of which there are three times as many: 5, and the root of 3."""
+        found = forms.find_figures(numpy.array([[0.25, 0.75, 0], [0, 0, 1]]), numpy.array([[2.0], [6.0], [1e6]]))
+        for got, expected in zip(found.ravel(), (5, math.sqrt(3), 1e6, 0)):
+            self.assertAlmostEqual(got, expected, places=6)
+
+    def test_spheres(self):
+        """Two balls in touch: from 2 to 4 radii wide, 3 in the mean over all directions."""
+        found = forms.measure_spheres([[0, 0, -0.2, 0.2], [0, 0, 0.2, 0.2]], 0.1)
+        for name, expected in (("mean radius", 2), ("largest radius", 2), ("mean width", 6), ("least width", 4),
+                               ("largest width", 8)):
+            self.assertAlmostEqual(found[name], expected, delta=0.02, msg=name)
+
+    def test_a_grain_of_another_size(self):
+        """All figures are of form; one that is not there ends in a sentence."""
+        row = {"file": "a", "equivalent_diameter": "4", "dice": "0.1", "smallest_radius_ratio": "0.2", "moment_1": "2",
+               "moment_3": "5", "voxel_size": "0.5", "protrusion_rms": "0.4", "gap_rms": "0.8",
+               **{f"{what}_{name}": "0.7" for what in ("shape", "clump") for name in forms.OF_SHAPE}}
+        found = forms.measure_form(row, [[0, 0, 0, 0.002]])
+        self.assertAlmostEqual(found["protrusion"], 0.1)
+        larger = forms.measure_form({**row, "equivalent_diameter": "8", "voxel_size": "1", "moment_1": "64",
+                                     "moment_3": "160"}, [[0, 0, 0, 0.004]])
+        for name in found:
+            self.assertAlmostEqual(found[name], larger[name], msg=name)
+        with self.assertRaisesRegex(SystemExit, "^a: grains.csv has no dice of it"):
+            forms.measure_form({**row, "dice": ""}, [[0, 0, 0, 0.002]])
+
+    def test_a_set_that_lies_apart(self):
+        """Of 40 grains the five with the largest second figure, and every eighth; one grain has no spread."""
+        figures = numpy.random.default_rng(2).normal(size=(40, 3))
+        figures[:, 1] = numpy.arange(40)
+        for grains, far in ((range(35, 40), True), (range(3, 40, 8), False)):
+            weights = numpy.zeros(40)
+            weights[list(grains)] = 1 / 5
+            which, out, p = forms.judge_set(weights, figures)
+            self.assertEqual((p < 0.01, which == 1 and out > 2), (far, far), (which, out, p))
+        which, out, p = forms.judge_set(numpy.eye(40)[39], figures)
+        self.assertLess(which, 3)  # a mean
+
+    def test_a_figure_that_goes_with_the_fraction(self):
+        random = numpy.random.default_rng(4)
+        figures, values = random.normal(size=(12, 10)), random.normal(size=12)
+        self.assertGreater(forms.judge_sets(figures, values)[2], 0.05)
+        figures[:, 6] = 3 - 2 * values + 0.1 * random.normal(size=12)
+        which, correlation, p = forms.judge_sets(figures, values)
+        self.assertEqual((which, correlation < -0.9, p < 0.01), (6, True, True))
+
+    def test_sets(self):
+        """A choice is one set, with the mean of its runs, and each run of those drawn."""
+        rows = [{"kinds": kinds, "choice": choice, "seed": seed, "fraction": fraction} for kinds, choice, seed, fraction
+                in (("2", "1", "7", "0.5"), ("2", "1", "8", "0.7"), ("2", "-1", "7", "0.4"), ("2", "-1", "8", "0.3"))]
+        counts = {(2, 1, None): [("a", 50), ("c", 200)], (2, -1, 7): [("a", 125), ("b", 125)], (2, -1, 8): [("b", 250)]}
+        sets = forms.list_sets(rows, lambda *of: counts[of], ["a", "b", "c"])
+        self.assertEqual([(kinds, choice, weights.tolist()) for kinds, choice, weights, _ in sets],
+                         [(2, 1, [0.2, 0, 0.8]), (2, -1, [0.5, 0.5, 0]), (2, -1, [0, 1, 0])])
+        for got, expected in zip(sets, (0.6, 0.4, 0.3)):
+            self.assertAlmostEqual(got[3], expected)
+
+    def test_table(self):
+        self.assertEqual(forms.make_table([], numpy.zeros((0, 1)), []), "None was run yet.")
+        sets = [(2, 1, numpy.array([0.5, 0.5, 0]), 0.6), (0, 0, numpy.array([1, 1, 1]) / 3, 0.5)]
+        table = forms.make_table(sets, numpy.array([[1.0], [2.0], [4.0]]), ["mean of x", "spread of x"])
+        far, best = table.split("\n\n")
+        self.assertTrue(far.splitlines()[2].startswith("| 2 | "), far)
+        self.assertEqual((len(far.splitlines()), len(best.splitlines())), (3, 2))  # two sets lie on any line
 
 
 if __name__ == "__main__":
