@@ -29,6 +29,7 @@ import time
 import contrasts_cells as cells
 import contrasts_chart
 import contrasts_tables
+import soundness
 from bed import LIGGGHTS_SMOOTH, run_bed
 from packing import SEEDS
 from tables import add_row
@@ -91,6 +92,7 @@ def main():
             add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in COLUMNS if key not in ("particles", "version")), flush=True)
     contrasts_tables.fill()
+    soundness.fill()
     contrasts_chart.draw(contrasts_tables.read_runs(TABLE))
 
 

@@ -7,7 +7,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import tables  # noqa: E402
-from contrasts_cells import CELLS, CONTROLLED, CONTROLS, FRICTIONS, GRAINS, SERIES  # noqa: E402
+from contrasts_cells import CELLS, CONTROLLED, CONTROLS, FRICTIONS, GRAINS, SERIES, find_cell  # noqa: E402
 from intervals import interval, interval_by_own, pool  # noqa: E402
 
 RUNS, CLUMPS = (os.path.join(HERE, name) for name in ("contrasts.csv", "contrasts-clumps.csv"))
@@ -88,6 +88,26 @@ def table_contrasts(rows, contrasts, pooled=CELLS):
     if not out:
         return "None was run yet."
     return tables.markdown(["contrast", "difference", "runs"] + [head for head, _, _ in MEASURED.values()], out)
+
+
+def find_friction(rows, field, cell):
+    """At which the candy has what the cell has, by straight lines between its runs; NaN beyond them."""
+    value = statistics.mean(take(rows, field, cell))
+    points = sorted((statistics.mean(take(rows, field, name)), find_cell(name).friction)
+                    for name in ("smooth", *FRICTIONS) if name.startswith("smooth") and take(rows, field, name))
+    for (low, at), (high, to) in zip(points, points[1:]):
+        if low <= value <= high and low < high:
+            return at + (to - at) * (value - low) / (high - low)
+    return math.nan
+
+
+def table_friction(rows, cell="variational-10"):
+    table = table_contrasts(rows, FRICTION_CONTRASTS, ["smooth", "variational-10", *FRICTIONS])
+    if not take(rows, "fraction", cell) or not take(rows, "fraction", "smooth"):
+        return table
+    found = [find_friction(rows, field, cell) for field in MEASURED]
+    line = [f"friction of the candy for {cell}", "", "", *("" if math.isnan(x) else f"{x:.2f}" for x in found)]
+    return f"{table}\n| {' | '.join(line)} |"
 
 
 def list_controls():
@@ -256,7 +276,7 @@ def fill():
         "bed-clumps": table_clumps(rows), "bed-runs": table_runs(rows),
         "bed-contrasts": table_contrasts(rows, CONTRASTS),
         "bed-controls": table_contrasts(rows, list_controls(), [*CONTROLLED, *CONTROLS]),
-        "bed-friction": table_contrasts(rows, FRICTION_CONTRASTS, ["smooth", "variational-10", *FRICTIONS]),
+        "bed-friction": table_friction(rows),
         "bed-grain": table_runs(rows, GRAINS),
         "bed-grain-contrasts": table_contrasts(rows, list_grains(), GRAINS),
         "bed-enough": table_enough(rows, [cell for cell in SERIES if take(rows, "fraction", cell)][-1]),

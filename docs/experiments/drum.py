@@ -4,7 +4,7 @@ cover scaled to the volume of the candy.
 
     docs/experiments/drum.py [--spheres N,...] [--seeds K] [--work FOLDER] [--most MINUTES]
 
-Each row goes to drum.csv beside this file; rows that are there are not run again. Then the table of all of them goes
+Each row goes to drum.csv beside this file; rows that are there are not run again. Then two tables of all of them go
 into docs/behaviour.md, which --seeds 0 does alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine
 (liggghts). Takes numpy.
 
@@ -18,6 +18,8 @@ ten turns from the fourth on, every 0.1 s:
                  run had one; one of twenty or more is refused)
     correlation  its correlation time, s: the integral of its autocorrelation up to where that first falls below 0
     blocks       its means over 20 blocks of 1.2 s, taken as independent where they are ten times as long as that
+A second table holds runs beside their blocks, by shuffling as in soundness.py. A look has the variance of a block times
+its length over twice the correlation time. Yuan's angle is the mean of ten looks, far enough apart to be independent.
 """
 import argparse
 import math
@@ -30,9 +32,10 @@ import numpy
 
 import contrasts_tables
 from bed import root_or_nan
-from intervals import interval, pool, quantile
+from intervals import interval, interval_by_own, pool, quantile
 from packing import CLUMPS, ENERGY, MATERIAL, RESTITUTION, SEEDS, YOUNG, make_clump, read_dumps, run_engine
 from program import ask_version
+import soundness
 import tables  # of docs, where packing looks
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -40,6 +43,7 @@ TABLE = os.path.join(HERE, "drum.csv")
 COLUMNS = ["n", "dice", "seed", "step", "particles", "angle", "bare", "correlation", "blocks", "cpu_seconds", "version"]
 COUNT, RADIUS, LENGTH, TURN, LOOK = 130, 50.0, 40.0, 60 / 25, 0.1  # particles, mm, mm, s, s
 SKIPPED, TURNS, BLOCKS = 3, 10, 20
+LOOKS = 10  # of which Yuan took the mean
 
 # Of a wall that turns, LIGGGHTS 3.8.0 takes any direction but the axis, and for its speed radians a second.
 SCRIPT = """atom_style granular
@@ -133,13 +137,18 @@ def run(folder, n, seed):
             "blocks": " ".join(f"{block:.3f}" for block in blocks), "cpu_seconds": cpu, "version": ask_version()}
 
 
+def list_blocks(rows):
+    """By number of spheres, the blocks of each run."""
+    return {n: [[float(x) for x in row["blocks"].split()] for row in rows if int(row["n"]) == n]
+            for n in sorted({int(row["n"]) for row in rows})}
+
+
 def make_table(rows):
     """Mean and half of its 90 % interval by blocks, whose spread is pooled over all runs; difference from the most
     spheres."""
     if not rows:
         return "None was run yet."
-    blocks = {n: [[float(x) for x in row["blocks"].split()] for row in rows if int(row["n"]) == n]
-              for n in sorted({int(row["n"]) for row in rows})}
+    blocks = list_blocks(rows)
     deviation, freedom = pool([run for runs in blocks.values() for run in runs])
     joined = {n: [x for run in runs for x in run] for n, runs in blocks.items()}
     out, largest = [], max(joined)
@@ -153,6 +162,35 @@ def make_table(rows):
                     f"{statistics.mean(float(row['cpu_seconds']) for row in found):.0f}"])
     return tables.markdown(["spheres", "D", "runs", "angle, degrees", f"beside {largest} spheres", "correlation, s",
                             "CPU s"], out)
+
+
+def find_look(deviation, correlation):
+    """Standard deviation of one look, of that of blocks and the correlation time."""
+    return deviation * math.sqrt(TURNS * TURN / BLOCKS / (2 * correlation))
+
+
+def table_soundness(rows):
+    """Of each number of spheres what its blocks scatter, its runs beside what their blocks let expect, the difference
+    from the most spheres by variances of their own, and what a look scatters and two means of ten differ by; p of one
+    variance of all runs, and of no difference between runs of a number."""
+    if not rows:
+        return "None was run yet."
+    blocks, out = list_blocks(rows), []
+    joined = {n: [x for run in runs for x in run] for n, runs in blocks.items()}
+    for n, runs in blocks.items():
+        deviation, freedom = pool(runs)
+        look = find_look(deviation, statistics.mean(float(row["correlation"]) for row in rows if int(row["n"]) == n))
+        means = f"{statistics.stdev(map(statistics.mean, runs)):.2f}" if len(runs) > 1 else ""
+        own = contrasts_tables.show(*interval_by_own(joined[n], joined[max(joined)]), 2) if n < max(joined) else ""
+        out.append([str(n), f"{deviation:.2f}", means, f"{deviation / math.sqrt(BLOCKS):.2f}", own, f"{look:.2f}",
+                    f"{quantile(freedom) * look * math.sqrt(2 / LOOKS):.2f}"])
+    values, of_run, of_number = zip(*((x, f"{n}-{k}", n) for n, runs in blocks.items() for k, run in enumerate(runs)
+                                      for x in run))
+    variances = soundness.judge_variances([run for runs in blocks.values() for run in runs])
+    out.append(["p", f"{variances:.2f}", f"{soundness.judge_groups(values, of_run, of_number):.2f}", "", "", "", ""])
+    return tables.markdown(["spheres", "spread of blocks", "of the runs' means", "by their blocks",
+                            f"beside {max(joined)}, own variances", "spread of a look",
+                            f"interval of a difference, {LOOKS} looks"], out)
 
 
 def main():
@@ -173,7 +211,9 @@ def main():
             tables.add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in ("n", "seed", "angle", "correlation", "cpu_seconds")),
                   flush=True)
-    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"drum": make_table(tables.read_if_there(TABLE))})
+    rows = tables.read_if_there(TABLE)
+    tables.fill(os.path.join(HERE, "..", "behaviour.md"),
+                {"drum": make_table(rows), "drum-soundness": table_soundness(rows)})
 
 
 if __name__ == "__main__":

@@ -175,11 +175,14 @@ def make_table(rows):
     pooled = {f: pool(list(values[f].values())) for f in MEASURED}
     out.append(["spread within", str(pooled["fraction"][1])]
                + [f"{pooled[f][0]:.{digits}f}" for f, (_, digits) in MEASURED.items()])
-    for k in groups:
-        if k != "all" and "all" in groups:
-            out.append([f"{k} - all", ""]
-                       + [contrasts_tables.show(*interval(values[f][k], values[f]["all"], *pooled[f]), digits)
-                          for f, (_, digits) in MEASURED.items()])
+    others = {k: [k] for k in groups if k != "all"}
+    if len(others) > 1:
+        others["all others"] = list(others)
+    for name, of in others.items() if "all" in groups else ():
+        these = {f: [x for k in of for x in values[f][k]] for f in MEASURED}
+        out.append([f"{name} - all", ""]
+                   + [contrasts_tables.show(*interval(these[f], values[f]["all"], *pooled[f]), digits)
+                      for f, (_, digits) in MEASURED.items()])
     return tables.markdown(["kinds", "runs"] + [head for head, _ in MEASURED.values()], out + compare_sets(rows))
 
 

@@ -4,8 +4,8 @@ volume of the candy.
 
     docs/experiments/packing.py [--spheres N] [--seeds K] [--step SECONDS] [--work FOLDER] [--most MINUTES]
 
-Adds a row a packing to packing.csv beside it; rows that are there are not run again. Then puts the table of all of them
-into docs/behaviour.md, which --seeds 0 does alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine
+Adds a row a packing to packing.csv beside it; rows that are there are not run again. Then puts two tables of all of
+them into docs/behaviour.md, which --seeds 0 does alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine
 (liggghts). Numbers of the table are Yuan's (table 3); his time step is 5e-7 s. Takes numpy.
 
 What is measured, as fixed before the first run, of the particles at rest (kinetic energy below 1e-6 m g d in the
@@ -31,12 +31,15 @@ import numpy
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import tables  # noqa: E402
-from intervals import interval_of_mean  # noqa: E402
+from intervals import interval, interval_of_mean, pool  # noqa: E402
 from program import ask_version, run_mskit  # noqa: E402
 LIGGGHTS = os.environ.get("LIGGGHTS", "liggghts")
 TABLE = os.path.join(HERE, "packing.csv")
 COLUMNS = ["method", "n", "dice", "coverage", "scaled_by", "seed", "step", "particles", "height_envelope", "height_top",
            "fraction", "kinetic_over_m_g_d", "steps", "cpu_seconds", "version"]
+# of the tables: column, heading, digits
+SHOWN = [("height_envelope", "mean of the upper envelope, mm", 2), ("height_top", "highest point, mm", 2),
+         ("fraction", "packing fraction", 4)]
 
 RADIUS, A, C, DENSITY, COUNT = 25.4, 6.585, 3.395, 1377, 250  # mm, kg/m^3
 MASS = DENSITY * 4 / 3 * math.pi * A * A * C * 1e-9
@@ -207,9 +210,9 @@ def pack(folder, n, seed, step):
             "version": ask_version()}
 
 
-def make_table():
+def make_table(rows):
     """Mean, half of its 90 % interval, and standard deviation over the packings of so many spheres and one step."""
-    rows, out = tables.read(TABLE), []
+    out = []
     for n, step in dict.fromkeys((row["n"], row["step"]) for row in rows):
         these = [row for row in rows if (row["n"], row["step"]) == (n, step)]
 
@@ -220,10 +223,36 @@ def make_table():
             mean, half = interval_of_mean(values)
             return f"{mean:.{digits}f} +- {half:.{digits}f} ({statistics.stdev(values):.{digits}f})"
         dice = sorted({f"{float(row['dice']):.4f}" for row in these})
-        out.append([n, " and ".join(dice), step, str(len(these)), spread("height_envelope", 2), spread("height_top", 2),
-                    spread("fraction", 4), f"{statistics.mean(float(row['cpu_seconds']) for row in these):.0f}"])
-    return tables.markdown(["spheres", "D", "step, s", "packings", "mean of the upper envelope, mm",
-                            "highest point, mm", "packing fraction", "CPU s"], out)
+        out.append([n, " and ".join(dice), step, str(len(these)), *(spread(name, digits) for name, _, digits in SHOWN),
+                    f"{statistics.mean(float(row['cpu_seconds']) for row in these):.0f}"])
+    return tables.markdown(["spheres", "D", "step, s", "packings", *(head for _, head, _ in SHOWN), "CPU s"], out)
+
+
+def tell_difference(these, those, name, digits):
+    """With half of its 90 % interval, by the spread of the two."""
+    groups = [[float(row[name]) for row in rows] for rows in (these, those)]
+    difference, half = interval(*groups, *pool(groups))
+    return f"{difference:+.{digits}f}" + ("" if math.isnan(half) else f" +- {half:.{digits}f}")
+
+
+def table_differences(rows):
+    """From the first number of spheres and step: its later clumps from the first one; then other numbers, and other
+    steps from packings of the same clump."""
+    if not rows:
+        return "None was run yet."
+    first, *others = dict.fromkeys((row["n"], row["step"]) for row in rows)
+    base = [row for row in rows if (row["n"], row["step"]) == first]
+    known, *later = dict.fromkeys(row["dice"] for row in base)
+    pairs = [(f"{first[0]} spheres, D {float(dice):.4f} - {float(known):.4f}",
+              *([row for row in base if row["dice"] == of] for of in (dice, known))) for dice in later]
+    for n, step in others:
+        these = [row for row in rows if (row["n"], row["step"]) == (n, step)]
+        those = [row for row in base if row["dice"] == these[0]["dice"]] or base
+        pairs.append((f"{n} spheres, {step} s - {first[0]} spheres, {first[1]} s", these, those))
+    return tables.markdown(
+        ["difference", "packings", *(head for _, head, _ in SHOWN)],
+        [[what, f"{len(these)}, {len(those)}", *(tell_difference(these, those, name, digits)
+                                                 for name, _, digits in SHOWN)] for what, these, those in pairs])
 
 
 def main():
@@ -244,7 +273,9 @@ def main():
         tables.add_row(TABLE, COLUMNS, row)
         print(", ".join(f"{name} {row[name]}" for name in ("n", "seed", "height_envelope", "height_top", "fraction",
                                                            "cpu_seconds")), flush=True)
-    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"packing": make_table()})
+    rows = tables.read_if_there(TABLE)
+    tables.fill(os.path.join(HERE, "..", "behaviour.md"),
+                {"packing": make_table(rows), "packing-differences": table_differences(rows)})
 
 
 if __name__ == "__main__":

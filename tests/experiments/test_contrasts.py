@@ -27,6 +27,7 @@ import contrasts_tables as tables  # noqa: E402
 import intervals  # noqa: E402
 import packing  # noqa: E402
 import program  # noqa: E402
+import soundness  # noqa: E402
 from tables import add_row  # noqa: E402
 
 
@@ -195,6 +196,15 @@ class Intervals(unittest.TestCase):
         self.assertEqual(len(listed), len(cells.CONTROLS) + 1 + len(cells.CONTROLS) // 2)
         for _, one, other in listed:
             cells.find_cell(one), cells.find_cell(other)
+
+    def test_a_friction_between_runs(self):
+        """The candy starts at 20 and 24 by 0.35 and 0.5, and by 0.7 at 23: on the line between the nearest above and
+        below."""
+        rows = self.list_rows({"smooth": (19, 21), "smooth-f0.5": (24,), "smooth-f0.7": (23,), "variational-10": (22,),
+                               "variational-2": (25,)})
+        self.assertAlmostEqual(tables.find_friction(rows, "start", "variational-10"), 0.35 + 0.35 * 2 / 3)
+        self.assertTrue(math.isnan(tables.find_friction(rows, "start", "variational-2")))
+        self.assertTrue(math.isnan(tables.find_friction(rows[:2] + rows[-2:], "start", "variational-10")))
 
     def test_checks_are_no_part_of_the_means(self):
         rows = [{"cell": "setcover-10", "step": step, "rate": rate, "start": value}
@@ -393,7 +403,7 @@ class Resumption(unittest.TestCase):
         mskit = self.write("mskit", "#!/bin/sh\necho mskit 0\n")
         for target, name, value in ((contrasts, "TABLE", self.table), (program, "MSKIT", mskit),
                                     (bed, "LIGGGHTS", os.path.join(self.folder, "engine")),
-                                    (tables, "fill", lambda: None),
+                                    (tables, "fill", lambda: None), (soundness, "fill", lambda: None),
                                     (chart, "draw", lambda rows: None),
                                     (cells, "describe_all", lambda folder, path: None)):
             patch = mock.patch.object(target, name, value)

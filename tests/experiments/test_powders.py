@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""What docs/experiments/library.py and drum.py make of their runs: shares, templates, contacts, surfaces known before.
+"""What docs/experiments/library.py, drum.py and packing.py make of their runs: shares, templates, contacts, surfaces
+known before, and differences by hand.
 
     /usr/bin/python3 tests/experiments/test_powders.py [-v]
 """
@@ -15,6 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import bed  # noqa: E402
 import contrasts_cells as cells  # noqa: E402
 import drum  # noqa: E402
+import intervals  # noqa: E402
 import library  # noqa: E402
 import packing  # noqa: E402
 
@@ -49,9 +51,11 @@ class Shares(unittest.TestCase):
         table = [[cell.strip() for cell in line.split("|")[1:4]] for line in library.make_table(rows).splitlines()[2:]]
         self.assertEqual([line[:2] for line in table],
                          [["all", "2"], ["20", "1"], ["20, choice 2", "2"], ["spread within", "2"], ["20 - all", ""],
-                          ["20, choice 2 - all", ""]])
-        self.assertEqual([table[k][2].split(" ")[0] for k in (0, 1, 2, 4, 5)],
-                         ["2.0000", "5.0000", "4.0000", "+3.0000", "+2.0000"])
+                          ["20, choice 2 - all", ""], ["all others - all", ""]])
+        self.assertEqual([table[k][2].split(" ")[0] for k in (0, 1, 2, 4, 5, 6)],
+                         ["2.0000", "5.0000", "4.0000", "+3.0000", "+2.0000", "+2.3333"])
+        table = library.make_table(rows[:2]).splitlines()
+        self.assertEqual([line.split(" | ")[0] for line in table[-2:]], ["| spread within", "| 20, choice 2 - all"])
 
     def test_a_set_is_one_value(self):
         """Runs of one choice are one set, and each run of those drawn: 4 and 6 against 1 and 3 are 3 apart."""
@@ -145,6 +149,31 @@ class Drum(unittest.TestCase):
         self.assertEqual(table[2].split(" | ")[2:3] + table[3].split(" | ")[2:3], ["2", "1"])
         self.assertTrue(table[2].startswith("| 10 |") and "-2.50 +-" in table[2], table[2])
 
+    def test_a_look_by_blocks(self):
+        """Of a series that forgets by 0.3 a look, by blocks of twelve; with so few it is off by some percent."""
+        random, series = numpy.random.default_rng(1), [0.0]
+        for _ in range(36000):
+            series.append(0.3 * series[-1] + random.normal())
+        blocks = numpy.mean(numpy.reshape(series[1:], (-1, 12)), axis=1)
+        look = drum.find_look(numpy.std(blocks), drum.find_correlation(series))
+        self.assertAlmostEqual(look, numpy.std(series), delta=0.06 * numpy.std(series))
+
+    def test_runs_beside_their_blocks(self):
+        """Runs of ten spheres are 1 apart, where blocks that differ by 1 let expect 0.16; those of thirty are alike."""
+        block = [0.0, 1.0] * (drum.BLOCKS // 2)
+        rows = [{"n": n, "correlation": "0.15", "blocks": " ".join(str(at + x) for x in block)}
+                for n, at in (("10", 41), ("10", 42), ("30", 40), ("30", 40))]
+        lines = [line.strip("| ").split(" | ") for line in drum.table_soundness(rows).splitlines()[2:]]
+        self.assertEqual([line[:4] for line in lines[:2]],
+                         [["10", "0.51", "0.71", "0.11"], ["30", "0.51", "0.00", "0.11"]])
+        self.assertEqual(lines[0][4].split(" +- ")[0], "+1.50")
+        self.assertEqual([line[5] for line in lines[:2]], ["1.03"] * 2)  # twice: a block is 8 times 0.15 s
+        self.assertLess(float(lines[2][2]), 0.01)
+        self.assertEqual(lines[2][1], "1.00")
+        self.assertGreater(float(drum.table_soundness(rows[2:]).splitlines()[-1].split(" | ")[2]), 0.9)
+        self.assertEqual(drum.table_soundness([]), "None was run yet.")
+        self.assertEqual(drum.table_soundness(rows[:1]).splitlines()[2].split(" | ")[2], "")
+
     def test_looks(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "looks.dump")
@@ -155,6 +184,23 @@ class Drum(unittest.TestCase):
             looks, last = list(packing.read_dumps(path)), packing.read_dump(path)
         self.assertEqual([look.tolist() for look in looks], [[[0, 0, 0, 0.003]], [[0.001, 0, 0, 0.003]]])
         self.assertEqual(last.tolist(), looks[1].tolist())
+
+
+class Packings(unittest.TestCase):
+    def test_differences(self):
+        """A later clump of the first number, another number, and another step against packings of its own clump."""
+        rows = [{"n": n, "step": step, "dice": dice, **dict.fromkeys(("height_envelope", "height_top", "fraction"), x)}
+                for n, step, dice, x in (("10", "1e-05", "0.07", 1), ("10", "1e-05", "0.07", 3),
+                                         ("10", "1e-05", "0.06", 4), ("10", "1e-05", "0.06", 6),
+                                         ("60", "1e-05", "0.01", 9), ("10", "5e-06", "0.06", 4))]
+        lines = [line.strip("| ").split(" | ")[:3] for line in packing.table_differences(rows).splitlines()[2:]]
+        half = intervals.quantile(3) * math.sqrt(13 / 3 * (1 + 1 / 4))  # of 1, 3, 4 and 6
+        self.assertEqual(lines, [["10 spheres, D 0.0600 - 0.0700", "2, 2", "+3.00 +- 4.13"],
+                                 ["60 spheres, 1e-05 s - 10 spheres, 1e-05 s", "1, 4", f"+5.50 +- {half:.2f}"],
+                                 ["10 spheres, 5e-06 s - 10 spheres, 1e-05 s", "1, 2", "-1.00 +- 10.94"]])
+        self.assertEqual(packing.table_differences([]), "None was run yet.")
+        alone = packing.table_differences([rows[3], {**rows[0], "n": "60", "height_envelope": 11}])
+        self.assertIn("| 1, 1 | +5.00 |", alone)
 
 
 if __name__ == "__main__":
