@@ -65,8 +65,8 @@ void ms_equal_volume_remark(ms_error *remarks, const ms_equal_volume *done)
     char sentence[256];
     if (done->scale > 0 && fabs(done->scale - 1) > far) {
         snprintf(sentence, sizeof sentence,
-                 "the spheres held %.3g %% of the shape's volume; scaled by %.3g they lie beside it; take more spheres, "
-                 "or a method that holds the volume while it fits (variational)",
+                 "the spheres held %.3g %% of the shape's volume; scaled by %.3g they lie beside it; take more "
+                 "spheres, or a method that holds the volume while it fits (variational)",
                  100 * pow(done->scale, -3), done->scale);
         ms_error_add(remarks, sentence);
     }

@@ -175,8 +175,7 @@ static void the_better_clump_has_the_number(void **state)
     ms_mesh_free(&mesh);
 }
 
-/* Each has the volume asked for before it is judged, and says how far it was from it: here they are all the ball itself.
- */
+/* Each has the volume asked for before it is judged, and says how far it was from it: here all are the ball itself. */
 static void templates_of_equal_volume(void **state)
 {
     ms_target target;
