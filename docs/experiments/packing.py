@@ -236,8 +236,8 @@ def tell_difference(these, those, name, digits):
 
 
 def table_differences(rows):
-    """From the first number of spheres and step: its later clumps from the first one; then other numbers, and other
-    steps from packings of the same clump."""
+    """Of the first number of spheres and step the later clumps from the first one; then each other number from the one
+    before, and other steps from packings of the same clump."""
     if not rows:
         return "None was run yet."
     first, *others = dict.fromkeys((row["n"], row["step"]) for row in rows)
@@ -245,10 +245,14 @@ def table_differences(rows):
     known, *later = dict.fromkeys(row["dice"] for row in base)
     pairs = [(f"{first[0]} spheres, D {float(dice):.4f} - {float(known):.4f}",
               *([row for row in base if row["dice"] == of] for of in (dice, known))) for dice in later]
+    before = first
     for n, step in others:
         these = [row for row in rows if (row["n"], row["step"]) == (n, step)]
-        those = [row for row in base if row["dice"] == these[0]["dice"]] or base
-        pairs.append((f"{n} spheres, {step} s - {first[0]} spheres, {first[1]} s", these, those))
+        those = [row for row in base if row["dice"] == these[0]["dice"]]
+        other = first if those else before
+        those = those or [row for row in rows if (row["n"], row["step"]) == before]
+        pairs.append((f"{n} spheres, {step} s - {other[0]} spheres, {other[1]} s", these, those))
+        before = (n, step) if step == first[1] else before
     return tables.markdown(
         ["difference", "packings", *(head for _, head, _ in SHOWN)],
         [[what, f"{len(these)}, {len(those)}", *(tell_difference(these, those, name, digits)

@@ -188,16 +188,19 @@ class Drum(unittest.TestCase):
 
 class Packings(unittest.TestCase):
     def test_differences(self):
-        """A later clump of the first number, another number, and another step against packings of its own clump."""
+        """A later clump of the first number, other numbers against the one before, and another step against packings of
+        its own clump."""
         rows = [{"n": n, "step": step, "dice": dice, **dict.fromkeys(("height_envelope", "height_top", "fraction"), x)}
                 for n, step, dice, x in (("10", "1e-05", "0.07", 1), ("10", "1e-05", "0.07", 3),
                                          ("10", "1e-05", "0.06", 4), ("10", "1e-05", "0.06", 6),
-                                         ("60", "1e-05", "0.01", 9), ("10", "5e-06", "0.06", 4))]
+                                         ("60", "1e-05", "0.01", 9), ("10", "5e-06", "0.06", 4),
+                                         ("265", "1e-05", "0.001", 7))]
         lines = [line.strip("| ").split(" | ")[:3] for line in packing.table_differences(rows).splitlines()[2:]]
         half = intervals.quantile(3) * math.sqrt(13 / 3 * (1 + 1 / 4))  # of 1, 3, 4 and 6
         self.assertEqual(lines, [["10 spheres, D 0.0600 - 0.0700", "2, 2", "+3.00 +- 4.13"],
                                  ["60 spheres, 1e-05 s - 10 spheres, 1e-05 s", "1, 4", f"+5.50 +- {half:.2f}"],
-                                 ["10 spheres, 5e-06 s - 10 spheres, 1e-05 s", "1, 2", "-1.00 +- 10.94"]])
+                                 ["10 spheres, 5e-06 s - 10 spheres, 1e-05 s", "1, 2", "-1.00 +- 10.94"],
+                                 ["265 spheres, 1e-05 s - 60 spheres, 1e-05 s", "1, 1", "-2.00"]])
         self.assertEqual(packing.table_differences([]), "None was run yet.")
         alone = packing.table_differences([rows[3], {**rows[0], "n": "60", "height_envelope": 11}])
         self.assertIn("| 1, 1 | +5.00 |", alone)
