@@ -5,8 +5,8 @@ cover scaled to the volume of the candy.
     docs/experiments/drum.py [--spheres N,...] [--seeds K] [--work FOLDER] [--most MINUTES]
 
 Each row goes to drum.csv beside this file; rows that are there are not run again. Then two tables of all of them go
-into docs/behaviour.md, which --seeds 0 does alone. MSKIT names the program (build/eval/mskit), LIGGGHTS the engine
-(liggghts). Takes numpy.
+into docs/behaviour.md, which --seeds 0 does alone. N = 0 is the candy itself, a superquadric. MSKIT names the program
+(build/eval/mskit), LIGGGHTS the engine (liggghts), LIGGGHTS_SMOOTH one that was built with superquadrics. Takes numpy.
 
 The paper does not give the size of its drum. This one has a diameter of 100 mm and no ends: it is 40 mm long and
 periodic along its axis, so that ends play no part. Candies come in during the first turn. Material and friction are
@@ -31,9 +31,10 @@ import time
 import numpy
 
 import contrasts_tables
-from bed import root_or_nan
+from bed import LIGGGHTS_SMOOTH, SMOOTH, SPHERES, ball, ellipsoid
+from contrasts_cells import make_smooth
 from intervals import interval, interval_by_own, pool, quantile
-from packing import CLUMPS, ENERGY, MATERIAL, RESTITUTION, SEEDS, YOUNG, make_clump, read_dumps, run_engine
+from packing import ENERGY, LIGGGHTS, MATERIAL, RESTITUTION, SEEDS, YOUNG, make_clump, read_dumps, run_engine
 from program import ask_version
 import soundness
 import tables  # of docs, where packing looks
@@ -46,7 +47,7 @@ SKIPPED, TURNS, BLOCKS = 3, 10, 20
 LOOKS = 10  # of which Yuan took the mean
 
 # Of a wall that turns, LIGGGHTS 3.8.0 takes any direction but the axis, and for its speed radians a second.
-SCRIPT = """atom_style granular
+SCRIPT = """atom_style {style}
 atom_modify map array
 communicate single vel yes
 boundary f f p
@@ -57,10 +58,10 @@ create_box 2 box
 neighbor 0.001 bin
 neigh_modify delay 0
 """ + MATERIAL + """fix friction all property/global coefficientFriction peratomtypepair 2 0.35 0.30 0.30 0.30
-pair_style gran model hertz tangential history
+pair_style gran model hertz tangential history{surface}
 pair_coeff * *
 timestep {step}
-fix drum all wall/gran model hertz tangential history primitive type 2 zcylinder {radius} 0 0 shear x {turning}
+fix drum all wall/gran model hertz tangential history{surface} primitive type 2 zcylinder {radius} 0 0 shear x {turning}
 fix gravity all gravity 9.81 vector 0 -1 0
 {template}
 fix kinds all particledistribution/discrete 15485867 1 clump 1.0
@@ -70,29 +71,41 @@ fix insert all insert/rate/region seed {seed} distributiontemplate kinds npartic
 """ + ENERGY + """thermo_style custom step atoms v_kinetic
 thermo {each}
 run {skipped}
-dump looks all custom {each} looks.dump id type x y z radius
+dump looks all custom {each} looks.dump id type x y z {columns}
 dump_modify looks sort id
 run {measured}
 """
 
 
-def make_script(template, seed, step):
+def make_script(template, seed, step, smooth):
     each = round(LOOK / step)
     return SCRIPT.format(template=template, seed=seed, step=step, each=each, count=COUNT, radius=RADIUS / 1000,
                          length=LENGTH / 1000, often=2 * each, turning=2 * math.pi / TURN,
                          skipped=round(SKIPPED * TURN / step), measured=round(TURNS * TURN / step), young=YOUNG,
-                         e=RESTITUTION, **CLUMPS)
+                         e=RESTITUTION, **({**SMOOTH, "group": "all"} if smooth else SPHERES))
 
 
-def measure(spheres, h=1.0):
-    """The angle of a look, in degrees, of spheres in mm; NaN where the bed is bare."""
+def list_bodies(rows):
+    """Those of a look as bed.measure takes them, upwards and along the drum in each other's place: the drum turned by
+    90 degrees about x, y up to z. rows: as LIGGGHTS writes them, of spheres or of superquadrics."""
+    rows = numpy.array(rows)
+    x, y, z = 1000 * rows[:, :3].T
+    if rows.shape[1] == 4:
+        return [ball(*row) for row in numpy.stack([x, -z, y, 1000 * rows[:, 3]], axis=1)]
+    w, i, j, k = rows[:, 6:].T
+    turned = math.sqrt(0.5) * numpy.stack([w - i, w + i, j - k, j + k], axis=1)
+    return [ellipsoid(*at, 1000 * row[3:6], turn) for at, row, turn in zip(zip(x, -z, y), rows, turned)]
+
+
+def measure(bodies, h=1.0):
+    """The angle of a look, in degrees, of bodies in mm; NaN where the bed is bare."""
     x = numpy.arange(-RADIUS / 2, RADIUS / 2 + h / 2, h)
     z = (numpy.arange(round(LENGTH / h)) + 0.5) * h
     top = numpy.full((len(x), len(z)), numpy.nan)
-    for cx, cy, cz, r in spheres:
-        i = slice(*numpy.searchsorted(x, [cx - r, cx + r]))
+    for cx, cz, cy, reach, chords in bodies:
+        i = slice(*numpy.searchsorted(x, [cx - reach, cx + reach]))
         along = (z - cz + LENGTH / 2) % LENGTH - LENGTH / 2
-        top[i] = numpy.fmax(top[i], cy + root_or_nan(r * r - (x[i, None] - cx) ** 2 - along[None, :] ** 2))
+        top[i] = numpy.fmax(top[i], cy + chords(x[i, None] - cx, along[None, :])[1])
     if numpy.isnan(top).all(axis=1).any():
         return math.nan
     return abs(math.degrees(math.atan(numpy.polyfit(x, numpy.nanmean(top, axis=1), 1)[0])))
@@ -121,26 +134,40 @@ def leave_out_bare(angles, work):
 
 def run(folder, n, seed):
     """One row."""
-    template, said = make_clump(folder, n)
-    work = os.path.join(folder, f"{n}-{seed}")
-    _, cpu = run_engine(work, make_script(template, seed, contrasts_tables.STEP))
+    if n:
+        template, said = make_clump(folder, n)
+        dice = said["scores"]["dice"]
+    else:
+        template, dice = make_smooth("smooth")["template"], 0.0
+    work, members = os.path.join(folder, f"{n}-{seed}"), n or 1
+    _, cpu = run_engine(work, make_script(template, seed, contrasts_tables.STEP, not n),
+                        LIGGGHTS if n else LIGGGHTS_SMOOTH)
     angles = []
-    for spheres in read_dumps(os.path.join(work, "looks.dump")):
-        if len(spheres) != COUNT * n:
-            sys.exit(f"{work}: {len(spheres)} spheres are not those of {COUNT} particles of {n}")
-        angles.append(measure(1000 * spheres))
+    for rows in read_dumps(os.path.join(work, "looks.dump")):
+        if len(rows) != COUNT * members:
+            sys.exit(f"{work}: {len(rows)} rows are not those of {COUNT} particles of {members}")
+        angles.append(measure(list_bodies(rows)))
     del angles[0]  # of before the first turn that counts
     angles, bare = leave_out_bare(angles, work)
     blocks = [statistics.mean(block) for block in numpy.array_split(angles, BLOCKS)]
-    return {"n": n, "dice": said["scores"]["dice"], "seed": seed, "step": contrasts_tables.STEP, "particles": COUNT,
+    return {"n": n, "dice": dice, "seed": seed, "step": contrasts_tables.STEP, "particles": COUNT,
             "angle": round(statistics.mean(angles), 3), "bare": bare, "correlation": round(find_correlation(angles), 3),
             "blocks": " ".join(f"{block:.3f}" for block in blocks), "cpu_seconds": cpu, "version": ask_version()}
 
 
 def list_blocks(rows):
-    """By number of spheres, the blocks of each run."""
+    """By number of spheres, the candy itself last, the blocks of each run."""
     return {n: [[float(x) for x in row["blocks"].split()] for row in rows if int(row["n"]) == n]
-            for n in sorted({int(row["n"]) for row in rows})}
+            for n in sorted({int(row["n"]) for row in rows}, key=lambda n: n or math.inf)}
+
+
+def list_references(joined):
+    """Of the numbers those that others are held against: the most spheres, and the candy itself where it was run."""
+    return [max(joined), *([0] if 0 in joined and len(joined) > 1 else [])]
+
+
+def name(n):
+    return f"{n} spheres" if n else "the candy"
 
 
 def make_table(rows):
@@ -151,17 +178,18 @@ def make_table(rows):
     blocks = list_blocks(rows)
     deviation, freedom = pool([run for runs in blocks.values() for run in runs])
     joined = {n: [x for run in runs for x in run] for n, runs in blocks.items()}
-    out, largest = [], max(joined)
+    out, references = [], list_references(joined)
     for n, these in joined.items():
         found = [row for row in rows if int(row["n"]) == n]
         half = quantile(freedom) * deviation / math.sqrt(len(these))
-        difference = contrasts_tables.show(*interval(these, joined[largest], deviation, freedom), 2)
-        out.append([str(n), f"{float(found[0]['dice']):.4f}", str(len(found)),
-                    f"{statistics.mean(these):.2f} +- {half:.2f}", "" if n == largest else difference,
+        out.append([str(n or "smooth"), f"{float(found[0]['dice']):.4f}", str(len(found)),
+                    f"{statistics.mean(these):.2f} +- {half:.2f}",
+                    *("" if n == other else contrasts_tables.show(*interval(these, joined[other], deviation, freedom), 2)
+                      for other in references),
                     ", ".join(f"{float(row['correlation']):.2f}" for row in found),
                     f"{statistics.mean(float(row['cpu_seconds']) for row in found):.0f}"])
-    return tables.markdown(["spheres", "D", "runs", "angle, degrees", f"beside {largest} spheres", "correlation, s",
-                            "CPU s"], out)
+    return tables.markdown(["spheres", "D", "runs", "angle, degrees", *(f"beside {name(n)}" for n in references),
+                            "correlation, s", "CPU s"], out)
 
 
 def find_look(deviation, correlation):
@@ -177,19 +205,22 @@ def table_soundness(rows):
         return "None was run yet."
     blocks, out = list_blocks(rows), []
     joined = {n: [x for run in runs for x in run] for n, runs in blocks.items()}
+    references = list_references(joined)
     for n, runs in blocks.items():
         deviation, freedom = pool(runs)
         look = find_look(deviation, statistics.mean(float(row["correlation"]) for row in rows if int(row["n"]) == n))
         means = f"{statistics.stdev(map(statistics.mean, runs)):.2f}" if len(runs) > 1 else ""
-        own = contrasts_tables.show(*interval_by_own(joined[n], joined[max(joined)]), 2) if n < max(joined) else ""
-        out.append([str(n), f"{deviation:.2f}", means, f"{deviation / math.sqrt(BLOCKS):.2f}", own, f"{look:.2f}",
-                    f"{quantile(freedom) * look * math.sqrt(2 / LOOKS):.2f}"])
+        own = ["" if n == other else contrasts_tables.show(*interval_by_own(joined[n], joined[other]), 2)
+               for other in references]
+        out.append([str(n or "smooth"), f"{deviation:.2f}", means, f"{deviation / math.sqrt(BLOCKS):.2f}", *own,
+                    f"{look:.2f}", f"{quantile(freedom) * look * math.sqrt(2 / LOOKS):.2f}"])
     values, of_run, of_number = zip(*((x, f"{n}-{k}", n) for n, runs in blocks.items() for k, run in enumerate(runs)
                                       for x in run))
     variances = soundness.judge_variances([run for runs in blocks.values() for run in runs])
-    out.append(["p", f"{variances:.2f}", f"{soundness.judge_groups(values, of_run, of_number):.2f}", "", "", "", ""])
+    out.append(["p", f"{variances:.2f}", f"{soundness.judge_groups(values, of_run, of_number):.2f}"]
+               + [""] * (3 + len(references)))
     return tables.markdown(["spheres", "spread of blocks", "of the runs' means", "by their blocks",
-                            f"beside {max(joined)}, own variances", "spread of a look",
+                            *(f"beside {name(n)}, own variances" for n in references), "spread of a look",
                             f"interval of a difference, {LOOKS} looks"], out)
 
 
@@ -200,11 +231,14 @@ def main():
     parser.add_argument("--work", default="drum", help="folder of the engine's files (drum)")
     parser.add_argument("--most", type=float, default=1e9, help="no run is begun after so many minutes")
     asked = parser.parse_args()
+    numbers = [int(n) for n in asked.spheres.split(",")]
+    if asked.seeds and 0 in numbers and not LIGGGHTS_SMOOTH:
+        sys.exit("0 spheres: LIGGGHTS_SMOOTH names no engine with superquadrics; build-smooth.sh makes one")
     os.makedirs(asked.work, exist_ok=True)
     begun, rows = time.time(), tables.read_if_there(TABLE)
     there = {(int(row["n"]), int(row["seed"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
-        for n in map(int, asked.spheres.split(",")):
+        for n in numbers:
             if (n, seed) in there or time.time() - begun > 60 * asked.most:
                 continue
             row = run(asked.work, n, seed)

@@ -117,18 +117,40 @@ class Contacts(unittest.TestCase):
 
 
 class Drum(unittest.TestCase):
+    @staticmethod
+    def measure(spheres):
+        """Of those in mm."""
+        return drum.measure(drum.list_bodies(spheres / 1000))
+
     def test_a_slope(self):
         """Spheres of one radius side by side on a line of 30 degrees, all along the drum and across its border."""
         slope = math.tan(math.radians(30))
         spheres = numpy.array([[x, slope * x, z, 3.0] for x in numpy.arange(-40, 40, 0.25)
                                for z in numpy.arange(1, drum.LENGTH, 2)])
-        self.assertAlmostEqual(drum.measure(spheres), 30, delta=0.1)
+        self.assertAlmostEqual(self.measure(spheres), 30, delta=0.1)
         spheres[:, 2] = (spheres[:, 2] + 17) % drum.LENGTH
-        self.assertAlmostEqual(drum.measure(spheres), 30, delta=0.1)
+        self.assertAlmostEqual(self.measure(spheres), 30, delta=0.1)
+
+    def test_a_candy_as_spheres(self):
+        """One that lies askew, as a superquadric and as the balls that fill it, both over a floor of small ones."""
+        turn = numpy.array([0.8, 0.3, -0.4, 0.3])
+        turn /= numpy.linalg.norm(turn)
+        w, (i, j, k) = turn[0], turn[1:]
+        cross = numpy.array([[0, -k, j], [k, 0, -i], [-j, i, 0]])
+        rotation = numpy.eye(3) + 2 * w * cross + 2 * cross @ cross
+        axes, at = numpy.array([9.0, 6.0, 3.0]), numpy.array([12.0, 4.0, 11.0])
+        points = numpy.random.default_rng(1).normal(size=(20000, 3))
+        points *= (axes - 0.2) / numpy.linalg.norm(points, axis=1)[:, None]
+        balls = numpy.hstack([at + points @ rotation.T, numpy.full((len(points), 1), 0.2)])
+        candy = [[*at / 1000, *axes / 1000, *turn]]
+        floor = numpy.array([[x, -10.0, z, 3.0] for x in numpy.arange(-40, 40) for z in range(40)])
+        both = drum.measure(drum.list_bodies(candy) + drum.list_bodies(floor / 1000))
+        self.assertAlmostEqual(both, self.measure(numpy.vstack([balls, floor])), delta=0.1)
+        self.assertGreater(both, self.measure(floor) + 1)
 
     def test_a_bare_line_is_no_angle(self):
         spheres = numpy.array([[x, 0.0, z, 3.0] for x in numpy.arange(0, 40, 0.25) for z in range(40)])
-        self.assertTrue(math.isnan(drum.measure(spheres)))
+        self.assertTrue(math.isnan(self.measure(spheres)))
         self.assertEqual(drum.leave_out_bare([1.0] * 20 + [math.nan], "here"), ([1.0] * 20, 1))
         with self.assertRaisesRegex(SystemExit, "here: in 1 of 20 looks"):
             drum.leave_out_bare([1.0] * 19 + [math.nan], "here")
