@@ -172,7 +172,7 @@ def name(n):
 
 def make_table(rows):
     """Mean and half of its 90 % interval by blocks, whose spread is pooled over all runs; difference from the most
-    spheres."""
+    spheres, and from the candy itself, that over D as well."""
     if not rows:
         return "None was run yet."
     blocks = list_blocks(rows)
@@ -186,10 +186,12 @@ def make_table(rows):
                     f"{statistics.mean(these):.2f} +- {half:.2f}",
                     *("" if n == other else contrasts_tables.show(*interval(these, joined[other], deviation, freedom), 2)
                       for other in references),
+                    *([f"{(statistics.mean(these) - statistics.mean(joined[0])) / float(found[0]['dice']):.0f}"
+                       if n else ""] if 0 in references else []),
                     ", ".join(f"{float(row['correlation']):.2f}" for row in found),
                     f"{statistics.mean(float(row['cpu_seconds']) for row in found):.0f}"])
     return tables.markdown(["spheres", "D", "runs", "angle, degrees", *(f"beside {name(n)}" for n in references),
-                            "correlation, s", "CPU s"], out)
+                            *(["over D"] if 0 in references else []), "correlation, s", "CPU s"], out)
 
 
 def find_look(deviation, correlation):
@@ -226,7 +228,7 @@ def table_soundness(rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--spheres", default="10,30,60,120", help="of a candy (10,30,60,120)")
+    parser.add_argument("--spheres", default="10,30,60,120", help="of a candy (10,30,60,120); 0: the candy itself")
     parser.add_argument("--seeds", type=int, default=2, help="runs of each (2)")
     parser.add_argument("--work", default="drum", help="folder of the engine's files (drum)")
     parser.add_argument("--most", type=float, default=1e9, help="no run is begun after so many minutes")

@@ -171,6 +171,17 @@ class Drum(unittest.TestCase):
         self.assertEqual(table[2].split(" | ")[2:3] + table[3].split(" | ")[2:3], ["2", "1"])
         self.assertTrue(table[2].startswith("| 10 |") and "-2.50 +-" in table[2], table[2])
 
+    def test_the_candy_stands_last(self):
+        rows = [{"n": n, "dice": dice, "blocks": blocks, "correlation": "0.2", "cpu_seconds": "10"}
+                for n, dice, blocks in (("0", "0.0", "30 32"), ("30", "0.1", "35 37"), ("10", "0.25", "40 42"))]
+        table = [line.strip("| ").split(" | ") for line in drum.make_table(rows).splitlines()]
+        self.assertEqual(table[0][4:7], ["beside 30 spheres", "beside the candy", "over D"])
+        self.assertEqual([line[0] for line in table[2:]], ["10", "30", "smooth"])
+        self.assertEqual([line[6] for line in table[2:4]], ["40", "50"])
+        self.assertEqual([line[5].split(" ")[0] for line in table[2:4]], ["+10.00", "+5.00"])
+        sound = [line.strip("| ").split(" | ") for line in drum.table_soundness(rows).splitlines()]
+        self.assertEqual([len(line) for line in sound[2:5]], [8] * 3)
+
     def test_a_look_by_blocks(self):
         """Of a series that forgets by 0.3 a look, by blocks of twelve; with so few it is off by some percent."""
         random, series = numpy.random.default_rng(1), [0.0]
