@@ -182,12 +182,12 @@ def make_table(rows):
     for n, these in joined.items():
         found = [row for row in rows if int(row["n"]) == n]
         half = quantile(freedom) * deviation / math.sqrt(len(these))
+        beside = [interval(these, joined[other], deviation, freedom) for other in references]
         out.append([str(n or "smooth"), f"{float(found[0]['dice']):.4f}", str(len(found)),
                     f"{statistics.mean(these):.2f} +- {half:.2f}",
-                    *("" if n == other else contrasts_tables.show(*interval(these, joined[other], deviation, freedom), 2)
-                      for other in references),
-                    *([f"{(statistics.mean(these) - statistics.mean(joined[0])) / float(found[0]['dice']):.0f}"
-                       if n else ""] if 0 in references else []),
+                    *("" if n == other else contrasts_tables.show(*difference, 2)
+                      for other, difference in zip(references, beside)),
+                    *([f"{beside[-1][0] / float(found[0]['dice']):.0f}" if n else ""] if 0 in references else []),
                     ", ".join(f"{float(row['correlation']):.2f}" for row in found),
                     f"{statistics.mean(float(row['cpu_seconds']) for row in found):.0f}"])
     return tables.markdown(["spheres", "D", "runs", "angle, degrees", *(f"beside {name(n)}" for n in references),
