@@ -12,13 +12,19 @@ def read(path):
 
 
 def read_if_there(path):
-    """The rows so far of a table that grows run by run."""
-    return read(path) if os.path.exists(path) else []
+    """The rows so far of a table that grows run by run. A last line that was cut short would be taken for a run."""
+    if not os.path.exists(path):
+        return []
+    with open(path, encoding="utf-8") as stream:
+        text = stream.read()
+    if text and not text.endswith("\n"):
+        sys.exit(f"{path}: the last line has no end; delete it, and its run is done again")
+    return read(path)
 
 
 def add_row(path, columns, row):
-    """At the end of a CSV file, with the head of a new one."""
-    new = not os.path.exists(path)
+    """At the end of a CSV file, with the head of a new or empty one."""
+    new = not os.path.exists(path) or os.path.getsize(path) == 0
     with open(path, "a", newline="", encoding="utf-8") as stream:
         writer = csv.DictWriter(stream, columns, lineterminator="\n")
         if new:
