@@ -135,6 +135,7 @@ def leave_out_bare(angles, work):
 
 def run(folder, n, seed):
     """One row."""
+    version = ask_version()  # before the engine: a program that is not there would cost the run
     if n:
         template, said = make_clump(folder, n)
         dice = said["scores"]["dice"]
@@ -153,7 +154,7 @@ def run(folder, n, seed):
     blocks = [statistics.mean(block) for block in numpy.array_split(angles, BLOCKS)]
     return {"n": n, "dice": dice, "seed": seed, "step": contrasts_tables.STEP, "particles": COUNT,
             "angle": round(statistics.mean(angles), 3), "bare": bare, "correlation": round(find_correlation(angles), 3),
-            "blocks": " ".join(f"{block:.3f}" for block in blocks), "cpu_seconds": cpu, "version": ask_version()}
+            "blocks": " ".join(f"{block:.3f}" for block in blocks), "cpu_seconds": cpu, "version": version}
 
 
 def list_blocks(rows):

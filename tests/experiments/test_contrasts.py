@@ -509,6 +509,10 @@ class Resumption(unittest.TestCase):
         with mock.patch.object(program, "MSKIT", os.path.join(self.folder, "none")), \
                 self.assertRaisesRegex(SystemExit, "none: No such file or directory; build the program"):
             self.call("--cells", "variational-2")
+        with mock.patch.object(program, "MSKIT", os.path.join(self.folder, "none")), \
+                self.assertRaisesRegex(SystemExit, "none: No such file or directory; build the program"):
+            self.call("--cells", "sphere-0")
+        self.assertEqual(self.calls(), 0)
 
     def test_numbers_that_are_none(self):
         for words, sentence in ((("--seeds", "-1"), "'-1' is not a whole number from 0 on"),
