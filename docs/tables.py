@@ -11,15 +11,23 @@ def read(path):
         return list(csv.DictReader(stream))
 
 
-def read_if_there(path):
-    """The rows so far of a table that grows run by run. A last line that was cut short would be taken for a run."""
+def read_if_there(path, columns=()):
+    """The rows so far of a table that grows run by run, which has these columns at least. A last line that was cut
+    short would be taken for a run."""
     if not os.path.exists(path):
         return []
     with open(path, encoding="utf-8") as stream:
         text = stream.read()
     if text and not text.endswith("\n"):
         sys.exit(f"{path}: the last line has no end; delete it, and its run is done again")
-    return read(path)
+    rows = read(path)
+    for number, row in enumerate(rows, 1):
+        missing = [name for name in columns if name not in row]
+        if missing:
+            sys.exit(f"{path}: the head has no column {missing[0]}; put it right")
+        if None in row or None in row.values():
+            sys.exit(f"{path}: row {number} has not as many values as the head; delete it, and its run is done again")
+    return rows
 
 
 def add_row(path, columns, row):

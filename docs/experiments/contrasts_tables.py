@@ -12,6 +12,7 @@ from intervals import interval, interval_by_own, pool  # noqa: E402
 from packing import put_in_order  # noqa: E402
 
 RUNS, CLUMPS = (os.path.join(HERE, name) for name in ("contrasts.csv", "contrasts-clumps.csv"))
+RUN = ["cell", "step", "rate"]  # these and its seed tell a run
 STEP, RATE = 4e-5, 8.0  # of the experiment; other rows are checks of these
 LOOKED_AT = 2  # runs of a cell, of the first seeds: when the others were added
 # what was measured: its heading, digits, and the margin of equivalence, of the reference's mean or in degrees
@@ -21,7 +22,7 @@ MEASURED = {"fraction": ("fraction", 4, ("relative", 0.01)), "start": ("start, d
 
 
 def read_runs(path=RUNS):
-    return put_in_order(tables.read_if_there(path), "cell", "step", "rate")
+    return put_in_order(tables.read_if_there(path, [*RUN, "seed"]), *RUN)
 
 
 def take(rows, field, cell, step=STEP, rate=RATE):

@@ -239,7 +239,7 @@ def main():
     if asked.seeds and 0 in asked.spheres and not LIGGGHTS_SMOOTH:
         sys.exit("0 spheres: LIGGGHTS_SMOOTH names no engine with superquadrics; build-smooth.sh makes one")
     os.makedirs(asked.work, exist_ok=True)
-    begun, rows = time.time(), tables.read_if_there(TABLE)
+    begun, rows = time.time(), tables.read_if_there(TABLE, COLUMNS)
     there = {(int(row["n"]), int(row["seed"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
         for n in asked.spheres:
@@ -249,7 +249,7 @@ def main():
             tables.add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in ("n", "seed", "angle", "correlation", "cpu_seconds")),
                   flush=True)
-    rows = put_in_order(tables.read_if_there(TABLE), "n")
+    rows = put_in_order(tables.read_if_there(TABLE, COLUMNS), "n")
     tables.fill(os.path.join(HERE, "..", "behaviour.md"),
                 {"drum": make_table(rows), "drum-soundness": table_soundness(rows)})
 

@@ -197,7 +197,7 @@ def main():
     asked = parser.parse_args()
     os.makedirs(asked.work, exist_ok=True)
     names = make_clumps(asked.grains, asked.work) if asked.seeds else []
-    begun, rows = time.time(), tables.read_if_there(TABLE)
+    begun, rows = time.time(), tables.read_if_there(TABLE, COLUMNS)
     there = {(int(row["kinds"]), int(row["choice"]), int(row["seed"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
         for kinds in asked.kinds:
@@ -207,7 +207,7 @@ def main():
             row = run(asked.work, names, kinds, choice, seed)
             tables.add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in COLUMNS if key not in ("particles", "version")), flush=True)
-    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"library": make_table(tables.read_if_there(TABLE))})
+    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"library": make_table(tables.read_if_there(TABLE, COLUMNS))})
 
 
 if __name__ == "__main__":

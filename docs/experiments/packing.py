@@ -283,7 +283,7 @@ def main():
     parser.add_argument("--most", type=float, default=1e9, help="no packing is begun after so many minutes")
     asked = parser.parse_args()
     os.makedirs(asked.work, exist_ok=True)
-    start, rows = time.time(), tables.read_if_there(TABLE)
+    start, rows = time.time(), tables.read_if_there(TABLE, COLUMNS)
     there = {(int(row["n"]), int(row["seed"]), float(row["step"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
         if (asked.spheres, seed, asked.step) in there or time.time() - start > 60 * asked.most:
@@ -292,7 +292,8 @@ def main():
         tables.add_row(TABLE, COLUMNS, row)
         print(", ".join(f"{name} {row[name]}" for name in ("n", "seed", "height_envelope", "height_top", "fraction",
                                                            "cpu_seconds")), flush=True)
-    rows = sorted(put_in_order(tables.read_if_there(TABLE)), key=lambda row: (int(row["n"]), -float(row["step"])))
+    rows = sorted(put_in_order(tables.read_if_there(TABLE, COLUMNS)),
+                  key=lambda row: (int(row["n"]), -float(row["step"])))
     tables.fill(os.path.join(HERE, "..", "behaviour.md"),
                 {"packing": make_table(rows), "packing-differences": table_differences(rows)})
 

@@ -393,6 +393,14 @@ class Rows(unittest.TestCase):
         with self.assertRaisesRegex(SystemExit, "runs.csv: the last line has no end"):
             tables.tables.read_if_there(self.path)
 
+    def test_columns_and_values_that_lack(self):
+        for text, sentence in (("cell,sead\nsphere-0,7\n", "runs.csv: the head has no column seed"),
+                               ("cell,seed\nsphere-0,7\nsphere-0\n", "runs.csv: row 2 has not as many values"),
+                               ("cell,seed\nsphere-0,7,8\n", "runs.csv: row 1 has not as many values")):
+            self.write(text)
+            with self.assertRaisesRegex(SystemExit, sentence):
+                tables.tables.read_if_there(self.path, ["cell", "seed"])
+
     def test_a_run_that_is_repeated_changes_no_order(self):
         lines = [f"{cell},{seed},4e-05,8.0\n" for seed in contrasts.SEEDS[:3] for cell in ("sphere-0", "variational-2")]
         for at in range(len(lines)):
