@@ -11,14 +11,28 @@ def read(path):
         return list(csv.DictReader(stream))
 
 
-def read_if_there(path):
-    """The rows so far of a table that grows run by run."""
-    return read(path) if os.path.exists(path) else []
+def read_if_there(path, columns=()):
+    """The rows so far of a table that grows run by run, which has these columns at least. A last line that was cut
+    short would be taken for a run."""
+    if not os.path.exists(path):
+        return []
+    with open(path, encoding="utf-8") as stream:
+        text = stream.read()
+    if text and not text.endswith("\n"):
+        sys.exit(f"{path}: the last line has no end; delete it, and its run is done again")
+    rows = read(path)
+    for number, row in enumerate(rows, 1):
+        missing = [name for name in columns if name not in row]
+        if missing:
+            sys.exit(f"{path}: the head has no column {missing[0]}; put it right")
+        if None in row or None in row.values():
+            sys.exit(f"{path}: row {number} has not as many values as the head; delete it, and its run is done again")
+    return rows
 
 
 def add_row(path, columns, row):
-    """At the end of a CSV file, with the head of a new one."""
-    new = not os.path.exists(path)
+    """At the end of a CSV file, with the head of a new or empty one."""
+    new = not os.path.exists(path) or os.path.getsize(path) == 0
     with open(path, "a", newline="", encoding="utf-8") as stream:
         writer = csv.DictWriter(stream, columns, lineterminator="\n")
         if new:

@@ -171,6 +171,7 @@ def read_bodies(path, clump):
 
 def run_bed(work, clump, seed, step, rate):
     """What is measured of one bed."""
+    version = ask_version()  # before the engine: a program that is not there would cost the run
     text, kinetic, cpu = run_to_rest(work, make_script(clump, seed, step, rate),
                                      LIGGGHTS_SMOOTH if clump["smooth"] else LIGGGHTS)
     rise, fall = ([(float(a), float(v)) for a, v in re.findall(rf"^{way} (\S+) (\S+)", text, re.MULTILINE)]
@@ -184,4 +185,4 @@ def run_bed(work, clump, seed, step, rate):
     return {"seed": seed, "step": step, "rate": rate, "particles": COUNT, "height": round(height, 3),
             "fraction": round(fraction, 5), "start": round(start, 2), "stop": round(stop, 2),
             "flowed": round(flowed, 5), "kinetic_over_m_g_d": kinetic, "seconds": round(steps * step, 2),
-            "cpu_seconds": cpu, "version": ask_version()}
+            "cpu_seconds": cpu, "version": version}

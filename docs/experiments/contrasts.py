@@ -31,7 +31,8 @@ import contrasts_chart
 import contrasts_tables
 import soundness
 from bed import LIGGGHTS_SMOOTH, run_bed
-from packing import SEEDS
+from packing import SEEDS, read_seeds
+from program import read_count, read_positive
 from tables import add_row
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -69,11 +70,11 @@ def choose_cells(names, largest):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=int, default=3, help="runs of each cell (3)")
+    parser.add_argument("--seeds", type=read_seeds, default=3, help="runs of each cell (3)")
     parser.add_argument("--cells", help="names, with commas between (all)")
-    parser.add_argument("--largest", type=int, default=20, help="no clumps of more spheres (20)")
-    parser.add_argument("--step", type=float, default=contrasts_tables.STEP, help="s (4e-5)")
-    parser.add_argument("--rate", type=float, default=contrasts_tables.RATE, help="degrees a second (8)")
+    parser.add_argument("--largest", type=read_count, default=20, help="no clumps of more spheres (20)")
+    parser.add_argument("--step", type=read_positive, default=contrasts_tables.STEP, help="s (4e-5)")
+    parser.add_argument("--rate", type=read_positive, default=contrasts_tables.RATE, help="degrees a second (8)")
     parser.add_argument("--work", default="contrasts", help="folder of the engine's files (contrasts)")
     parser.add_argument("--most", type=float, default=1e9, help="no run is begun after so many minutes")
     asked = parser.parse_args()

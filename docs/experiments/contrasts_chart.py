@@ -74,4 +74,7 @@ def draw(rows):
     if not shutil.which("gnuplot"):
         print("gnuplot is not installed (package gnuplot-nox): the chart is not drawn anew")
         return
+    if not any(take(rows, "fraction", name) for name in CELLS):
+        print("no cell of the candy was run yet: the chart is not drawn anew")
+        return
     subprocess.run(["gnuplot"], input=write_commands(rows), encoding="utf-8", check=True)

@@ -9,10 +9,12 @@ sys.path.insert(0, os.path.join(HERE, ".."))
 import tables  # noqa: E402
 from contrasts_cells import CELLS, CONTROLLED, CONTROLS, FRICTIONS, GRAINS, SERIES, find_cell  # noqa: E402
 from intervals import interval, interval_by_own, pool  # noqa: E402
+from packing import put_in_order  # noqa: E402
 
 RUNS, CLUMPS = (os.path.join(HERE, name) for name in ("contrasts.csv", "contrasts-clumps.csv"))
+RUN = ["cell", "step", "rate"]  # these and its seed tell a run
 STEP, RATE = 4e-5, 8.0  # of the experiment; other rows are checks of these
-LOOKED_AT = 2  # runs of a cell, the first of its rows: when the others were added
+LOOKED_AT = 2  # runs of a cell, of the first seeds: when the others were added
 # what was measured: its heading, digits, and the margin of equivalence, of the reference's mean or in degrees
 MEASURED = {"fraction": ("fraction", 4, ("relative", 0.01)), "start": ("start, degrees", 2, ("absolute", 1.0)),
             "stop": ("stop, degrees", 2, ("absolute", 1.0)),
@@ -20,7 +22,7 @@ MEASURED = {"fraction": ("fraction", 4, ("relative", 0.01)), "start": ("start, d
 
 
 def read_runs(path=RUNS):
-    return tables.read_if_there(path)
+    return put_in_order(tables.read_if_there(path, [*RUN, "seed"]), *RUN)
 
 
 def take(rows, field, cell, step=STEP, rate=RATE):
@@ -144,6 +146,11 @@ def table_enough(rows, reference):
     return tables.markdown([f"cell - {reference}"] + [head for head, _, _ in MEASURED.values()], out)
 
 
+def find_largest(rows):
+    """The last cell of SERIES that was run, or of all where none was."""
+    return [cell for cell in SERIES if take(rows, "fraction", cell) or cell == SERIES[0]][-1]
+
+
 def judge_otherwise(rows, field, cell, reference, at_once):
     """By which intervals of the difference it is not 0: that of the rule; with each cell's own variance; of the runs
     alone that came when the first of the cell had been looked at; of so many differences at once."""
@@ -173,7 +180,7 @@ def table_checks(rows):
     """Other steps and rates, against the experiment's of the same cell."""
     out = []
     for cell, step, rate in dict.fromkeys((r["cell"], float(r["step"]), float(r["rate"])) for r in rows):
-        if (step, rate) != (STEP, RATE):
+        if (step, rate) != (STEP, RATE) and take(rows, "fraction", cell):
             pairs = {f: (take(rows, f, cell, step, rate), take(rows, f, cell)) for f in MEASURED}
             out.append([cell, f"{step:g}", f"{rate:g}", str(len(pairs["fraction"][0]))] + [
                 show(*interval(*pairs[f], *pool_cells(rows, f)), MEASURED[f][1]) for f in MEASURED])
@@ -188,7 +195,8 @@ def table_steps(rows, reference):
     known = dict.fromkeys((r["cell"], float(r["step"]), float(r["rate"])) for r in rows)
     out = []
     for cell, *other in known:
-        if other != [STEP, RATE] and cell != reference and (reference, *other) in known:
+        needed = {(reference, *other), (cell, STEP, RATE), (reference, STEP, RATE)}
+        if other != [STEP, RATE] and cell != reference and needed <= set(known):
             for how in ([STEP, RATE], other):
                 pairs = {f: [take(rows, f, name, *how) for name in (cell, reference)] for f in MEASURED}
                 out.append([f"{cell} - {reference}", *(f"{x:g}" for x in how),
@@ -239,6 +247,8 @@ def judge_predictor(rows, clumps, field, predictor):
 
 
 def table_predictors(rows):
+    if sum(bool(take(rows, "fraction", cell)) for cell in SERIES[1:]) < 2:  # for a line
+        return "Too few cells were run yet."
     clumps, out = tables.read(CLUMPS), []
     for predictor, name in PREDICTORS.items():
         line = [name]
@@ -279,7 +289,7 @@ def fill():
         "bed-friction": table_friction(rows),
         "bed-grain": table_runs(rows, GRAINS),
         "bed-grain-contrasts": table_contrasts(rows, list_grains(), GRAINS),
-        "bed-enough": table_enough(rows, [cell for cell in SERIES if take(rows, "fraction", cell)][-1]),
+        "bed-enough": table_enough(rows, find_largest(rows)),
         "bed-smooth": table_enough(rows, "smooth"), "bed-predictors": table_predictors(rows),
         "bed-otherwise": table_otherwise(rows, "smooth"), "bed-checks": table_checks(rows),
         "bed-steps": table_steps(rows, "smooth")})

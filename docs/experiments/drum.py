@@ -34,8 +34,9 @@ import contrasts_tables
 from bed import LIGGGHTS_SMOOTH, SMOOTH, SPHERES, ball, ellipsoid
 from contrasts_cells import make_smooth
 from intervals import interval, interval_by_own, pool, quantile
-from packing import ENERGY, LIGGGHTS, MATERIAL, RESTITUTION, SEEDS, YOUNG, make_clump, read_dumps, run_engine
-from program import ask_version
+from packing import (ENERGY, LIGGGHTS, MATERIAL, RESTITUTION, SEEDS, YOUNG, make_clump, put_in_order, read_dumps,
+                     read_seeds, run_engine)
+from program import ask_version, read_counts
 import soundness
 import tables  # of docs, where packing looks
 
@@ -134,6 +135,7 @@ def leave_out_bare(angles, work):
 
 def run(folder, n, seed):
     """One row."""
+    version = ask_version()  # before the engine: a program that is not there would cost the run
     if n:
         template, said = make_clump(folder, n)
         dice = said["scores"]["dice"]
@@ -152,7 +154,7 @@ def run(folder, n, seed):
     blocks = [statistics.mean(block) for block in numpy.array_split(angles, BLOCKS)]
     return {"n": n, "dice": dice, "seed": seed, "step": contrasts_tables.STEP, "particles": COUNT,
             "angle": round(statistics.mean(angles), 3), "bare": bare, "correlation": round(find_correlation(angles), 3),
-            "blocks": " ".join(f"{block:.3f}" for block in blocks), "cpu_seconds": cpu, "version": ask_version()}
+            "blocks": " ".join(f"{block:.3f}" for block in blocks), "cpu_seconds": cpu, "version": version}
 
 
 def list_blocks(rows):
@@ -228,26 +230,26 @@ def table_soundness(rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--spheres", default="10,30,60,120", help="of a candy (10,30,60,120); 0: the candy itself")
-    parser.add_argument("--seeds", type=int, default=2, help="runs of each (2)")
+    parser.add_argument("--spheres", type=read_counts, default=[10, 30, 60, 120],
+                        help="of a candy (10,30,60,120); 0: the candy itself")
+    parser.add_argument("--seeds", type=read_seeds, default=2, help="runs of each (2)")
     parser.add_argument("--work", default="drum", help="folder of the engine's files (drum)")
     parser.add_argument("--most", type=float, default=1e9, help="no run is begun after so many minutes")
     asked = parser.parse_args()
-    numbers = [int(n) for n in asked.spheres.split(",")]
-    if asked.seeds and 0 in numbers and not LIGGGHTS_SMOOTH:
+    if asked.seeds and 0 in asked.spheres and not LIGGGHTS_SMOOTH:
         sys.exit("0 spheres: LIGGGHTS_SMOOTH names no engine with superquadrics; build-smooth.sh makes one")
     os.makedirs(asked.work, exist_ok=True)
-    begun, rows = time.time(), tables.read_if_there(TABLE)
+    begun, rows = time.time(), tables.read_if_there(TABLE, COLUMNS)
     there = {(int(row["n"]), int(row["seed"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
-        for n in numbers:
+        for n in asked.spheres:
             if (n, seed) in there or time.time() - begun > 60 * asked.most:
                 continue
             row = run(asked.work, n, seed)
             tables.add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in ("n", "seed", "angle", "correlation", "cpu_seconds")),
                   flush=True)
-    rows = tables.read_if_there(TABLE)
+    rows = put_in_order(tables.read_if_there(TABLE, COLUMNS), "n")
     tables.fill(os.path.join(HERE, "..", "behaviour.md"),
                 {"drum": make_table(rows), "drum-soundness": table_soundness(rows)})
 

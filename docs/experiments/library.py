@@ -27,8 +27,8 @@ import contrasts_tables
 from bed import COUNT, FRICTION, SIDE, run_bed
 from contrasts_cells import read_rows, tell_template, write_rows
 from intervals import interval, interval_by_own, pool
-from packing import DENSITY, MASS, RESTITUTION, SEEDS, YOUNG, read_spheres
-from program import run_mskit
+from packing import DENSITY, MASS, RESTITUTION, SEEDS, YOUNG, read_seeds, read_spheres
+from program import read_counts, run_mskit
 import tables  # of docs, where packing looks
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -189,25 +189,25 @@ def make_table(rows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("grains", help="folder of meshes")
-    parser.add_argument("--seeds", type=int, default=3, help="runs of each (3)")
-    parser.add_argument("--kinds", default=",".join(map(str, KINDS)), help="0: all (0,1,5,20)")
+    parser.add_argument("--seeds", type=read_seeds, default=3, help="runs of each (3)")
+    parser.add_argument("--kinds", type=read_counts, default=KINDS, help="0: all (0,1,5,20)")
     parser.add_argument("--choice", type=int, default=1, help="seed of the choice (1)")
     parser.add_argument("--work", default="library", help="folder of the engine's files (library)")
     parser.add_argument("--most", type=float, default=1e9, help="no run is begun after so many minutes")
     asked = parser.parse_args()
     os.makedirs(asked.work, exist_ok=True)
     names = make_clumps(asked.grains, asked.work) if asked.seeds else []
-    begun, rows = time.time(), tables.read_if_there(TABLE)
+    begun, rows = time.time(), tables.read_if_there(TABLE, COLUMNS)
     there = {(int(row["kinds"]), int(row["choice"]), int(row["seed"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
-        for kinds in map(int, asked.kinds.split(",")):
+        for kinds in asked.kinds:
             choice = asked.choice if kinds else 0
             if (kinds, choice, seed) in there or time.time() - begun > 60 * asked.most:
                 continue
             row = run(asked.work, names, kinds, choice, seed)
             tables.add_row(TABLE, COLUMNS, row)
             print(", ".join(f"{key} {row[key]}" for key in COLUMNS if key not in ("particles", "version")), flush=True)
-    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"library": make_table(tables.read_if_there(TABLE))})
+    tables.fill(os.path.join(HERE, "..", "behaviour.md"), {"library": make_table(tables.read_if_there(TABLE, COLUMNS))})
 
 
 if __name__ == "__main__":

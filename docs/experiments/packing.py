@@ -32,7 +32,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import tables  # noqa: E402
 from intervals import interval, interval_of_mean, pool  # noqa: E402
-from program import ask_version, run_mskit  # noqa: E402
+from program import ask_version, read_count, read_positive, run_mskit  # noqa: E402
 LIGGGHTS = os.environ.get("LIGGGHTS", "liggghts")
 TABLE = os.path.join(HERE, "packing.csv")
 COLUMNS = ["method", "n", "dice", "coverage", "scaled_by", "seed", "step", "particles", "height_envelope", "height_top",
@@ -259,16 +259,31 @@ def table_differences(rows):
                                                  for name, _, digits in SHOWN)] for what, these, those in pairs])
 
 
+def read_seeds(text):
+    """The argument that says how many of SEEDS."""
+    seeds = read_count(text)
+    if seeds > len(SEEDS):
+        raise argparse.ArgumentTypeError(f"there are {len(SEEDS)} seeds, {seeds} are asked for")
+    return seeds
+
+
+def put_in_order(rows, *names):
+    """By SEEDS, then by these columns: a run that is repeated goes to the end of the file, and neither what is drawn
+    nor which runs are a cell's first may hang on that. Other seeds stand behind."""
+    places = {str(seed): place for place, seed in enumerate(SEEDS)}
+    return sorted(rows, key=lambda row: (places.get(row["seed"], len(SEEDS)), *(row[name] for name in names)))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--spheres", type=int, default=10, help="of a candy (10)")
-    parser.add_argument("--seeds", type=int, default=20, help="packings (20)")
-    parser.add_argument("--step", type=float, default=1e-5, help="s (1e-5)")
+    parser.add_argument("--spheres", type=read_count, default=10, help="of a candy (10)")
+    parser.add_argument("--seeds", type=read_seeds, default=20, help="packings (20)")
+    parser.add_argument("--step", type=read_positive, default=1e-5, help="s (1e-5)")
     parser.add_argument("--work", default="packing", help="folder of the engine's files (packing)")
     parser.add_argument("--most", type=float, default=1e9, help="no packing is begun after so many minutes")
     asked = parser.parse_args()
     os.makedirs(asked.work, exist_ok=True)
-    start, rows = time.time(), tables.read_if_there(TABLE)
+    start, rows = time.time(), tables.read_if_there(TABLE, COLUMNS)
     there = {(int(row["n"]), int(row["seed"]), float(row["step"])) for row in rows}
     for seed in SEEDS[:asked.seeds]:
         if (asked.spheres, seed, asked.step) in there or time.time() - start > 60 * asked.most:
@@ -277,7 +292,8 @@ def main():
         tables.add_row(TABLE, COLUMNS, row)
         print(", ".join(f"{name} {row[name]}" for name in ("n", "seed", "height_envelope", "height_top", "fraction",
                                                            "cpu_seconds")), flush=True)
-    rows = tables.read_if_there(TABLE)
+    rows = sorted(put_in_order(tables.read_if_there(TABLE, COLUMNS)),
+                  key=lambda row: (int(row["n"]), -float(row["step"])))
     tables.fill(os.path.join(HERE, "..", "behaviour.md"),
                 {"packing": make_table(rows), "packing-differences": table_differences(rows)})
 

@@ -18,9 +18,9 @@ import statistics
 
 import numpy
 
-from contrasts_cells import CELLS, GRAINS, SERIES
-from contrasts_tables import (HERE, LOOKED_AT, MEASURED, RATE, STEP, is_different, is_equivalent, judge_series, margin,
-                              pool_cells, read_runs, take)
+from contrasts_cells import CELLS, GRAINS
+from contrasts_tables import (HERE, LOOKED_AT, MEASURED, RATE, STEP, find_largest, is_different, is_equivalent,
+                              judge_series, margin, pool_cells, read_runs, take)
 from intervals import interval_by_own, quantile
 import tables  # of docs, where contrasts_tables looks
 
@@ -126,7 +126,7 @@ def list_changes(rows, reference):
 
 
 def has_spread(rows, cells):
-    return pool_cells(rows, "fraction", cells)[1] > 0
+    return all(pool_cells(rows, field, cells)[0] > 0 for field in MEASURED)
 
 
 def make_table(rows):
@@ -137,10 +137,9 @@ def make_table(rows):
         if has_spread(rows, cells):
             out += [[f"{body}: {what}, p", *(f"{p:.{4 if p < 0.01 else 2}f}" for p in found)]
                     for what, found in judge_cells(rows, cells).items()]
-    largest = [cell for cell in SERIES if take(rows, "fraction", cell)][-1]
     out += list_chances(rows, "smooth")
     out += [[f"other verdicts against {reference} by own variances", *list_changes(rows, reference)]
-            for reference in (largest, "smooth")]
+            for reference in (find_largest(rows), "smooth")]
     return tables.markdown(["", *(head for head, _, _ in MEASURED.values())], out)
 
 

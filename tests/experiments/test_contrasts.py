@@ -373,6 +373,54 @@ class Tables(unittest.TestCase):
         self.assertEqual(rows, [("variational-10", "1")] + others)
 
 
+class Rows(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = os.path.join(folder.name, "runs.csv")
+
+    def write(self, text):
+        with open(self.path, "w", encoding="ascii") as stream:
+            stream.write(text)
+
+    def test_a_row_after_an_empty_file_has_a_head(self):
+        self.write("")
+        add_row(self.path, ["cell", "seed"], {"cell": "sphere-0", "seed": 7})
+        self.assertEqual(tables.tables.read_if_there(self.path), [{"cell": "sphere-0", "seed": "7"}])
+
+    def test_a_line_cut_short_is_no_run(self):
+        self.write("cell,start\nsphere-0,24")
+        with self.assertRaisesRegex(SystemExit, "runs.csv: the last line has no end"):
+            tables.tables.read_if_there(self.path)
+
+    def test_columns_and_values_that_lack(self):
+        for text, sentence in (("cell,sead\nsphere-0,7\n", "runs.csv: the head has no column seed"),
+                               ("cell,seed\nsphere-0,7\nsphere-0\n", "runs.csv: row 2 has not as many values"),
+                               ("cell,seed\nsphere-0,7,8\n", "runs.csv: row 1 has not as many values")):
+            self.write(text)
+            with self.assertRaisesRegex(SystemExit, sentence):
+                tables.tables.read_if_there(self.path, ["cell", "seed"])
+
+    def test_a_run_that_is_repeated_changes_no_order(self):
+        lines = [f"{cell},{seed},4e-05,8.0\n" for seed in contrasts.SEEDS[:3] for cell in ("sphere-0", "variational-2")]
+        for at in range(len(lines)):
+            self.write("cell,seed,step,rate\n" + "".join(lines[:at] + lines[at + 1:] + lines[at:at + 1]))
+            found = [f"{','.join(row.values())}\n" for row in tables.read_runs(self.path)]
+            self.assertEqual(found, lines, at)
+
+    def test_tables_of_no_run_and_of_each_alone(self):
+        known = tables.read_runs()
+        for rows in [[], *([row] for row in known)]:
+            parts = {}
+            with mock.patch.object(tables, "read_runs", lambda these=rows: these), \
+                    mock.patch.object(soundness, "read_runs", lambda these=rows: these), \
+                    mock.patch.object(tables.tables, "fill", lambda _, these, into=parts: into.update(these)):
+                tables.fill()
+                soundness.fill()
+            self.assertEqual(parts["bed-predictors"], "Too few cells were run yet.")
+            self.assertEqual(parts["bed-soundness"], "None was run yet.")
+
+
 class Chart(unittest.TestCase):
     def setUp(self):
         self.rows = [{"cell": cell, "step": tables.STEP, "rate": tables.RATE, "fraction": k / 100, "start": 20 + k}
@@ -469,6 +517,20 @@ class Resumption(unittest.TestCase):
         with mock.patch.object(program, "MSKIT", os.path.join(self.folder, "none")), \
                 self.assertRaisesRegex(SystemExit, "none: No such file or directory; build the program"):
             self.call("--cells", "variational-2")
+        with mock.patch.object(program, "MSKIT", os.path.join(self.folder, "none")), \
+                self.assertRaisesRegex(SystemExit, "none: No such file or directory; build the program"):
+            self.call("--cells", "sphere-0")
+        self.assertEqual(self.calls(), 0)
+
+    def test_numbers_that_are_none(self):
+        for words, sentence in ((("--seeds", "-1"), "'-1' is not a whole number from 0 on"),
+                                (("--seeds", "999"), "there are 20 seeds, 999 are asked for"),
+                                (("--step", "0"), "'0' is not a number above 0"),
+                                (("--rate", "nan"), "'nan' is not a number above 0")):
+            said = io.StringIO()
+            with contextlib.redirect_stderr(said), self.assertRaises(SystemExit):
+                self.call("--cells", "sphere-0", *words)
+            self.assertIn(sentence, said.getvalue())
 
     def test_the_program_s_own_sentence(self):
         self.write("mskit", "#!/bin/sh\necho 'mskit generate: no such shape' >&2\nexit 1\n")
